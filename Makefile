@@ -1,0 +1,40 @@
+# The two commands, and the slower suites. Everything is done by tools/install_deps.sh and CMake.
+
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+
+.PHONY: help demo test build asan tsan fuzz format clean
+
+help:
+	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
+	@echo "make test    install what is missing, build, run all tests"
+	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (minutes)"
+	@echo "make tsan    the tests that use threads under the thread sanitizer (minutes)"
+	@echo "make fuzz    fuzz the scene and OBJ readers, FUZZ_SECONDS each (default 60)"
+	@echo "make format  clang-format"
+
+build:
+	@tools/install_deps.sh
+	@cmake --preset release > /dev/null
+	@cmake --build --preset release -j $(JOBS)
+
+demo: build
+	@build/release/bin/weft demo
+
+test: build
+	@ctest --preset release
+
+asan tsan:
+	@tools/install_deps.sh
+	@cmake --preset $@ > /dev/null
+	@cmake --build --preset $@ -j $(JOBS)
+	@ctest --preset $@
+
+fuzz:
+	@tools/install_deps.sh --fuzz
+	@tools/fuzz.sh $(or $(FUZZ_SECONDS),60)
+
+format:
+	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
+
+clean:
+	@rm -rf build out

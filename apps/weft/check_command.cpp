@@ -1,0 +1,31 @@
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "commands.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
+
+namespace weft::app {
+namespace {
+
+/// Reads the scene and builds its world: meshes and pins are judged too.
+int check(const std::string& scene) {
+  const std::filesystem::path file = find_scene(scene);
+  const SceneWorld built = build_world(read_scene(file), make_serial_jobs());
+  for (const std::string& warning : built.warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
+  fmt::print("{}: good\n", file.string());
+  return kDone;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  auto scene = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("check", "Judge a scene file: every mistake, with its place");
+  command->add_option("FILE", *scene, "A scene file, or the name of a shipped scene")->required();
+  command->callback([scene, &exit_code] { exit_code = check(*scene); });
+}
+
+}  // namespace weft::app

@@ -1,0 +1,119 @@
+#include "run_command.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <memory>
+#include <system_error>
+#include <thread>
+
+#include "commands.h"
+#include "progress.h"
+#include "summary.h"
+#include "weft/scene/scene_library.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAnimationName = "animation.glb";
+constexpr const char* kReportName = "report.json";
+
+/// The file can be written after the simulation, or InputError before it. What is in it stays, and so does a
+/// pipe.
+void require_writable(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_other(file, error)) return;
+  const bool is_new = !fs::exists(fs::symlink_status(file, error));
+  errno = 0;
+  if (!std::ofstream(file, std::ios::app)) {
+    throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
+  }
+  if (is_new) fs::remove(file, error);
+}
+
+/// The folder is there and everything can be written, or InputError. Results of an earlier run in the folder
+/// go.
+void prepare_folder(const fs::path& folder, const fs::path& report) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
+  const std::array results = {folder / kAnimationName, folder / kReportName};
+  for (const fs::path& file : results) require_writable(file);
+  if (!report.empty()) require_writable(report);
+  for (const fs::path& file : results) {
+    fs::remove(file, error);
+    if (error) throw InputError(file.string() + " of an earlier run cannot be replaced: " + error.message());
+  }
+}
+
+int all_processors() { return std::max(1u, std::thread::hardware_concurrency()); }
+
+}  // namespace
+
+FinishedRun run_to_files(const RunRequest& request) {
+  const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
+  const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
+  prepare_folder(folder, request.report);
+  const RunOptions options{.frames = request.frames,
+                           .threads = request.threads > 0 ? request.threads : all_processors()};
+  ProgressBar bar(scene.name);
+  catch_interrupts();
+  const RunResult result = run_scene(scene, options, [&](const Progress& progress) {
+    bar.update(progress);
+    return !interrupted();
+  });
+  bar.clear();
+  const FinishedRun run{result.report, folder / kAnimationName, folder / kReportName};
+  write_report(run.report_file, result.report);
+  if (!request.report.empty()) write_report(request.report, result.report);
+  write_glb(run.animation_file, result.animation);
+  return run;
+}
+
+int exit_code_of(RunOutcome outcome) {
+  switch (outcome) {
+    case RunOutcome::done:
+      return kDone;
+    case RunOutcome::interrupted:
+      return kInterrupted;
+    case RunOutcome::failed:
+      break;
+  }
+  return kSimulationFailed;
+}
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto request = std::make_shared<RunRequest>();
+  CLI::App* command = app.add_subcommand("run", "Simulate a scene; write animation.glb and report.json");
+  command
+      ->add_option("SCENE", request->scene, "A scene file, or the name of a shipped scene (see: weft scenes)")
+      ->required();
+  command->add_option("--out", request->out, "Folder for the results (default: out/SCENE)")->type_name("DIR");
+  command->add_option("--frames", request->frames, "Frames to simulate, instead of the scene's own duration")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  command
+      ->add_option("--threads", request->threads,
+                   "Threads (default: all processors); never changes the result")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T");
+  command->add_option("--set", request->overrides, "Change a value, as in --set solver.integrator=desbrun")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
+  command->callback([request, &exit_code] {
+    const FinishedRun run = run_to_files(*request);
+    fmt::print("{}", summarise(run.report));
+    if (run.report.outcome == RunOutcome::interrupted) fmt::print("  interrupted: what was done is kept\n");
+    fmt::print("  written      {}\n               {}\n", run.animation_file.string(),
+               run.report_file.string());
+    exit_code = exit_code_of(run.report.outcome);
+  });
+}
+
+}  // namespace weft::app

@@ -1,0 +1,34 @@
+#pragma once
+/// One scene from file to files; also what `weft demo` does eight times.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "weft/run/runner.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft::app {
+
+struct RunRequest {
+  std::string scene;             // a file, or the name of a shipped scene
+  std::filesystem::path out;     // folder for animation.glb and report.json; empty: out/ and the scene's name
+  std::filesystem::path report;  // a second copy of the report; empty: none
+  std::optional<int> frames;
+  int threads = 0;  // 0: all processors
+  Overrides overrides;
+};
+
+struct FinishedRun {
+  RunReport report;
+  std::filesystem::path animation_file, report_file;
+};
+
+/// Reads, simulates with a progress bar, writes. Throws InputError for bad input and unwritable places,
+/// before simulating where it can.
+FinishedRun run_to_files(const RunRequest& request);
+
+/// The exit code that an outcome deserves.
+int exit_code_of(RunOutcome outcome);
+
+}  // namespace weft::app

@@ -1,0 +1,49 @@
+#include "summary.h"
+
+#include <fmt/core.h>
+
+namespace weft::app {
+namespace {
+
+std::string format_depth(const RunReport& r) {
+  return r.penetration_max ? fmt::format("{:.3g} mm", 1000 * *r.penetration_max) : "–";
+}
+
+double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
+
+}  // namespace
+
+std::string summarise(const RunReport& r) {
+  std::string text;
+  text += fmt::format("{}: {} frames, {:.2f} s simulated with {}\n", r.scene, r.frames, r.seconds_simulated,
+                      r.integrator);
+  text += fmt::format("  cloth        {} particles, {} triangles, {} springs\n", r.particles, r.triangles,
+                      r.springs);
+  text += fmt::format("  time         {:.2f} ms per frame (95 %: {:.2f} ms), {:.2f} ms of CPU, {} thread{}\n",
+                      r.ms_per_frame_median, r.ms_per_frame_p95, r.cpu_ms_per_frame, r.threads,
+                      r.threads == 1 ? "" : "s");
+  text += fmt::format("  strain       {:+.1f} % to {:+.1f} %, mean {:+.2f} %\n", 100 * r.min_strain,
+                      100 * r.max_strain, 100 * r.mean_strain);
+  text += fmt::format("  energy       {:.3g} J kinetic, {:.3g} J potential at the end\n",
+                      last(r.kinetic_energy), last(r.potential_energy));
+  text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
+  if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));
+  text += fmt::format("  state hash   {}\n", r.state_hash);
+  for (const std::string& warning : r.warnings) text += "  warning: " + warning + "\n";
+  if (!r.failure.empty()) text += "  failed at " + r.failure + "\n";
+  return text;
+}
+
+std::string table_head() {
+  return fmt::format("{:<26} {:>9} {:>7} {:>9} {:>16} {:>10} {:>12}\n", "scene", "particles", "frames",
+                     "ms/frame", "strain", "lowest", "penetration");
+}
+
+std::string table_line(const RunReport& r) {
+  const std::string strain = fmt::format("{:+.1f} … {:+.1f} %", 100 * r.min_strain, 100 * r.max_strain);
+  // fmt counts the dots as one column, as a terminal does.
+  return fmt::format("{:<26} {:>9} {:>7} {:>9.2f} {:>16} {:>8.3f} m {:>12}\n", r.scene, r.particles, r.frames,
+                     r.ms_per_frame_median, strain, last(r.lowest_y), format_depth(r));
+}
+
+}  // namespace weft::app

@@ -1,0 +1,17 @@
+#pragma once
+/// Reports in words.
+
+#include <string>
+
+#include "weft/run/report.h"
+
+namespace weft::app {
+
+/// Several lines for one run.
+std::string summarise(const RunReport& report);
+
+/// Head and one line per run for a table of runs.
+std::string table_head();
+std::string table_line(const RunReport& report);
+
+}  // namespace weft::app

@@ -1,0 +1,132 @@
+#include "bench/integrators.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "bench/machine.h"
+#include "weft/core/error.h"
+#include "weft/core/simd.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft::bench {
+namespace {
+
+/// A 1 m sheet hung by two corners with the stiffness of real fabric: 0.2 kg/m², 2000 N/m.
+struct Sheet {
+  std::shared_ptr<const ClothModel> model;
+  ClothState state;
+  Environment environment;
+};
+
+Sheet make_sheet(int particles_per_side, const std::string& spring_model) {
+  const Grid grid{.cells_x = particles_per_side - 1, .cells_z = particles_per_side - 1};
+  std::shared_ptr<const ClothTopology> topology;
+  if (spring_model == "mesh") {
+    topology = build_mesh_topology(build_grid_mesh(grid, GridDiagonals::alternating));
+  } else {
+    for (const SpringModel m : {SpringModel::basic, SpringModel::simplified, SpringModel::alternating}) {
+      if (to_string(m) == spring_model) topology = build_grid_topology(grid, m);
+    }
+  }
+  if (!topology)
+    throw InputError("--model must be basic, simplified, alternating or mesh, not " + spring_model);
+  Sheet sheet{
+      build_cloth_model(topology, ClothMaterial{.damping = 1e-4}), make_state(topology->mesh.positions), {}};
+  for (const int i : {0, grid.cells_x}) {
+    sheet.environment.pins.particle.push_back(i);
+    sheet.environment.pins.position.push_back(topology->mesh.positions[i]);
+  }
+  return sheet;
+}
+
+/// Bytes that a step must move between memory and registers per particle if every array is touched once per
+/// pass; empty for the solvers with a factorised matrix.
+std::optional<double> bytes_per_particle(const std::string& integrator) {
+  // Pass 1 reads x, v, m, w and writes u; pass 2 reads u, x, v (and w) and writes x, v.
+  const int shared = (8 + 3) + (9 + 6);
+  if (integrator == "explicit") return shared * sizeof(float);
+  if (integrator == "paper" || integrator == "paper_fixed") return (shared + 1) * sizeof(float);
+  return std::nullopt;
+}
+
+/// The largest cloth for which the integrator takes less than a few seconds a step.
+int largest_size(const std::string& integrator) {
+  if (integrator == "implicit_euler") return 64;
+  if (integrator == "desbrun") return 256;
+  return 1 << 20;
+}
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Median over batches of the seconds per step.
+double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem& jobs, double seconds) {
+  const auto run = [&](int steps) {
+    const double begin = seconds_now();
+    for (int s = 0; s < steps; ++s)
+      integrator.advance(*sheet.model, sheet.environment, step, jobs, sheet.state);
+    return (seconds_now() - begin) / steps;
+  };
+  const double first = std::min(run(1), run(1));
+  const int batch = std::clamp(static_cast<int>(seconds / 10 / first), 1, 100000);
+  std::vector<double> batches;
+  for (const double begin = seconds_now(); batches.empty() || seconds_now() - begin < seconds;) {
+    batches.push_back(run(batch));
+  }
+  std::sort(batches.begin(), batches.end());
+  return batches[batches.size() / 2];
+}
+
+void bench_one(const std::string& name, int size, int threads, const IntegratorBenchOptions& options,
+               double clock) {
+  Sheet sheet = make_sheet(size, options.model);
+  const bool is_implicit = name == "desbrun" || name == "implicit_euler";
+  const double step = is_implicit ? 1.0 / 60 : 0.5 * explicit_step_limit(*sheet.model, {});
+  const auto jobs = make_jobs(threads);
+  const auto integrator = make_integrator({.integrator = name});
+  const double seconds = measure_step(*integrator, sheet, step, *jobs, options.seconds);
+
+  const double particles = sheet.model->num_particles();
+  const double springs = static_cast<double>(sheet.model->topology->springs.size());
+  fmt::print("{:<15} {:>4}² {:>2} {:>11.2f} {:>10.1f} {:>12.1f}", name, size, threads,
+             1e9 * seconds / particles, 1e-6 * particles / seconds, clock * seconds / springs);
+  if (const auto bytes = bytes_per_particle(name)) {
+    const double bandwidth =
+        measure_bandwidth(static_cast<std::size_t>(11 * sizeof(float) * particles), threads);
+    const double rate = *bytes * particles / seconds;
+    fmt::print(" {:>9.0f} {:>8.1f} {:>9.0f} %", *bytes, 1e-9 * rate, 100 * rate / bandwidth);
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void bench_integrators(const IntegratorBenchOptions& options) {
+  std::vector<std::string> names = options.integrators;
+  if (names.empty()) names.assign(integrator_names().begin(), integrator_names().end());
+  for (const std::string& name : names) make_integrator({.integrator = name});
+
+  const double clock = measure_clock();
+  fmt::print("SIMD {}, clock {:.2f} GHz, springs \"{}\". One step each; median of batches.\n",
+             to_string(simd_level()), 1e-9 * clock, options.model);
+  fmt::print(
+      "Bytes: what a step must move per particle. Share: of the bandwidth measured on a working set of the "
+      "same "
+      "size.\n\n");
+  fmt::print("{:<15} {:>5} {:>2} {:>11} {:>10} {:>12} {:>9} {:>8} {:>11}\n", "integrator", "size", "T",
+             "ns/particle", "M part./s", "cycles/spring", "bytes", "GB/s", "share");
+  for (const std::string& name : names) {
+    for (const int size : options.sizes) {
+      for (const int threads : options.threads) {
+        if (size <= largest_size(name)) bench_one(name, size, threads, options, clock);
+      }
+    }
+  }
+}
+
+}  // namespace weft::bench

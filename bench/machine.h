@@ -1,0 +1,15 @@
+#pragma once
+/// What the machine can do, measured in the same run as what is compared with it.
+
+#include <cstddef>
+
+namespace weft::bench {
+
+/// Bytes per second that `num_threads` threads read and write together when each array element of a working
+/// set of `bytes` is read, changed and written (x[i] = a x[i] + b): the best of a few tries.
+double measure_bandwidth(std::size_t bytes, int num_threads);
+
+/// Clock frequency under load [Hz], from a chain of dependent additions; 0 where it cannot be measured.
+double measure_clock();
+
+}  // namespace weft::bench

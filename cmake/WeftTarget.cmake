@@ -1,0 +1,26 @@
+# What all of Weft's own targets share: C++20, warnings as errors, and arithmetic with the same bits everywhere.
+
+function(weft_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  if(MSVC)
+    target_compile_options(${target} PRIVATE /W4 /WX /fp:precise)
+  else()
+    # Fused multiply-adds would make the result depend on the machine. The other two let loops with square roots
+    # be vectorised; neither changes a result.
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror
+                                             -ffp-contract=off -fno-math-errno -fno-trapping-math)
+  endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)  # false alarms on std::string, GCC bug 105651
+  endif()
+  if(WEFT_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${WEFT_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PUBLIC -fsanitize=${WEFT_SANITIZE})
+    # What the sanitizers add to the code raises false alarms: loops that are not vectorised (clang), and variables
+    # of std::regex that seem not to be set (GCC bug 105562).
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-pass-failed>
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  endif()
+endfunction()

@@ -1,0 +1,51 @@
+#pragma once
+/// Motion by key frames: how pins and colliders move by prescription.
+
+#include <vector>
+
+#include "weft/core/vec.h"
+
+namespace weft {
+
+/// A rigid displacement from the initial place: p ↦ pivot + R (p − pivot) + translation.
+struct Pose {
+  Vec3 translation = Vec3::Zero();  // [m]
+  Mat3 rotation = Mat3::Identity();
+};
+
+/// Rotation by angles about the fixed axes x, then y, then z, in degrees; exact for multiples of 90.
+Mat3 rotation_from_angles_deg(const Vec3& angles_deg);
+
+struct KeyFrame {
+  double time = 0;                  // [s]
+  Vec3 translation = Vec3::Zero();  // from the initial place [m]
+  Vec3 angles_deg = Vec3::Zero();   // about fixed x, then y, then z; several turns are fine [degrees]
+};
+
+/// Key frames in order of time; between them translation and angles are interpolated linearly, before the
+/// first and after the last they stay. No key frames: no motion.
+class RigidMotion {
+ public:
+  RigidMotion() = default;
+
+  /// Throws InputError if the times do not increase strictly.
+  explicit RigidMotion(std::vector<KeyFrame> keys);
+
+  bool is_still() const { return keys_.empty(); }
+  Pose at(double time) const;
+
+ private:
+  std::vector<KeyFrame> keys_;
+};
+
+/// Where the pose takes p when it turns about `pivot`.
+inline Vec3 apply(const Pose& pose, const Vec3& pivot, const Vec3& p) {
+  return pivot + pose.rotation * (p - pivot) + pose.translation;
+}
+
+/// The point that the pose takes to p.
+inline Vec3 apply_inverse(const Pose& pose, const Vec3& pivot, const Vec3& p) {
+  return pivot + pose.rotation.transpose() * (p - pivot - pose.translation);
+}
+
+}  // namespace weft

@@ -1,0 +1,15 @@
+#pragma once
+/// Sine and cosine with the same bits on every machine (the C library's last bit is not specified).
+
+namespace weft {
+
+struct SinCos {
+  double sin = 0;
+  double cos = 1;
+};
+
+/// Sine and cosine of an angle in degrees: exact at multiples of 90, elsewhere to about 2e-16.
+/// The angle must be finite; it is reduced by fmod, so large angles are fine.
+SinCos sin_cos_deg(double angle_deg);
+
+}  // namespace weft

@@ -1,0 +1,48 @@
+#include "weft/core/job_system.h"
+
+#if WEFT_WITH_TBB
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace weft {
+namespace {
+
+class SerialJobs final : public JobSystem {
+ public:
+  int num_threads() const override { return 1; }
+  void run(int num_jobs, const std::function<void(int)>& job) override {
+    for (int i = 0; i < num_jobs; ++i) job(i);
+  }
+};
+
+#if WEFT_WITH_TBB
+class TbbJobs final : public JobSystem {
+ public:
+  explicit TbbJobs(int num_threads) : num_threads_(num_threads), arena_(num_threads) {}
+
+  int num_threads() const override { return num_threads_; }
+
+  void run(int num_jobs, const std::function<void(int)>& job) override {
+    arena_.execute([&] { tbb::parallel_for(0, num_jobs, job, tbb::static_partitioner{}); });
+  }
+
+ private:
+  int num_threads_;
+  tbb::task_arena arena_;
+};
+#endif
+
+}  // namespace
+
+std::unique_ptr<JobSystem> make_serial_jobs() { return std::make_unique<SerialJobs>(); }
+
+std::unique_ptr<JobSystem> make_jobs(int num_threads) {
+#if WEFT_WITH_TBB
+  if (num_threads > 1) return std::make_unique<TbbJobs>(num_threads);
+#endif
+  (void)num_threads;
+  return make_serial_jobs();
+}
+
+}  // namespace weft

@@ -1,0 +1,27 @@
+#pragma once
+/// Plain shapes: what colliders and regions of space are made of.
+
+#include "weft/core/vec.h"
+
+namespace weft {
+
+struct Sphere {
+  Vec3 center = Vec3::Zero();  // [m]
+  double radius = 1;           // > 0 [m]
+};
+
+/// The half space below the plane is solid: { p : (p - point) · normal < 0 }.
+struct Plane {
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitY();  // unit length [1]
+};
+
+/// Axis-aligned box.
+struct Box {
+  Vec3 min = Vec3::Zero();  // [m]
+  Vec3 max = Vec3::Ones();  // [m]
+
+  bool contains(const Vec3& p) const { return (p.array() >= min.array() && p.array() <= max.array()).all(); }
+};
+
+}  // namespace weft

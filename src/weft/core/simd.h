@@ -1,0 +1,68 @@
+#pragma once
+/// Run-time choice of the vector instructions that the kernels use.
+///
+/// A kernel is one plain loop, compiled once per level by WEFT_MULTIVERSION and chosen when it is called.
+/// Every lane does the same IEEE operations in the same order (no fused multiply-add, no estimates), so the
+/// level changes the speed and never a bit of the result.
+
+#include <string_view>
+
+namespace weft {
+
+enum class SimdLevel { baseline, avx2, avx512 };
+
+/// The best level that this machine can run.
+SimdLevel best_simd_level();
+
+/// The level in use: the best one, unless limited.
+SimdLevel simd_level();
+
+/// Uses at most this level from now on (for tests and benchmarks; not to be called during a step).
+void limit_simd_level(SimdLevel level);
+
+std::string_view to_string(SimdLevel level);
+
+}  // namespace weft
+
+// WEFT_MULTIVERSION(name, (parameters), (arguments)) defines `name(parameters)`, which forwards to the
+// always-inlined function `name_body(arguments)` compiled for the level in use.
+// Everything that the body calls must be inlined too, lambdas included, or it is compiled for the lowest
+// level.
+#if defined(__GNUC__)
+#define WEFT_ALWAYS_INLINE [[gnu::always_inline]] inline
+#define WEFT_INLINE_LAMBDA __attribute__((always_inline))
+#else
+#define WEFT_ALWAYS_INLINE inline
+#define WEFT_INLINE_LAMBDA
+#endif
+
+// Before a loop: no iteration reads what another one writes.
+#if defined(__clang__)
+#define WEFT_IVDEP _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define WEFT_IVDEP _Pragma("GCC ivdep")
+#else
+#define WEFT_IVDEP
+#endif
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define WEFT_MULTIVERSION(name, parameters, arguments)                                             \
+  [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body arguments; }  \
+  [[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] static void name##_avx512 parameters { \
+    name##_body arguments;                                                                         \
+  }                                                                                                \
+  static void name##_baseline parameters { name##_body arguments; }                                \
+  static void name parameters {                                                                    \
+    switch (::weft::simd_level()) {                                                                \
+      case ::weft::SimdLevel::avx512:                                                              \
+        return name##_avx512 arguments;                                                            \
+      case ::weft::SimdLevel::avx2:                                                                \
+        return name##_avx2 arguments;                                                              \
+      case ::weft::SimdLevel::baseline:                                                            \
+        return name##_baseline arguments;                                                          \
+    }                                                                                              \
+  }
+#else
+#define WEFT_MULTIVERSION(name, parameters, arguments) \
+  static void name parameters { name##_body arguments; }
+#endif

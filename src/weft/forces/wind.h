@@ -1,0 +1,21 @@
+#pragma once
+/// Wind (the paper's Eq. 4), per area, so that the mesh does not matter.
+
+#include "weft/core/vec.h"
+
+namespace weft {
+
+struct Wind {
+  Vec3 velocity = Vec3::Zero();  // of the air [m/s]
+  double drag = 0;               // c_w, force per area and relative velocity, >= 0 [N·s/m³]
+};
+
+/// c_w A (v_wind − v) [N] on a particle that stands for the area A [m²]. Still air brakes too.
+inline Vec3 wind_force(const Wind& wind, double area, const Vec3& velocity) {
+  return wind.drag * area * (wind.velocity - velocity);
+}
+
+/// ∂f/∂v = −c_w A I [N·s/m].
+inline Mat3 wind_jacobian(const Wind& wind, double area) { return -wind.drag * area * Mat3::Identity(); }
+
+}  // namespace weft

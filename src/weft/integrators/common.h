@@ -1,0 +1,45 @@
+#pragma once
+/// Private to integrators/: what several of them need.
+
+#include <vector>
+
+#include "weft/forces/increments.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft {
+
+/// Masses and the weights w_i = 1/(m_i + h² Σ_j k_ij) as the kernels want them; h = 0 gives 1/m_i. Kept while
+/// model and step stay the same.
+class Weights {
+ public:
+  void fit(const ClothModel& model, double step);
+
+  const std::vector<float>& mass() const { return mass_; }
+  const std::vector<float>& weight() const { return weight_; }
+
+ private:
+  std::uint64_t model_id_ = 0;
+  double step_ = -1;
+  std::vector<float> mass_, weight_;
+};
+
+/// The velocities that take pinned particles to their targets: (target − x)/h. Made before the step, set
+/// after it.
+class PinMotion {
+ public:
+  void prepare(const PinTargets& pins, double step, const ClothState& state);
+  void finish(const PinTargets& pins, ClothState& state) const;
+
+  /// Of each pin, at the end of the step (pins) [m/s].
+  const std::vector<Vec3>& velocity() const { return velocity_; }
+
+ private:
+  std::vector<Vec3> velocity_;
+};
+
+/// The settings of the fast kernels that follow from model and environment: no gravity, damping as in the
+/// material.
+IncrementSettings make_increment_settings(const ClothModel& model, const Environment& environment,
+                                          double step);
+
+}  // namespace weft

@@ -1,0 +1,31 @@
+#include "weft/integrators/integrator.h"
+
+#include "weft/core/error.h"
+
+namespace weft {
+
+const std::vector<std::string_view>& integrator_names() {
+  static const std::vector<std::string_view> names = {"explicit", "paper", "paper_fixed", "desbrun",
+                                                      "implicit_euler"};
+  return names;
+}
+
+std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
+  const std::string& name = settings.integrator;
+  if (name == "explicit") return make_explicit(settings.explicit_euler);
+  if (name == "paper") return make_paper(settings.paper);
+  if (name == "paper_fixed") return make_paper_fixed();
+  if (name == "desbrun") return make_desbrun();
+  if (name == "implicit_euler") return make_implicit_euler(settings.implicit_euler);
+  std::string known;
+  for (const std::string_view n : integrator_names()) known += (known.empty() ? "" : ", ") + std::string(n);
+  throw InputError("there is no integrator \"" + name + "\"; there are " + known);
+}
+
+double compute_stiffness_number(const ClothModel& model, double step) {
+  return step * step * model.max_stiffness_rate;
+}
+
+double gravity_factor(double a) { return (1 + 2 * a) / ((1 + a) * (1 + a)); }
+
+}  // namespace weft

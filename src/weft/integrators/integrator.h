@@ -1,0 +1,104 @@
+#pragma once
+/// Time integration: the one narrow interface, and the family behind it.
+///
+///   explicit        semi-implicit Euler, v' = v + h F/m, x' = x + h v', cut into stable substeps
+///   paper           Eq. 16 of the paper as printed: two Jacobi sweeps instead of a linear solve
+///   paper_fixed     the same with gravity outside the filter, h·H·v kept, and pinned neighbours prescribed
+///   desbrun         Eq. 12 with h·H·v: implicit Euler with a constant approximate Jacobian, solved exactly
+///   implicit_euler  implicit Euler with the true Jacobian, Newton's method to a tolerance: slow and right
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "weft/contact/response.h"
+#include "weft/core/job_system.h"
+#include "weft/forces/wind.h"
+#include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
+
+namespace weft {
+
+/// Particles whose motion is prescribed, and where they are at the end of the step.
+struct PinTargets {
+  std::vector<int> particle;   // ascending
+  std::vector<Vec3> position;  // in the world [m]
+};
+
+/// What acts on a cloth from outside during a step.
+struct Environment {
+  Vec3 gravity = {0, -9.81, 0};  // [m/s²]
+  Wind wind;
+  PinTargets pins;
+  std::vector<Contact> contacts;  // for integrators that resolve them
+};
+
+struct ExplicitSettings {
+  int substeps = 0;  // per step; 0: as many as stability asks for [1]
+};
+
+struct PaperSettings {
+  /// Use the damping force as the paper prints it, d (v_i − v_j), which feeds motion instead of damping it.
+  bool printed_damping_sign = false;
+};
+
+struct ImplicitEulerSettings {
+  double tolerance = 1e-2;  // Newton stops when no particle's velocity changes more; smaller is slower [m/s]
+  int iterations = 50;      // Newton iterations per step at most; running out is told by the report [1]
+};
+
+struct IntegratorSettings {
+  std::string integrator = "implicit_euler";  // one of integrator_names()
+  ExplicitSettings explicit_euler;
+  PaperSettings paper;
+  ImplicitEulerSettings implicit_euler;
+};
+
+/// What one call of advance() has to tell.
+struct IntegratorReport {
+  bool converged = true;  // false: the result is finite, but less exact than asked for
+  int iterations = 0;     // of the nonlinear solver, summed [1]
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Into how many equal substeps a step must be cut, each with its own contact response [1].
+  virtual int num_substeps(const ClothModel&, const Environment&, double /*step*/) const { return 1; }
+
+  /// Whether advance() resolves environment.contacts; else they are left empty.
+  virtual bool resolves_contacts() const { return false; }
+
+  /// Moves the cloth from t to t + step. Pinned particles end at their targets, with velocity (x' − x)/step.
+  /// Anything may differ from the call before: model, environment, step. The result depends on the arguments
+  /// alone; what an integrator keeps between calls only saves time.
+  virtual IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
+                                   JobSystem& jobs, ClothState& state) = 0;
+};
+
+/// Names that make_integrator knows, in the order of the list above.
+const std::vector<std::string_view>& integrator_names();
+
+/// Throws InputError for an unknown name.
+std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);
+
+// The family, one file each.
+std::unique_ptr<Integrator> make_explicit(const ExplicitSettings& settings);
+std::unique_ptr<Integrator> make_paper(const PaperSettings& settings);
+std::unique_ptr<Integrator> make_paper_fixed();
+std::unique_ptr<Integrator> make_desbrun();
+std::unique_ptr<Integrator> make_implicit_euler(const ImplicitEulerSettings& settings);
+
+/// The largest step with which `explicit` is sure to be stable near rest [s]; infinite without springs and
+/// damping.
+double explicit_step_limit(const ClothModel& model, const Wind& wind);
+
+/// The paper's stiffness number a = h² Σ_j k_ij / m_i, its largest value over the cloth [1].
+double compute_stiffness_number(const ClothModel& model, double step);
+
+/// The share of gravity that Eq. 16 lets through where neighbours share a: (1 + 2a)/(1 + a)² [1].
+double gravity_factor(double stiffness_number);
+
+}  // namespace weft

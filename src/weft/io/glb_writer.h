@@ -1,0 +1,49 @@
+#pragma once
+/// Animations out: binary glTF 2.0 (.glb), which browsers, Blender and most viewers open.
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "weft/mesh/triangle_mesh.h"
+
+namespace weft {
+
+/// A mesh with a position per vertex and frame. In the file: the first frame as the mesh, every further frame
+/// as a morph target (positions and normals), and one animation that blends linearly from frame to frame.
+struct AnimatedMesh {
+  std::string name;
+  std::vector<Triangle> triangles;
+  std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
+  std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
+};
+
+/// A mesh that moves rigidly: for each frame a pose, which takes it to the world. One pose: it stands still.
+struct RigidMesh {
+  struct Pose {
+    Vec3 translation = Vec3::Zero();                               // [m]
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // unit
+  };
+
+  std::string name;
+  TriangleMesh mesh;
+  std::array<double, 3> color = {0.5, 0.5, 0.5};
+  std::vector<Pose> poses;  // (1 or num_frames)
+};
+
+struct Animation {
+  std::string title;              // goes to the file's extras
+  double frames_per_second = 60;  // > 0
+  std::vector<AnimatedMesh> cloths;
+  std::vector<RigidMesh> bodies;
+};
+
+/// Writes the animation; materials are double-sided. All meshes have the same number of frames (>= 1).
+/// Writes to FILE.part first, so that an earlier result is replaced whole or not at all.
+/// Throws InputError if the file cannot be written, with the system's reason, and for an animation that no
+/// viewer could show: without meshes, with unequal numbers of frames, or with coordinates that are not
+/// finite.
+void write_glb(const std::filesystem::path& file, const Animation& animation);
+
+}  // namespace weft

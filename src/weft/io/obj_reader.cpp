@@ -1,0 +1,355 @@
+// The parser is our own because tinyobjloader does not take files as people have them: it reads a bad
+// coordinate as 0, only warns of an index out of range, and takes the garment keyword `t` for a subdivision
+// tag. Its polygon cutting depends on where the origin lies: far from it every second concave nonagon came
+// out wrong.
+
+#include "weft/io/obj_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+// ---- Lines and words ----
+
+/// The text as lines of words. '#' starts a comment, and a line that ends in a backslash goes on in the next
+/// one.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : rest_(text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  }
+
+  /// Goes to the next line; false at the end of the text.
+  bool next() {
+    if (rest_.empty()) return false;
+    words_.clear();
+    line_ = lines_taken_ + 1;
+    while (take_line()) {
+    }
+    return true;
+  }
+
+  int line() const { return line_; }  // counted from 1; of a continued line the first
+  const std::vector<std::string_view>& words() const { return words_; }
+
+ private:
+  /// Appends the words of one line of the text; true if the line goes on in the next one.
+  bool take_line() {
+    const size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    append_words(rest_.substr(0, length));
+    rest_.remove_prefix(length);
+    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : rest_.empty() ? 0 : 1);
+    ++lines_taken_;
+    if (words_.empty() || !words_.back().ends_with('\\')) return false;
+    words_.back().remove_suffix(1);
+    if (words_.back().empty()) words_.pop_back();
+    return !rest_.empty();
+  }
+
+  void append_words(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    constexpr std::string_view kBlanks = " \t\v\f";
+    for (size_t begin = 0; (begin = line.find_first_not_of(kBlanks, begin)) != line.npos;) {
+      const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+      words_.push_back(line.substr(begin, end - begin));
+      begin = end;
+    }
+  }
+
+  std::string_view rest_;
+  std::vector<std::string_view> words_;
+  int line_ = 0;
+  int lines_taken_ = 0;
+};
+
+std::optional<double> parse_coordinate(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.begin(), word.end(), value);
+  if (error != std::errc() || end != word.end() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// The vertex index of a, a/b, a//c or a/b/c.
+std::optional<long long> parse_index(std::string_view word) {
+  word = word.substr(0, word.find('/'));
+  long long index = 0;
+  const auto [end, error] = std::from_chars(word.begin(), word.end(), index);
+  if (error != std::errc() || end != word.end() || index == 0) return std::nullopt;
+  return index;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr size_t kLongest = 40;
+  const bool is_long = word.size() > kLongest;
+  return "'" + std::string(word.substr(0, kLongest)) + (is_long ? "…'" : "'");
+}
+
+// ---- Polygons ----
+
+/// Newell's normal: perpendicular to the polygon's best plane, as long as twice its area.
+Vec3 polygon_normal(const std::vector<int>& polygon, const std::vector<Vec3>& x) {
+  Vec3 normal = Vec3::Zero();
+  for (size_t k = 1; k + 1 < polygon.size(); ++k) {
+    normal += (x[polygon[k]] - x[polygon[0]]).cross(x[polygon[k + 1]] - x[polygon[0]]);
+  }
+  return normal;
+}
+
+Triangle corner(const std::vector<int>& polygon, size_t tip) {
+  const size_t n = polygon.size();
+  return {polygon[(tip + n - 1) % n], polygon[tip], polygon[(tip + 1) % n]};
+}
+
+/// An ear is a convex corner whose triangle holds none of the other vertices; only an ear can be cut off.
+bool is_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal, size_t tip) {
+  const auto [a, b, c] = corner(polygon, tip);
+  const double tolerance = 1e-12 * normal.squaredNorm();  // round-off: a vertex on the cut counts as inside
+  const auto side = [&](int from, int to, int v) {
+    return normal.dot((x[to] - x[from]).cross(x[v] - x[from]));
+  };
+  if (!(side(a, b, c) > tolerance)) return false;
+  for (const int v : polygon) {
+    if (x[v] == x[a] || x[v] == x[b] || x[v] == x[c]) continue;
+    if (std::min({side(a, b, v), side(b, c, v), side(c, a, v)}) >= -tolerance) return false;
+  }
+  return true;
+}
+
+/// The ear with the shortest cut; for a polygon that has none (it crosses itself or has no area) the second
+/// corner.
+size_t find_best_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal) {
+  size_t best = 1;
+  double shortest_sq = std::numeric_limits<double>::infinity();
+  for (size_t tip = 0; tip < polygon.size(); ++tip) {
+    const Triangle ear = corner(polygon, tip);
+    const double cut_sq = (x[ear[0]] - x[ear[2]]).squaredNorm();
+    if (cut_sq < shortest_sq && is_ear(polygon, x, normal, tip)) {
+      best = tip;
+      shortest_sq = cut_sq;
+    }
+  }
+  return best;
+}
+
+/// Cuts a polygon of n vertices into n - 2 triangles by clipping ears.
+void append_triangles(std::vector<int> polygon, TriangleMesh& mesh) {
+  const Vec3 normal = polygon_normal(polygon, mesh.positions);
+  while (polygon.size() > 3) {
+    const size_t tip = find_best_ear(polygon, mesh.positions, normal);
+    mesh.triangles.push_back(corner(polygon, tip));
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(tip));
+  }
+  mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]});
+}
+
+// ---- The file ----
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view text, const std::string& name) : name_(name), lines_(text) {}
+
+  ObjMesh parse() {
+    while (lines_.next()) {
+      if (!lines_.words().empty()) read_line(lines_.words()[0]);
+    }
+    if (positions().empty()) throw InputError(name_ + ": there are no vertices; expected lines v X Y Z");
+    if (faces_.empty()) throw InputError(name_ + ": there are no faces; expected lines f A B C");
+    for (const Face& face : faces_) add_face(face);
+    add_warnings();
+    return std::move(result_);
+  }
+
+ private:
+  struct Face {
+    int line = 0;
+    std::vector<long long> vertices;  // counted from 0; may be those of later lines
+  };
+  struct Unknown {
+    int num_lines = 0;
+    int first_line = 0;
+  };
+
+  std::vector<Vec3>& positions() { return result_.mesh.positions; }
+
+  [[noreturn]] void fail(int line, const std::string& sentence) const {
+    throw InputError(name_ + ":" + std::to_string(line) + ": " + sentence);
+  }
+
+  void read_line(std::string_view keyword) {
+    constexpr std::array<std::string_view, 9> kPassedOver = {"vn", "vt", "mtllib", "usemtl", "s",
+                                                             "g",  "o",  "l",      "p"};
+    if (keyword == "v") {
+      read_vertex();
+    } else if (keyword == "f") {
+      read_face();
+    } else if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) == kPassedOver.end()) {
+      Unknown& unknown = unknown_[std::string(keyword)];
+      if (unknown.num_lines++ == 0) unknown.first_line = lines_.line();
+    }
+  }
+
+  /// v X Y Z; a weight or a colour may follow.
+  void read_vertex() {
+    const auto& words = lines_.words();
+    if (words.size() < 4) {
+      fail(lines_.line(), "a vertex with " + std::to_string(words.size() - 1) +
+                              " coordinates; expected v X Y Z with three numbers");
+    }
+    Vec3 position;
+    for (int k = 0; k < 3; ++k) {
+      const std::string_view word = words[k + 1];
+      const auto coordinate = parse_coordinate(word);
+      if (!coordinate)
+        fail(lines_.line(), in_quotes(word) + " is not a coordinate; expected a finite number");
+      position[k] = *coordinate;
+    }
+    positions().push_back(position);
+  }
+
+  /// f A B C …; each index counts from 1, or from -1 backwards from the vertex read last.
+  void read_face() {
+    const auto& words = lines_.words();
+    if (words.size() < 4) {
+      fail(lines_.line(),
+           "a face with " + std::to_string(words.size() - 1) + " vertices; expected three or more");
+    }
+    Face face{lines_.line(), {}};
+    for (size_t k = 1; k < words.size(); ++k) {
+      const auto index = parse_index(words[k]);
+      if (!index) {
+        fail(lines_.line(), in_quotes(words[k]) +
+                                " is not a vertex of a face; expected A, A/B, A//C or A/B/C " +
+                                "with a whole number A other than 0");
+      }
+      const auto num_read = static_cast<long long>(positions().size());
+      if (*index < -num_read) {
+        fail(lines_.line(), "vertex " + std::to_string(*index) + " does not exist; " +
+                                std::to_string(num_read) + " vertices come before this face");
+      }
+      face.vertices.push_back(*index > 0 ? *index - 1 : num_read + *index);
+    }
+    faces_.push_back(std::move(face));
+  }
+
+  void add_face(const Face& face) {
+    const auto num_vertices = static_cast<long long>(positions().size());
+    std::vector<int> polygon;
+    for (const long long v : face.vertices) {
+      if (v >= num_vertices) {
+        fail(face.line, "vertex " + std::to_string(v + 1) + " does not exist; expected at most " +
+                            std::to_string(num_vertices) + ", the number of vertices");
+      }
+      polygon.push_back(static_cast<int>(v));
+    }
+    append_triangles(std::move(polygon), result_.mesh);
+  }
+
+  void add_warnings() {
+    constexpr size_t kMostTold = 8;  // a file of another kind may have thousands
+    for (const auto& [keyword, unknown] : unknown_) {
+      if (result_.warnings.size() == kMostTold) {
+        const size_t untold = unknown_.size() - kMostTold;
+        result_.warnings.push_back(name_ + ": " + std::to_string(untold) +
+                                   " more unknown keywords were passed over");
+        return;
+      }
+      result_.warnings.push_back(name_ + ":" + std::to_string(unknown.first_line) + ": unknown keyword " +
+                                 in_quotes(keyword) + " was passed over; it begins " +
+                                 std::to_string(unknown.num_lines) + " lines");
+    }
+  }
+
+  std::string name_;
+  LineReader lines_;
+  std::vector<Face> faces_;
+  std::map<std::string, Unknown> unknown_;
+  ObjMesh result_;
+};
+
+std::string system_reason() { return std::generic_category().message(errno); }
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code no_error;
+  if (std::filesystem::is_directory(file, no_error)) {
+    throw InputError(file.string() + ": this is a folder; expected an OBJ file");
+  }
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  if (!in.is_open() || in.bad() || text.bad()) {
+    throw InputError(file.string() + ": cannot be read: " + system_reason());
+  }
+  return std::move(text).str();
+}
+
+// ---- Out ----
+
+/// The shortest digits that read back as the same double.
+void append_number(std::string& text, double value) {
+  std::array<char, 32> digits;
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  text.append(digits.data(), end);
+}
+
+void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex) {
+  for (const Vec3& position : mesh.positions) {
+    text += 'v';
+    for (const double coordinate : position) append_number(text += ' ', coordinate);
+    text += '\n';
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    text += 'f';
+    for (const int v : triangle) text += ' ' + std::to_string(first_vertex + v + 1);
+    text += '\n';
+  }
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw InputError(file.string() + ": cannot be written: " + system_reason());
+}
+
+}  // namespace
+
+ObjMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_text(file), file.string()); }
+
+ObjMesh parse_obj(const std::string& text, const std::string& name) { return ObjParser(text, name).parse(); }
+
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  std::string text;
+  append_mesh(text, mesh, 0);
+  write_text(file, text);
+}
+
+void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects) {
+  std::string text;
+  int first_vertex = 0;
+  for (const auto& [name, mesh] : objects) {
+    text += "o " + name + '\n';
+    append_mesh(text, mesh, first_vertex);
+    first_vertex += mesh.num_vertices();
+  }
+  write_text(file, text);
+}
+
+}  // namespace weft

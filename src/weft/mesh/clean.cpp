@@ -1,0 +1,177 @@
+#include "weft/mesh/clean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+/// A triangle thinner than this, as area over longest edge squared, counts as having no area [1].
+constexpr double kMinThinness = 1e-10;
+
+std::string number(long long n) { return std::to_string(n); }
+
+void require_usable(const TriangleMesh& mesh) {
+  for (int v = 0; v < mesh.num_vertices(); ++v) {
+    if (!mesh.positions[v].allFinite()) {
+      throw InputError("vertex " + number(v) + " has a coordinate that is not a finite number");
+    }
+  }
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    for (const int v : mesh.triangles[t]) {
+      if (v < 0 || v >= mesh.num_vertices()) {
+        throw InputError("triangle " + number(t) + " uses vertex " + number(v) + ", but the mesh has " +
+                         number(mesh.num_vertices()) + " vertices");
+      }
+    }
+  }
+  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles, so there is no cloth in it");
+}
+
+/// For each vertex the lowest-numbered vertex that it is sewn to: closer than `distance`, directly or through
+/// others. Found by a sweep along a direction that real meshes are not aligned with, so that few vertices
+/// tie.
+std::vector<int> find_twins(const std::vector<Vec3>& positions, double distance) {
+  const Vec3 direction = Vec3(0.6180, 0.5377, 0.5735).normalized();
+  const int n = static_cast<int>(positions.size());
+  std::vector<double> along(n);
+  for (int v = 0; v < n; ++v) along[v] = positions[v].dot(direction);
+  std::vector<int> order(n), twin(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::iota(twin.begin(), twin.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return along[a] != along[b] ? along[a] < along[b] : a < b; });
+  const auto root = [&](int v) {
+    while (twin[v] != v) v = twin[v];
+    return v;
+  };
+  for (int p = 0; p < n; ++p) {
+    const int a = order[p];
+    for (int q = p + 1; q < n && along[order[q]] - along[a] <= distance; ++q) {
+      if ((positions[order[q]] - positions[a]).norm() > distance) continue;
+      const int ra = root(a), rb = root(order[q]);
+      twin[std::max(ra, rb)] = std::min(ra, rb);
+    }
+  }
+  for (int v = 0; v < n; ++v) twin[v] = root(v);
+  return twin;
+}
+
+int count_moved(const std::vector<int>& twin) {
+  int count = 0;
+  for (int v = 0; v < static_cast<int>(twin.size()); ++v) count += twin[v] != v;
+  return count;
+}
+
+bool has_area(const TriangleMesh& mesh, int t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  if (a == b || b == c || c == a) return false;
+  const auto& p = mesh.positions;
+  const double longest_sq =
+      std::max({(p[a] - p[b]).squaredNorm(), (p[b] - p[c]).squaredNorm(), (p[c] - p[a]).squaredNorm()});
+  return triangle_area(mesh, t) > kMinThinness * longest_sq;
+}
+
+/// Keeps the triangles for which keep(t); returns how many were dropped and the first of them.
+template <class Keep>
+std::pair<int, int> keep_triangles(TriangleMesh& mesh, const Keep& keep) {
+  std::vector<Triangle> kept;
+  int dropped = 0, first = -1;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    if (keep(t)) {
+      kept.push_back(mesh.triangles[t]);
+    } else if (dropped++ == 0) {
+      first = t;
+    }
+  }
+  mesh.triangles = std::move(kept);
+  return {dropped, first};
+}
+
+void warn_about_topology(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  const int coincident = count_moved(find_twins(mesh.positions, 0));
+  if (coincident > 0) {
+    warnings.push_back(number(coincident) + " vertices lie exactly on another one: is this an unsewn seam? " +
+                       "weld = true sews it");
+  }
+  int non_manifold = 0;
+  std::string first;
+  for (const Edge& edge : build_edges(mesh)) {
+    if (edge.num_triangles <= 2) continue;
+    if (non_manifold++ == 0) first = number(edge.a) + "–" + number(edge.b);
+  }
+  if (non_manifold > 0) {
+    warnings.push_back(number(non_manifold) +
+                       " edges belong to more than two triangles (non-manifold; the first is " + first +
+                       "): they stretch as usual but get no bending spring");
+  }
+}
+
+}  // namespace
+
+CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
+  require_usable(source);
+  CleanMesh result;
+  result.mesh = source;
+  TriangleMesh& mesh = result.mesh;
+  auto& warnings = result.warnings;
+
+  // Sew.
+  std::vector<int> twin(source.positions.size());
+  std::iota(twin.begin(), twin.end(), 0);
+  if (options.weld_distance >= 0) {
+    twin = find_twins(source.positions, options.weld_distance);
+    for (Triangle& tri : mesh.triangles) {
+      for (int& v : tri) v = twin[v];
+    }
+  }
+
+  // Drop triangles that carry no cloth.
+  const auto [flat, first_flat] = keep_triangles(mesh, [&](int t) { return has_area(mesh, t); });
+  if (flat > 0) {
+    warnings.push_back(number(flat) + " triangles without area were dropped (the first is triangle " +
+                       number(first_flat) + ")");
+  }
+  std::set<Triangle> seen;
+  const auto [repeated, first_repeated] = keep_triangles(mesh, [&](int t) {
+    Triangle key = mesh.triangles[t];
+    std::sort(key.begin(), key.end());
+    return seen.insert(key).second;
+  });
+  if (repeated > 0) {
+    warnings.push_back(number(repeated) + " triangles that repeat another one were dropped");
+  }
+  if (mesh.triangles.empty()) throw InputError("none of the mesh's triangles has an area");
+
+  // Drop vertices that no triangle uses, and close the gaps.
+  std::vector<int> new_index(source.positions.size(), -1);
+  for (const Triangle& tri : mesh.triangles) {
+    for (const int v : tri) new_index[v] = 0;
+  }
+  std::vector<Vec3> kept;
+  int isolated = 0;
+  for (int v = 0; v < source.num_vertices(); ++v) {
+    if (new_index[v] == 0) {
+      new_index[v] = static_cast<int>(kept.size());
+      kept.push_back(source.positions[v]);
+    } else {
+      isolated += twin[v] == v;
+    }
+  }
+  if (isolated > 0) warnings.push_back(number(isolated) + " vertices without triangles were dropped");
+  mesh.positions = std::move(kept);
+  for (Triangle& tri : mesh.triangles) {
+    for (int& v : tri) v = new_index[v];
+  }
+  result.vertex_of_source.resize(source.positions.size());
+  for (int v = 0; v < source.num_vertices(); ++v) result.vertex_of_source[v] = new_index[twin[v]];
+
+  warn_about_topology(mesh, warnings);
+  return result;
+}
+
+}  // namespace weft

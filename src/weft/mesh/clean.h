@@ -1,0 +1,28 @@
+#pragma once
+/// From a mesh as people have it to one that cloth can be made of.
+
+#include <string>
+#include <vector>
+
+#include "weft/mesh/triangle_mesh.h"
+
+namespace weft {
+
+struct CleanOptions {
+  /// Vertices closer than this are sewn into one [m]; 0 sews exact duplicates, negative sews nothing.
+  double weld_distance = -1;
+};
+
+struct CleanMesh {
+  TriangleMesh mesh;
+  std::vector<int> vertex_of_source;  // (vertices of the input) index in `mesh`, -1 where dropped
+  std::vector<std::string> warnings;  // one sentence per kind of flaw, with counts and the first place
+};
+
+/// Sews seams if asked, and drops what cannot be cloth: triangles without area, repeated triangles, vertices
+/// without triangles. Coincident vertices and non-manifold edges are kept; everything is told in `warnings`.
+/// Throws InputError where nothing sensible is left: coordinates that are not finite, indices out of range,
+/// no triangles. Deterministic: welded vertices become the one with the lowest index.
+CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options = {});
+
+}  // namespace weft

@@ -1,0 +1,86 @@
+#include "weft/mesh/triangle_mesh.h"
+
+#include <algorithm>
+
+#include "weft/core/angle.h"
+
+namespace weft {
+
+double triangle_area(const TriangleMesh& mesh, int t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  const auto& p = mesh.positions;
+  return 0.5 * (p[b] - p[a]).cross(p[c] - p[a]).norm();
+}
+
+std::vector<double> compute_vertex_areas(const TriangleMesh& mesh) {
+  std::vector<double> areas(mesh.positions.size(), 0.0);
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    for (const int v : mesh.triangles[t]) areas[v] += triangle_area(mesh, t) / 3;
+  }
+  return areas;
+}
+
+std::vector<Edge> build_edges(const TriangleMesh& mesh) {
+  // One half edge per side of a triangle; equal edges meet by sorting. The triangle's number breaks ties.
+  struct HalfEdge {
+    int a, b, opposite, triangle;
+  };
+  std::vector<HalfEdge> half_edges;
+  half_edges.reserve(3 * mesh.triangles.size());
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const Triangle& tri = mesh.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      const int p = tri[k], q = tri[(k + 1) % 3];
+      half_edges.push_back({std::min(p, q), std::max(p, q), tri[(k + 2) % 3], t});
+    }
+  }
+  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& l, const HalfEdge& r) {
+    return std::array{l.a, l.b, l.triangle} < std::array{r.a, r.b, r.triangle};
+  });
+
+  std::vector<Edge> edges;
+  for (const HalfEdge& h : half_edges) {
+    if (edges.empty() || edges.back().a != h.a || edges.back().b != h.b)
+      edges.push_back({h.a, h.b, {-1, -1}, 0});
+    Edge& edge = edges.back();
+    if (edge.num_triangles < 2) edge.opposite[edge.num_triangles] = h.opposite;
+    ++edge.num_triangles;
+  }
+  return edges;
+}
+
+TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings) {
+  TriangleMesh mesh;
+  const int segments = 2 * rings;
+  const auto index = [&](int ring, int segment) { return 1 + (ring - 1) * segments + segment % segments; };
+
+  mesh.positions.push_back(center + radius * Vec3::UnitY());
+  for (int r = 1; r < rings; ++r) {
+    const SinCos polar = sin_cos_deg(180.0 * r / rings);
+    for (int s = 0; s < segments; ++s) {
+      const SinCos around = sin_cos_deg(360.0 * s / segments);
+      mesh.positions.push_back(center +
+                               radius * Vec3(polar.sin * around.sin, polar.cos, polar.sin * around.cos));
+    }
+  }
+  const int south = mesh.num_vertices();
+  mesh.positions.push_back(center - radius * Vec3::UnitY());
+
+  for (int s = 0; s < segments; ++s) {
+    mesh.triangles.push_back({0, index(1, s), index(1, s + 1)});
+    for (int r = 1; r + 1 < rings; ++r) {
+      mesh.triangles.push_back({index(r, s), index(r + 1, s), index(r + 1, s + 1)});
+      mesh.triangles.push_back({index(r, s), index(r + 1, s + 1), index(r, s + 1)});
+    }
+    mesh.triangles.push_back({south, index(rings - 1, s + 1), index(rings - 1, s)});
+  }
+  return mesh;
+}
+
+TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side) {
+  const Vec3 u = normal.unitOrthogonal() * (side / 2);
+  const Vec3 w = normal.cross(u);
+  return {{point - u - w, point + u - w, point + u + w, point - u + w}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+}  // namespace weft

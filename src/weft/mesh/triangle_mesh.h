@@ -1,0 +1,49 @@
+#pragma once
+/// A triangle mesh: shapes and indices, no physics.
+
+#include <array>
+#include <vector>
+
+#include "weft/core/vec.h"
+
+namespace weft {
+
+using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen from the front
+
+struct TriangleMesh {
+  std::vector<Vec3> positions;      // (num_vertices) [m]
+  std::vector<Triangle> triangles;  // (num_triangles)
+
+  int num_vertices() const { return static_cast<int>(positions.size()); }
+  int num_triangles() const { return static_cast<int>(triangles.size()); }
+};
+
+/// Area of triangle t [m²].
+double triangle_area(const TriangleMesh& mesh, int t);
+
+/// A third of the area of the triangles around each vertex (num_vertices) [m²].
+std::vector<double> compute_vertex_areas(const TriangleMesh& mesh);
+
+/// An edge a–b (a < b) and the vertices opposite to it in the triangles on its two sides.
+///
+///            opposite[0]
+///             /       \          On the border only opposite[0] exists and opposite[1] is -1.
+///            a ------- b         num_triangles > 2 marks a non-manifold edge; only the first two
+///             \       /          opposite vertices are kept.
+///            opposite[1]
+struct Edge {
+  int a = 0, b = 0;
+  int opposite[2] = {-1, -1};
+  int num_triangles = 0;
+};
+
+/// Every edge once, sorted by (a, b).
+std::vector<Edge> build_edges(const TriangleMesh& mesh);
+
+/// A sphere of about `rings` rings of triangles, for display.
+TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings);
+
+/// A square of the given side around `point`, perpendicular to the unit vector `normal`, for display.
+TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side);
+
+}  // namespace weft

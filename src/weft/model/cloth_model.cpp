@@ -1,0 +1,65 @@
+#include "weft/model/cloth_model.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace weft {
+namespace {
+
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> counter{0};
+  return ++counter;
+}
+
+}  // namespace
+
+std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model) {
+  auto topology = std::make_shared<ClothTopology>();
+  topology->mesh = build_grid_mesh(grid, diagonals_of(model));
+  topology->springs = build_grid_springs(grid, model);
+  topology->area = compute_grid_areas(grid);
+  topology->grid = grid;
+  topology->spring_model = model;
+  return topology;
+}
+
+std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh) {
+  auto topology = std::make_shared<ClothTopology>();
+  topology->mesh = std::move(mesh);
+  topology->springs = build_mesh_springs(topology->mesh);
+  topology->area = compute_vertex_areas(topology->mesh);
+  topology->table = build_neighbour_table(topology->num_particles(), topology->springs);
+  return topology;
+}
+
+std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
+                                                    const ClothMaterial& material) {
+  auto model = std::make_shared<ClothModel>();
+  model->id = next_id();
+  model->topology = std::move(topology);
+  model->material = material;
+  const ClothTopology& t = *model->topology;
+
+  for (const double area : t.area) model->mass.push_back(material.density * area);
+  model->stiffness_sum.assign(t.num_particles(), 0.0);
+  std::vector<int> springs_around(t.num_particles(), 0);
+  for (const Spring& spring : t.springs) {
+    for (const int p : {spring.i, spring.j}) {
+      model->stiffness_sum[p] += model->stiffness(spring.kind);
+      ++springs_around[p];
+    }
+  }
+  for (const int s : t.table.spring) {
+    const double k = s < 0 ? 0.0 : model->stiffness(t.springs[s].kind);
+    model->entry_stiffness.push_back(static_cast<float>(k));
+  }
+  for (int i = 0; i < t.num_particles(); ++i) {
+    const double inv_mass = 1 / model->mass[i];
+    model->max_stiffness_rate = std::max(model->max_stiffness_rate, model->stiffness_sum[i] * inv_mass);
+    model->max_damping_rate =
+        std::max(model->max_damping_rate, material.damping * springs_around[i] * inv_mass);
+  }
+  return model;
+}
+
+}  // namespace weft

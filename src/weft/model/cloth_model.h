@@ -1,0 +1,82 @@
+#pragma once
+/// A cloth's constants: what it is made of and how it hangs together. What moves is ClothState.
+///
+/// Topology never changes. Material numbers (mass, stiffness, damping) may be replaced between any two steps:
+/// that makes a new ClothModel on the same ClothTopology, and nothing but numbers is computed again.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "weft/mesh/grid.h"
+#include "weft/mesh/triangle_mesh.h"
+#include "weft/model/neighbour_table.h"
+#include "weft/model/springs.h"
+
+namespace weft {
+
+/// How spring damping acts on the relative velocity of the two ends.
+enum class DampingKind {
+  plain,      // all of it: the paper's Eq. 2; also brakes a rigid rotation
+  projected,  // only along the spring: leaves rigid motion alone
+};
+
+/// The numbers of a cloth made of springs.
+struct ClothMaterial {
+  double density = 0.2;      // mass per area, > 0 [kg/m²]
+  double structural = 2000;  // stiffness of structural springs, >= 0 [N/m]
+  double shear = 1000;       // of shear springs, >= 0; not used on meshes [N/m]
+  double bend = 20;          // of bending springs, >= 0 [N/m]
+  double damping = 0;        // of every spring, >= 0 [N·s/m]
+  DampingKind damping_kind = DampingKind::projected;
+  double thickness = 1e-3;  // particles keep half of it from colliders, >= 0 [m]
+};
+
+struct ClothTopology {
+  TriangleMesh mesh;            // at rest
+  std::vector<Spring> springs;  // every spring once
+  std::vector<double> area;     // of each particle (num_particles) [m²]
+  std::optional<Grid> grid;     // set: the fast kernels use stencils, not `table`
+  SpringModel spring_model = SpringModel::simplified;
+  NeighbourTable table;  // the springs around each particle; empty on grids
+
+  int num_particles() const { return mesh.num_vertices(); }
+};
+
+std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model);
+
+/// The mesh must be clean (see clean_mesh). Its positions are the rest shape.
+std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh);
+
+struct ClothModel {
+  std::uint64_t id =
+      0;  // no two models of a process share it: what is computed from a model can be kept by id
+  std::shared_ptr<const ClothTopology> topology;
+  ClothMaterial material;
+  std::vector<double> mass;            // (num_particles) [kg]
+  std::vector<double> stiffness_sum;   // Σ_j k_ij, (num_particles) [N/m]
+  std::vector<float> entry_stiffness;  // k of each entry of topology->table, 0 in its padding [N/m]
+  double max_stiffness_rate = 0;       // max_i Σ_j k_ij / m_i [1/s²]
+  double max_damping_rate = 0;         // max_i Σ_j d_ij / m_i [1/s]
+
+  int num_particles() const { return topology->num_particles(); }
+
+  /// Stiffness of the springs of a kind [N/m].
+  double stiffness(SpringKind kind) const {
+    switch (kind) {
+      case SpringKind::structural:
+        return material.structural;
+      case SpringKind::shear:
+        return material.shear;
+      case SpringKind::bend:
+        break;
+    }
+    return material.bend;
+  }
+};
+
+std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
+                                                    const ClothMaterial& material);
+
+}  // namespace weft

@@ -1,0 +1,62 @@
+#include "weft/model/cloth_state.h"
+
+#include <cmath>
+
+namespace weft {
+namespace {
+
+/// The origin lies on a lattice of this pitch [m]. Steps of a power of two make the subtraction exact for
+/// every offset that shrinks; only offsets that grow (parts of the cloth nearer the old origin) are rounded
+/// again.
+constexpr double kOriginPitch = 0.25;
+
+/// How far the cloth's middle may be from the origin before the origin follows [m].
+constexpr double kMaxDrift = 2.0;
+
+Vec3 round_to_lattice(const Vec3& p) { return (p / kOriginPitch).array().round().matrix() * kOriginPitch; }
+
+/// Middle of the bounding box of the offsets.
+Vec3 middle(const Vec3Array& x) {
+  Vec3 low = x.get(0), high = x.get(0);
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    low = low.cwiseMin(x.get(i));
+    high = high.cwiseMax(x.get(i));
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+ClothState make_state(const std::vector<Vec3>& positions) {
+  ClothState state;
+  Vec3 low = positions.front(), high = low;
+  for (const Vec3& p : positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  state.origin = round_to_lattice((low + high) / 2);
+  state.x.resize(positions.size());
+  state.v.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) state.set_position(i, positions[i]);
+  return state;
+}
+
+void follow_cloth(ClothState& state) {
+  const Vec3 drift = middle(state.x);
+  if (!drift.allFinite() || drift.cwiseAbs().maxCoeff() < kMaxDrift) return;
+  const Vec3 shift = round_to_lattice(drift);
+  state.origin += shift;
+  for (std::size_t i = 0; i < state.x.size(); ++i) state.x.set(i, state.x.get(i) - shift);
+}
+
+void add_to_hash(const ClothState& state, Hash& hash) {
+  const auto add = [&](const float* values) { hash.add(std::span<const float>(values, state.x.size())); };
+  for (int c = 0; c < 3; ++c) hash.add(state.origin[c]);
+  for (const Vec3Array* array : {&state.x, &state.v}) {
+    add(array->x());
+    add(array->y());
+    add(array->z());
+  }
+}
+
+}  // namespace weft

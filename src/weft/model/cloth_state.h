@@ -1,0 +1,30 @@
+#pragma once
+/// What moves: positions and velocities of one cloth. Everything constant is in ClothModel.
+
+#include "weft/core/hash.h"
+#include "weft/core/vec3_array.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+/// Positions are float offsets from a double origin, so that cloth far from the world's origin keeps its
+/// precision.
+struct ClothState {
+  Vec3 origin = Vec3::Zero();  // [m]
+  Vec3Array x;                 // offset of each particle from `origin` (num_particles) [m]
+  Vec3Array v;                 // velocity (num_particles) [m/s]
+
+  Vec3 position(std::size_t i) const { return origin + x.get(i); }
+  void set_position(std::size_t i, const Vec3& position) { x.set(i, position - origin); }
+};
+
+/// At rest at the given positions (num_particles) [m], with the origin among them.
+ClothState make_state(const std::vector<Vec3>& positions);
+
+/// Moves the origin along with a cloth whose middle has travelled more than 2 m from it. Positions move by
+/// at most half a unit in the last place of their new offset.
+void follow_cloth(ClothState& state);
+
+void add_to_hash(const ClothState& state, Hash& hash);
+
+}  // namespace weft

@@ -1,0 +1,74 @@
+#include "weft/run/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+std::string to_string(RunOutcome outcome) {
+  switch (outcome) {
+    case RunOutcome::done:
+      return "done";
+    case RunOutcome::interrupted:
+      return "interrupted";
+    case RunOutcome::failed:
+      break;
+  }
+  return "failed";
+}
+
+}  // namespace
+
+std::string to_json(const RunReport& r) {
+  const nlohmann::ordered_json null = nullptr;
+  nlohmann::ordered_json json = {
+      {"scene", r.scene},
+      {"integrator", r.integrator},
+      {"version", r.version},
+      {"outcome", to_string(r.outcome)},
+      {"failure", r.failure.empty() ? null : nlohmann::ordered_json(r.failure)},
+      {"particles", r.particles},
+      {"triangles", r.triangles},
+      {"springs", r.springs},
+      {"frames", r.frames},
+      {"seconds_simulated", r.seconds_simulated},
+      {"threads", r.threads},
+      {"ms_per_frame", {{"median", r.ms_per_frame_median}, {"p95", r.ms_per_frame_p95}}},
+      {"cpu_ms_per_frame", r.cpu_ms_per_frame},
+      {"max_strain", r.max_strain},
+      {"min_strain", r.min_strain},
+      {"mean_strain", r.mean_strain},
+      {"penetration_max", r.penetration_max ? nlohmann::ordered_json(*r.penetration_max) : null},
+      {"intersections", null},
+      {"infeasible", null},
+      {"guard_events", null},
+      {"state_hash", r.state_hash},
+      {"warnings", r.warnings},
+      {"kinetic_energy", r.kinetic_energy},
+      {"potential_energy", r.potential_energy},
+      {"lowest_y", r.lowest_y},
+  };
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& file, const RunReport& report) {
+  std::ofstream out(file);
+  out << to_json(report);
+  out.close();
+  if (!out)
+    throw InputError("the report " + file.string() + " cannot be written: is the folder there and writable?");
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+}
+
+}  // namespace weft

@@ -1,0 +1,44 @@
+#pragma once
+/// What a run tells: figures that were measured, and null for those that were not.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weft {
+
+enum class RunOutcome { done, interrupted, failed };
+
+struct RunReport {
+  std::string scene, integrator, version;
+  RunOutcome outcome = RunOutcome::done;
+  std::string failure;  // why, if failed
+  int particles = 0, triangles = 0, springs = 0;
+  int frames = 0;                // simulated
+  double seconds_simulated = 0;  // [s]
+  int threads = 1;
+  double ms_per_frame_median = 0;         // wall time of the simulation alone [ms]
+  double ms_per_frame_p95 = 0;            // [ms]
+  double cpu_ms_per_frame = 0;            // process CPU time of the simulation alone, mean [ms]
+  double max_strain = 0, min_strain = 0;  // extremes over the run, of l/l0 − 1 over structural springs [1]
+  double mean_strain = 0;                 // mean over springs and frames [1]
+  std::vector<double> kinetic_energy;     // (frames) [J]
+  std::vector<double> potential_energy;   // (frames) elastic plus gravity, zero at the world's origin [J]
+  std::vector<double> lowest_y;           // (frames) the first one after the first frame [m]
+  std::optional<double> penetration_max;  // deepest particle inside a collider; empty without colliders [m]
+  std::string state_hash;                 // sixteen hexadecimal digits
+  std::vector<std::string> warnings;
+};
+
+/// The report as JSON text. What this version does not measure (intersections, infeasible, guard_events) is
+/// null.
+std::string to_json(const RunReport& report);
+
+/// Throws InputError if the file cannot be written.
+void write_report(const std::filesystem::path& file, const RunReport& report);
+
+/// The quantile q in [0, 1] of values (nearest rank); 0 of no values.
+double quantile(std::vector<double> values, double q);
+
+}  // namespace weft

@@ -1,0 +1,252 @@
+#include "weft/run/runner.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "weft/contact/response.h"
+#include "weft/core/error.h"
+#include "weft/core/version.h"
+#include "weft/run/stopwatch.h"
+#include "weft/scene/scene_world.h"
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
+constexpr int kSphereRings = 32;
+
+std::string hex(std::uint64_t value) {
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value));
+  return digits;
+}
+
+/// Gathers the figures of a run, frame by frame.
+class Recorder {
+ public:
+  Recorder(const SceneDesc& scene, const World& world, RunReport& report) : world_(world), report_(report) {
+    report.scene = scene.name;
+    report.integrator = scene.solver.integrator;
+    report.version = kVersion;
+    for (int c = 0; c < world.num_cloths(); ++c) {
+      const ClothTopology& topology = *world.model({c}).topology;
+      report.particles += topology.num_particles();
+      report.triangles += topology.mesh.num_triangles();
+      report.springs += static_cast<int>(topology.springs.size());
+    }
+    if (!world.colliders().empty()) report.penetration_max = 0;
+  }
+
+  void add_frame() {
+    double kinetic = 0, potential = 0, lowest = std::numeric_limits<double>::infinity(), mean_strain = 0;
+    for (int c = 0; c < world_.num_cloths(); ++c) {
+      const ClothModel& model = world_.model({c});
+      const ClothState& state = world_.state({c});
+      kinetic += compute_kinetic_energy(model, state);
+      potential +=
+          compute_elastic_energy(model, state) + compute_gravity_energy(model, state, world_.gravity());
+      lowest = std::min(lowest, compute_lowest_y(state));
+      mean_strain += add_strain(compute_strain(model, state)) / world_.num_cloths();
+      if (report_.penetration_max) {
+        *report_.penetration_max =
+            std::max(*report_.penetration_max, compute_penetration(world_.colliders(), world_.time(), state));
+      }
+    }
+    report_.kinetic_energy.push_back(kinetic);
+    report_.potential_energy.push_back(potential);
+    report_.lowest_y.push_back(lowest);
+    ++report_.frames;
+    report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
+  }
+
+ private:
+  double add_strain(const Strain& strain) {
+    report_.max_strain = std::max(report_.max_strain, strain.max);
+    report_.min_strain = std::min(report_.min_strain, strain.min);
+    return strain.mean;
+  }
+
+  const World& world_;
+  RunReport& report_;
+};
+
+/// Keeps frames for the animation file.
+class Filmer {
+ public:
+  Filmer(const SceneDesc& scene, const World& world, Animation& animation)
+      : world_(world), animation_(animation) {
+    animation.title = scene.name;
+    animation.frames_per_second = scene.fps;
+    for (int c = 0; c < world.num_cloths(); ++c) {
+      AnimatedMesh mesh;
+      mesh.name = world.name({c});
+      mesh.triangles = world.model({c}).topology->mesh.triangles;
+      mesh.color = scene.cloths[c].color;
+      animation.cloths.push_back(std::move(mesh));
+    }
+    for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
+  }
+
+  void add_frame() {
+    for (int c = 0; c < world_.num_cloths(); ++c)
+      animation_.cloths[c].frames.push_back(positions(world_.state({c})));
+    for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
+      const Collider& collider = world_.colliders()[b];
+      if (collider.motion.is_still() && !animation_.bodies[b].poses.empty()) continue;
+      const Pose pose = collider.motion.at(world_.time());
+      const Vec3 center = pivot(collider.shape);
+      animation_.bodies[b].poses.push_back({center + pose.translation, Eigen::Quaterniond(pose.rotation)});
+    }
+  }
+
+ private:
+  /// The collider's shape around its own pivot.
+  static RigidMesh show(const Collider& collider) {
+    RigidMesh body;
+    body.name = collider.name;
+    if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
+      body.mesh = make_sphere_mesh(Vec3::Zero(), sphere->radius, kSphereRings);
+    } else {
+      body.mesh = make_square_mesh(Vec3::Zero(), std::get<Plane>(collider.shape).normal, kPlaneSide);
+    }
+    return body;
+  }
+
+  static std::vector<float> positions(const ClothState& state) {
+    std::vector<float> values;
+    values.reserve(3 * state.x.size());
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 p = state.position(i);
+      for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(p[c]));
+    }
+    return values;
+  }
+
+  const World& world_;
+  Animation& animation_;
+};
+
+/// The paper's Eq. 16 slows gravity the more, the stiffer the cloth is for its step.
+void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
+  if (scene.solver.integrator != "paper") return;
+  const double step = 1 / (scene.fps * scene.steps_per_frame);
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const double a = compute_stiffness_number(world.model({c}), step);
+    if (a <= 1) continue;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "cloth \"%s\" is too stiff for the paper's Eq. 16 at this step: a = h²Σk/m reaches %.3g, and from "
+        "rest it falls with %.2g of gravity; use paper_fixed, or raise solver.steps_per_frame",
+        world.name({c}).c_str(), a, gravity_factor(a));
+    warnings.emplace_back(text);
+  }
+}
+
+/// One sentence per kind of trouble, with how often it came.
+class Troubles {
+ public:
+  void add(const StepReport& step) {
+    for (const Trouble& t : step.troubles) ++count_["cloth \"" + t.cloth + "\": " + t.sentence];
+  }
+
+  void tell(int num_steps, std::vector<std::string>& warnings) const {
+    for (const auto& [sentence, count] : count_) {
+      warnings.push_back(sentence + " (" + std::to_string(count) + " of " + std::to_string(num_steps) +
+                         " steps)");
+    }
+  }
+
+ private:
+  std::map<std::string, int> count_;
+};
+
+/// A run under way.
+class Run {
+ public:
+  Run(const SceneDesc& scene, const RunOptions& options)
+      : scene_(scene),
+        options_(options),
+        num_frames_(options.frames.value_or(scene.num_frames())),
+        built_(build_world(scene, make_jobs(options.threads))),
+        recorder_(scene, built_.world, result_.report),
+        filmer_(scene, built_.world, result_.animation) {
+    result_.report.threads = options.threads;
+    result_.report.warnings = built_.warnings;
+    warn_about_paper(scene, built_.world, result_.report.warnings);
+    if (options.record_animation) filmer_.add_frame();
+  }
+
+  RunResult go(const OnFrame& on_frame) {
+    RunReport& report = result_.report;
+    for (int frame = 1; frame <= num_frames_ && report.outcome == RunOutcome::done; ++frame) {
+      stopwatch_.start();
+      const bool ok = simulate_frame(frame);
+      const double seconds = stopwatch_.stop();
+      if (!ok) break;
+      spent_ += seconds;
+      frame_ms_.push_back(1000 * seconds);
+      recorder_.add_frame();
+      if (options_.record_animation) filmer_.add_frame();
+      const Progress progress{frame, num_frames_, spent_, spent_ / frame * (num_frames_ - frame)};
+      if (on_frame && !on_frame(progress) && frame < num_frames_) report.outcome = RunOutcome::interrupted;
+    }
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  /// False if the simulation failed: then the report says where and why.
+  bool simulate_frame(int frame) {
+    World& world = built_.world;
+    for (int s = 0; s < scene_.steps_per_frame; ++s) {
+      world.set_wind(wind_at(scene_.wind, world.time()));
+      const StepReport done = world.step(1 / (scene_.fps * scene_.steps_per_frame));
+      ++num_steps_;
+      if (done.ok) {
+        troubles_.add(done);
+        continue;
+      }
+      const Trouble& trouble = done.troubles.back();
+      result_.report.outcome = RunOutcome::failed;
+      result_.report.failure =
+          "frame " + std::to_string(frame) + ", cloth \"" + trouble.cloth + "\": " + trouble.sentence;
+      return false;
+    }
+    return true;
+  }
+
+  void finish() {
+    RunReport& report = result_.report;
+    troubles_.tell(num_steps_, report.warnings);
+    report.seconds_simulated = built_.world.time();
+    report.ms_per_frame_median = quantile(frame_ms_, 0.5);
+    report.ms_per_frame_p95 = quantile(frame_ms_, 0.95);
+    if (report.frames > 0) report.cpu_ms_per_frame = 1000 * stopwatch_.cpu_total() / report.frames;
+    report.state_hash = hex(built_.world.state_hash());
+  }
+
+  const SceneDesc& scene_;
+  const RunOptions& options_;
+  int num_frames_;
+  SceneWorld built_;
+  RunResult result_;
+  Recorder recorder_;
+  Filmer filmer_;
+  Stopwatch stopwatch_;
+  Troubles troubles_;
+  std::vector<double> frame_ms_;
+  double spent_ = 0;  // on simulation, wall time [s]
+  int num_steps_ = 0;
+};
+
+}  // namespace
+
+RunResult run_scene(const SceneDesc& scene, const RunOptions& options, const OnFrame& on_frame) {
+  return Run(scene, options).go(on_frame);
+}
+
+}  // namespace weft

@@ -1,0 +1,148 @@
+#include <charconv>
+#include <optional>
+
+#include "weft/scene/scene_sections.h"
+
+namespace weft {
+namespace {
+
+/// What may be pinned; a shape that could not be read is taken to have everything.
+struct Pinnable {
+  bool has_corners = true;
+  IntegerRule index = {.least = 0};
+
+  explicit Pinnable(const std::variant<Grid, MeshFile>* shape) {
+    if (!shape) return;
+    const Grid* grid = std::get_if<Grid>(shape);
+    has_corners = grid != nullptr;
+    if (grid) index.most = grid->num_particles() - 1;
+  }
+};
+
+/// The whole text as a number.
+std::optional<int> parse_int(std::string_view text) {
+  int number = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, number);
+  if (result.ec != std::errc() || result.ptr != end) return {};
+  return number;
+}
+
+/// "corner:I,J"
+std::optional<ParticleSelection> parse_corner(std::string_view text) {
+  if (text == "0,0") return GridCorner{0, 0};
+  if (text == "1,0") return GridCorner{1, 0};
+  if (text == "0,1") return GridCorner{0, 1};
+  if (text == "1,1") return GridCorner{1, 1};
+  return {};
+}
+
+std::optional<ParticleSelection> parse_index(std::string_view text, const IntegerRule& rule) {
+  const std::optional<int> index = parse_int(text);
+  if (!index || *index < rule.least || *index > rule.most) return {};
+  return ParticleIndices{{*index}};
+}
+
+std::string describe_index(const IntegerRule& rule) {
+  const std::string name = "\"index:N\" with N from " + std::to_string(rule.least);
+  return name + (rule.most == INT_MAX ? " on" : " to " + std::to_string(rule.most));
+}
+
+std::optional<ParticleSelection> read_corner(const TomlValue& value, std::string_view text,
+                                             const Pinnable& pinnable) {
+  if (!pinnable.has_corners) {
+    value.mistake("a mesh has no corners; pin an index, a box or a sphere");
+    return {};
+  }
+  const std::optional<ParticleSelection> selection = parse_corner(text);
+  if (!selection) value.expected("\"corner:0,0\", \"corner:1,0\", \"corner:0,1\" or \"corner:1,1\"");
+  return selection;
+}
+
+std::optional<ParticleSelection> read_name(const TomlValue& value, const Pinnable& pinnable) {
+  std::string text;
+  if (!value.read(text)) return {};
+  std::optional<ParticleSelection> selection;
+  if (text.starts_with("corner:")) {
+    selection = read_corner(value, std::string_view(text).substr(7), pinnable);
+  } else if (text.starts_with("index:")) {
+    selection = parse_index(text.substr(6), pinnable.index);
+    if (!selection) value.expected(describe_index(pinnable.index));
+  } else {
+    value.expected("\"corner:0,0\" or \"index:12\"");
+  }
+  return selection;
+}
+
+std::optional<ParticleSelection> read_box(TomlTable table) {
+  Box box;
+  table.require({"min"}, "3 numbers in m");
+  table.require({"max"}, "3 numbers in m");
+  const bool has_min = table.read("min", box.min, any_number("m"));
+  const bool has_max = table.read("max", box.max, any_number("m"));
+  const bool is_empty = has_min && has_max && (box.min.array() > box.max.array()).any();
+  if (is_empty) table.get("max").mistake("expected nothing below \"min\"");
+  return box;
+}
+
+std::optional<ParticleSelection> read_ball(TomlTable table) {
+  Sphere sphere;
+  table.require({"center"}, "3 numbers in m");
+  table.require({"radius"}, "a number above 0 in m");
+  table.read("center", sphere.center, any_number("m"));
+  table.read("radius", sphere.radius, above_zero("m"));
+  return sphere;
+}
+
+std::optional<ParticleSelection> read_indices(const TomlValue& value, const Pinnable& pinnable) {
+  ParticleIndices selection;
+  if (!value.read(selection.indices, pinnable.index)) return {};
+  if (selection.indices.empty()) value.expected("one index at least");
+  return selection;
+}
+
+std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pinnable) {
+  table.require({"index", "box", "sphere"}, "one of them");
+  const TomlValue index = table.get("index"), box = table.get("box"), sphere = table.get("sphere");
+  if (index) return read_indices(index, pinnable);
+  if (box) return read_box(table.table("box"));
+  if (sphere) return read_ball(table.table("sphere"));
+  return {};
+}
+
+std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pinnable) {
+  constexpr std::string_view kForms =
+      "\"corner:0,0\", \"index:12\", { index = [1, 2] }, { box = … } or { sphere = … }";
+  pin.require({"select"}, kForms);
+  const TomlValue select = pin.get("select");
+  if (!select) return {};
+  if (select.is_table()) return read_region(pin.table("select"), pinnable);
+  if (select.is_string()) return read_name(select, pinnable);
+  select.expected(kForms);
+  return {};
+}
+
+}  // namespace
+
+std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape) {
+  const Pinnable pinnable(shape);
+  std::vector<PinDesc> pins;
+  if (const TomlValue names = cloth.get("pins")) {
+    constexpr std::string_view kForm = "an array of strings, as in [\"corner:0,0\", \"index:12\"]";
+    for (const TomlValue& name : names.elements(kForm)) {
+      const auto selection = read_name(name, pinnable);
+      if (selection) pins.push_back({.select = *selection, .motion = {}});
+    }
+  }
+  for (TomlTable& table : cloth.tables("pin")) {
+    PinDesc pin;
+    const auto selection = read_select(table, pinnable);
+    pin.motion = read_motion(table);
+    table.read("pivot", pin.pivot, any_number("m"));
+    if (selection) pin.select = *selection;
+    pins.push_back(std::move(pin));
+  }
+  return pins;
+}
+
+}  // namespace weft

@@ -1,0 +1,84 @@
+#pragma once
+/// A scene as plain data: what a scene file says, checked and with defaults filled in.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "weft/animation/rigid_motion.h"
+#include "weft/contact/collider.h"
+#include "weft/core/shapes.h"
+#include "weft/forces/wind.h"
+#include "weft/integrators/integrator.h"
+#include "weft/mesh/grid.h"
+#include "weft/model/cloth_model.h"
+#include "weft/model/springs.h"
+
+namespace weft {
+
+struct GridCorner {
+  int i = 0, j = 0;  // 0 or 1 each: which end of the first and of the second axis
+};
+
+struct ParticleIndices {
+  std::vector<int> indices;  // on a grid j * (cells_x + 1) + i; on a mesh the file's vertices, counted from 0
+};
+
+using ParticleSelection =
+    std::variant<GridCorner, ParticleIndices, Box, Sphere>;  // regions: initial position, world
+
+struct PinDesc {
+  ParticleSelection select;
+  std::vector<KeyFrame> motion;  // empty: held still
+  Vec3 pivot = Vec3::Zero();     // what `motion` turns about [m]
+};
+
+struct MeshFile {
+  std::filesystem::path file;   // resolved against the scene file's folder
+  bool up_is_z = false;         // turned so that its z axis becomes the world's y axis
+  double scale = 1;             // of the file's unit, > 0 [m]
+  bool weld = false;            // sew vertices that coincide
+  double weld_distance = 1e-6;  // within this distance, >= 0 [m]
+};
+
+struct ClothSceneDesc {
+  std::string name;  // default: "cloth", "cloth 2", …
+  std::variant<Grid, MeshFile> shape;
+  SpringModel model = SpringModel::simplified;
+  ClothMaterial material;
+  Vec3 position = Vec3::Zero();      // added after the rotation [m]
+  Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
+  Vec3 velocity = Vec3::Zero();      // at the start [m/s]
+  std::array<double, 3> color = {0.72, 0.16, 0.14};  // linear red, green, blue [0, 1]
+  std::vector<PinDesc> pins;
+};
+
+struct WindKey {
+  double time = 0;               // [s]
+  Vec3 velocity = Vec3::Zero();  // [m/s]
+};
+
+struct WindDesc {
+  double drag = 0;            // c_w [N·s/m³]
+  std::vector<WindKey> keys;  // at least one if drag > 0; linear between, constant outside
+};
+
+struct SceneDesc {
+  std::string name;              // the file's name without ending, with its folders below one called "scenes"
+  std::string description;       // one line
+  Vec3 gravity = {0, -9.81, 0};  // [m/s²]
+  double fps = 60;               // frames per second, > 0
+  double duration = 3;           // [s], > 0
+  std::vector<ClothSceneDesc> cloths;  // at least one
+  std::vector<Collider> colliders;
+  WindDesc wind;
+  IntegratorSettings solver;
+  int steps_per_frame = 1;  // >= 1
+  bool contact = true;      // whether colliders hold cloth off
+
+  int num_frames() const;  // round(duration · fps), at least 1
+};
+
+}  // namespace weft

@@ -1,0 +1,87 @@
+#include "weft/scene/scene_library.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "weft/core/error.h"
+#include "weft/scene/nearest_name.h"
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const fs::path& path) {
+  std::error_code not_there;
+  return fs::is_directory(path, not_there);
+}
+
+/// share/weft/scenes for a program in bin; empty where the system does not tell the program's place.
+fs::path installed_folder() {
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  return program.empty() ? fs::path() : program.parent_path().parent_path() / "share" / "weft" / "scenes";
+}
+
+/// "paper/fig6_ball" may be asked for as "fig6_ball" too.
+std::string find_nearest_scene(const std::string& name, const std::vector<ShippedScene>& scenes) {
+  std::vector<std::string> names, last_parts;
+  for (const ShippedScene& scene : scenes) {
+    names.push_back(scene.name);
+    last_parts.push_back(scene.file.stem().string());
+  }
+  const std::string nearest = find_nearest(name, names);
+  if (!nearest.empty()) return nearest;
+  const auto last_part = std::find(last_parts.begin(), last_parts.end(), find_nearest(name, last_parts));
+  return last_part == last_parts.end() ? "" : names[last_part - last_parts.begin()];
+}
+
+std::string describe_missing(const std::string& name) {
+  const std::vector<ShippedScene> scenes = list_scenes();
+  const std::string sentence = "there is no scene file and no shipped scene \"" + name + "\"";
+  const std::string nearest = find_nearest_scene(name, scenes);
+  if (!nearest.empty()) return sentence + "; did you mean \"" + nearest + "\"?";
+  std::string known;
+  for (const ShippedScene& scene : scenes) known += (known.empty() ? "" : ", ") + scene.name;
+  return sentence + "; there are " + known;
+}
+
+}  // namespace
+
+std::filesystem::path scene_folder() {
+  if (const char* folder = std::getenv("WEFT_SCENES")) {
+    if (is_folder(folder)) return folder;
+    throw InputError("WEFT_SCENES is \"" + std::string(folder) + "\", expected a folder with scenes");
+  }
+  for (const fs::path& folder : {installed_folder(), fs::path(WEFT_SOURCE_SCENES)}) {
+    if (is_folder(folder)) return folder;
+  }
+  throw InputError("the shipped scenes are not found; set WEFT_SCENES to their folder");
+}
+
+std::vector<ShippedScene> list_scenes() {
+  const fs::path folder = scene_folder();
+  std::vector<ShippedScene> scenes;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, kOptions)) {
+    if (!entry.is_regular_file() || entry.path().extension() != ".toml") continue;
+    fs::path name = entry.path().lexically_relative(folder);
+    scenes.push_back({name.replace_extension().generic_string(), entry.path()});
+  }
+  std::sort(scenes.begin(), scenes.end(),
+            [](const ShippedScene& a, const ShippedScene& b) { return a.name < b.name; });
+  return scenes;
+}
+
+std::filesystem::path find_scene(const std::string& file_or_name) {
+  std::error_code not_there;
+  const fs::path file = file_or_name;
+  if (fs::exists(file, not_there) && !is_folder(file)) return file;
+  for (const ShippedScene& scene : list_scenes()) {
+    if (scene.name == file_or_name) return scene.file;
+  }
+  throw InputError(describe_missing(file_or_name));
+}
+
+}  // namespace weft

@@ -1,0 +1,143 @@
+#include "weft/scene/scene_reader.h"
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "weft/scene/scene_sections.h"
+
+namespace weft {
+namespace {
+
+/// The path below a folder called "scenes", else the stem.
+std::string make_name(const std::filesystem::path& file) {
+  std::error_code no_current_folder;
+  const std::filesystem::path path = std::filesystem::absolute(file, no_current_folder).lexically_normal();
+  std::filesystem::path name;
+  bool is_below_scenes = false;
+  for (const std::filesystem::path& part : path.parent_path()) {
+    if (part == "scenes") {
+      is_below_scenes = true;
+      name.clear();
+    } else if (is_below_scenes) {
+      name /= part;
+    }
+  }
+  return (name / file.stem()).generic_string();
+}
+
+void read_format(TomlTable& table) {
+  table.require({"format"}, "format = 1");
+  const TomlValue format = table.get("format");
+  const bool is_known = format && format.node().value_exact<std::int64_t>() == 1;
+  if (format && !is_known) format.expected("1, the only format that this version reads");
+}
+
+void read_scene_table(TomlTable table, SceneDesc& scene) {
+  constexpr double kMaxFrames = 1e7;
+  read_format(table);
+  table.read("description", scene.description);
+  table.read("gravity", scene.gravity, any_number("m/s²"), "[0, -9.81, 0]");
+  table.read("fps", scene.fps, above_zero("frames per second"));
+  table.read("duration", scene.duration, above_zero("s"));
+  if (scene.duration * scene.fps > kMaxFrames) {
+    const TomlValue duration = table.get("duration"), fps = table.get("fps");
+    (duration ? duration : fps).mistake("duration times fps is more than 10 million frames");
+  }
+}
+
+std::vector<WindKey> read_wind_keys(TomlTable& table) {
+  std::vector<WindKey> keys;
+  for (TomlTable& entry : table.tables("keys")) {
+    WindKey key;
+    const bool is_in_order = read_time(entry, keys, key);
+    entry.require({"velocity"}, "3 numbers in m/s");
+    entry.read("velocity", key.velocity, any_number("m/s"));
+    if (is_in_order) keys.push_back(key);
+  }
+  return keys;
+}
+
+WindDesc read_wind(TomlTable table) {
+  WindDesc wind;
+  table.require({"drag"}, "a number not below 0 in N·s/m³");
+  table.require({"velocity", "keys"},
+                "velocity = [1, 0, 0] in m/s, or keys = [{ time = 0, velocity = [1, 0, 0] }, …]");
+  table.read("drag", wind.drag, not_negative("N·s/m³"));
+  WindKey steady;
+  const bool is_steady = table.read("velocity", steady.velocity, any_number("m/s"));
+  wind.keys = read_wind_keys(table);
+  if (is_steady) wind.keys = {steady};
+  const TomlValue keys = table.get("keys");
+  if (keys && keys.node().is_array() && keys.node().as_array()->empty()) keys.expected("one key at least");
+  return wind;
+}
+
+void read_integrator(TomlTable& solver, std::string& integrator) {
+  const std::vector<std::string> names(integrator_names().begin(), integrator_names().end());
+  const TomlValue value = solver.get("integrator");
+  const int choice = value ? value.find_choice(names) : -1;
+  if (choice >= 0) integrator = names[choice];
+}
+
+void read_solver(TomlTable table, SceneDesc& scene) {
+  IntegratorSettings& solver = scene.solver;
+  read_integrator(table, solver.integrator);
+  table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
+  table.read("iterations", solver.implicit_euler.iterations, IntegerRule{1, INT_MAX});
+  table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
+  table.read("contact", scene.contact);
+  table.table("explicit").read("substeps", solver.explicit_euler.substeps, IntegerRule{0, INT_MAX});
+  table.table("paper").read_choice<bool>("damping_sign", solver.paper.printed_damping_sign,
+                                         {{"corrected", false}, {"as_printed", true}});
+}
+
+SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file) {
+  SceneDesc scene;
+  scene.name = make_name(file);
+  TomlTable root(document, &document.root(), "");
+  root.require({"scene"}, "[scene] with format = 1");
+  root.require({"cloth"}, "one [[cloth]] at least");
+  read_scene_table(root.table("scene"), scene);
+  for (TomlTable& cloth : root.tables("cloth")) {
+    scene.cloths.push_back(read_cloth(cloth, static_cast<int>(scene.cloths.size()) + 1, file.parent_path()));
+  }
+  for (TomlTable& collider : root.tables("collider")) {
+    scene.colliders.push_back(read_collider(collider, static_cast<int>(scene.colliders.size()) + 1));
+  }
+  scene.wind = read_wind(root.table("wind"));
+  read_solver(root.table("solver"), scene);
+  return scene;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
+  throw SceneError({{file.generic_string(), 0, 0, message}});
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code not_there;
+  if (std::filesystem::is_directory(file, not_there)) fail(file, "expected a scene file, found a folder");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file, "cannot be opened");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) fail(file, "cannot be read");
+  return text;
+}
+
+}  // namespace
+
+SceneDesc read_scene(const std::filesystem::path& file, const Overrides& overrides) {
+  return parse_scene(read_text(file), file, overrides);
+}
+
+SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file, const Overrides& overrides) {
+  TomlDocument document(text, file.generic_string());
+  for (const std::string& assignment : overrides) document.override_value(assignment);
+  SceneDesc scene = read_document(document, file);
+  std::vector<Diagnostic> mistakes = document.finish();
+  if (!mistakes.empty()) throw SceneError(std::move(mistakes));
+  return scene;
+}
+
+}  // namespace weft

@@ -1,0 +1,34 @@
+#pragma once
+/// Private to scene/: the sections of a scene file that are worth a file of their own.
+
+#include <filesystem>
+#include <vector>
+
+#include "weft/scene/scene_desc.h"
+#include "weft/scene/toml_table.h"
+
+namespace weft {
+
+/// One [[cloth]], the `number`-th from 1. Mesh files are looked for beside the scene, in `folder`.
+ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::path& folder);
+
+/// A cloth's pins, in both forms; `shape` is nullptr if it could not be read.
+std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
+
+/// One [[collider]], the `number`-th from 1.
+Collider read_collider(TomlTable collider, int number);
+
+/// The key "motion" of a pin or collider: key frames with increasing times.
+std::vector<KeyFrame> read_motion(TomlTable& owner);
+
+/// A key frame's "time", which must be later than that of the last one in `before`.
+template <class Key>
+bool read_time(TomlTable& table, const std::vector<Key>& before, Key& key) {
+  table.require({"time"}, "a number in s");
+  if (!table.read("time", key.time, any_number("s"))) return false;
+  const bool is_later = before.empty() || key.time > before.back().time;
+  if (!is_later) table.get("time").expected("a time later than that of the key frame before");
+  return is_later;
+}
+
+}  // namespace weft

@@ -1,0 +1,25 @@
+#pragma once
+/// From a scene to a world that can step.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "weft/scene/scene_desc.h"
+#include "weft/world/world.h"
+
+namespace weft {
+
+struct SceneWorld {
+  World world;
+  std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
+};
+
+/// Loads meshes, places cloth, sets pins. Throws InputError where a mesh cannot be used or a pin selects
+/// nothing.
+SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
+
+/// The wind that blows at a time.
+Wind wind_at(const WindDesc& wind, double time);
+
+}  // namespace weft

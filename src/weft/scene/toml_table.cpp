@@ -1,0 +1,65 @@
+#include "weft/scene/toml_table.h"
+
+#include <algorithm>
+
+namespace weft {
+
+TomlValue TomlTable::get(std::string_view key) {
+  std::vector<std::string>& keys = section_->keys;
+  if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+  if (!has(key)) return {};
+  return {*document_, *section_->table->get(key), std::string(key)};
+}
+
+std::string TomlTable::path_of(std::string_view key) const {
+  return section_->path + (section_->path.empty() ? "" : ".") + std::string(key);
+}
+
+TomlTable TomlTable::table(std::string_view key) {
+  const TomlValue value = get(key);
+  if (value && !value.is_table()) value.expected("a table");
+  return {*document_, value ? value.node().as_table() : nullptr, path_of(key)};
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+  std::vector<TomlTable> tables;
+  const TomlValue value = get(key);
+  if (!value) return tables;
+  const std::string path = path_of(key), expected = "an array of tables, written [[" + path + "]]";
+  if (value.is_table()) {
+    value.expected(expected);
+    tables.emplace_back(*document_, value.node().as_table(), path);
+    return tables;
+  }
+  for (const TomlValue& element : value.elements(expected)) {
+    if (!element.is_table()) element.expected("a table");
+    if (element.is_table()) tables.emplace_back(*document_, element.node().as_table(), path);
+  }
+  return tables;
+}
+
+void TomlTable::require(std::initializer_list<std::string_view> one_of, std::string_view expected) {
+  section_->required.push_back({{one_of.begin(), one_of.end()}, std::string(expected)});
+  // Of several, the one that comes later in the file is one too many.
+  const toml::key* first = nullptr;
+  for (const std::string_view name : one_of) {
+    if (!has(name)) continue;
+    const toml::key* key = &section_->table->find(name)->first;
+    if (first) {
+      const bool in_order = first->source().begin < key->source().begin;
+      const toml::key *early = in_order ? first : key, *late = in_order ? key : first;
+      document_->add_mistake(late->source(), std::string(late->str()) + ": cannot go with " +
+                                                 quote(early->str()) + ", one must go");
+    }
+    first = key;
+  }
+}
+
+void TomlTable::refuse(std::string_view key, std::string_view why) {
+  if (!has(key)) return;
+  section_->refused.emplace_back(key);
+  document_->add_mistake(section_->table->find(key)->first.source(),
+                         std::string(key) + ": " + std::string(why));
+}
+
+}  // namespace weft

@@ -1,0 +1,136 @@
+#pragma once
+/// Private to scene/: typed values out of TOML. What is wrong is recorded, and reading goes on.
+///
+///   TomlTable solver = root.table("solver");
+///   solver.read("tolerance", settings.tolerance, above_zero("m"));  // keeps the default if missing or wrong
+
+#include <array>
+#include <climits>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "weft/core/vec.h"
+#include "weft/scene/toml_document.h"
+
+namespace weft {
+
+/// Magnitudes are limited, so that squares neither overflow nor vanish in single precision.
+constexpr double kSmallestNumber = 1e-12;  // where it has to be above 0
+constexpr double kLargestNumber = 1e12;
+
+/// Which numbers are right; NaN and infinity never are.
+struct NumberRule {
+  std::string_view unit = "";  // for messages; "" for pure numbers
+  enum class Low { none, zero, above_zero } low = Low::none;
+  double most = kLargestNumber;
+};
+
+constexpr NumberRule any_number(std::string_view unit = "") { return {unit, NumberRule::Low::none}; }
+constexpr NumberRule not_negative(std::string_view unit = "") { return {unit, NumberRule::Low::zero}; }
+constexpr NumberRule above_zero(std::string_view unit = "") { return {unit, NumberRule::Low::above_zero}; }
+
+struct IntegerRule {
+  int least = 0, most = INT_MAX;
+};
+
+template <class Choice>
+using Choices = std::initializer_list<std::pair<std::string_view, Choice>>;
+
+/// A value, or nothing where a key is missing.
+class TomlValue {
+ public:
+  TomlValue() = default;
+  TomlValue(TomlDocument& document, const toml::node& node, std::string name)
+      : document_(&document), node_(&node), name_(std::move(name)) {}
+
+  explicit operator bool() const { return node_ != nullptr; }
+  bool is_string() const { return node_->is_string(); }
+  bool is_boolean() const { return node_->is_boolean(); }
+  bool is_table() const { return node_->is_table(); }
+
+  // Each sets the target and returns true; or records a mistake, leaves the target alone, and returns false.
+  bool read(bool& target) const;
+  bool read(std::string& target) const;
+  bool read(int& target, const IntegerRule& rule) const;
+  bool read(double& target, const NumberRule& rule) const;
+  bool read(std::span<double> target, const NumberRule& each, std::string_view example) const;
+  bool read(Vec3& target, const NumberRule& each, std::string_view example = "[0, 1, 0]") const;
+  bool read(std::array<int, 2>& target, const IntegerRule& each) const;
+  bool read(std::vector<int>& target, const IntegerRule& each) const;
+
+  /// Sets the target to what goes with the name that is written.
+  template <class Choice>
+  bool read_choice(Choice& target, Choices<Choice> choices) const {
+    std::vector<std::string> names;
+    for (const auto& choice : choices) names.emplace_back(choice.first);
+    const int index = find_choice(names);
+    if (index >= 0) target = choices.begin()[index].second;
+    return index >= 0;
+  }
+
+  /// Which of the names is written; -1, and a mistake, if none.
+  int find_choice(const std::vector<std::string>& names) const;
+
+  /// An array's elements; none, and a mistake, if it is no array.
+  std::vector<TomlValue> elements(std::string_view expected) const;
+
+  void mistake(std::string_view message) const;  // "NAME: MESSAGE"
+  void expected(std::string_view what) const;    // "NAME: expected WHAT, found …"
+  const toml::node& node() const { return *node_; }
+
+ private:
+  TomlDocument* document_ = nullptr;
+  const toml::node* node_ = nullptr;
+  std::string name_;
+};
+
+/// A table that remembers what it was asked for. One that is not in the document can be asked all the same.
+class TomlTable {
+ public:
+  TomlTable(TomlDocument& document, const toml::table* table, std::string path)
+      : document_(&document), section_(&document.add_section(table, std::move(path))) {}
+
+  bool exists() const { return section_->table != nullptr; }
+  bool has(std::string_view key) const { return exists() && section_->table->contains(key); }
+
+  TomlValue get(std::string_view key);
+
+  /// get(key).read(…), false if the key is missing.
+  template <class... Arguments>
+  bool read(std::string_view key, Arguments&&... arguments) {
+    const TomlValue value = get(key);
+    return value && value.read(std::forward<Arguments>(arguments)...);
+  }
+
+  template <class Choice>
+  bool read_choice(std::string_view key, Choice& target, Choices<Choice> choices) {
+    const TomlValue value = get(key);
+    return value && value.read_choice(target, choices);
+  }
+
+  TomlTable table(std::string_view key);
+
+  /// The tables of an array, written [[key]] or key = [{ … }, …].
+  std::vector<TomlTable> tables(std::string_view key);
+
+  /// Exactly one of the keys must be there (a mistake if not, unless one of them is misspelt).
+  void require(std::initializer_list<std::string_view> one_of, std::string_view expected);
+
+  /// If the key is there, that is the mistake.
+  void refuse(std::string_view key, std::string_view why);
+
+  /// Leaves keys unjudged that nobody asks for.
+  void allow_any_keys() { section_->any_keys = true; }
+
+ private:
+  std::string path_of(std::string_view key) const;
+
+  TomlDocument* document_;
+  TomlSection* section_;
+};
+
+}  // namespace weft

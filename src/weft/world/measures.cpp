@@ -1,0 +1,78 @@
+#include "weft/world/measures.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "weft/forces/gravity.h"
+#include "weft/forces/spring.h"
+
+namespace weft {
+
+double compute_kinetic_energy(const ClothModel& model, const ClothState& state) {
+  double energy = 0;
+  for (int i = 0; i < model.num_particles(); ++i)
+    energy += 0.5 * model.mass[i] * state.v.get(i).squaredNorm();
+  return energy;
+}
+
+double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
+  double energy = 0;
+  for (const Spring& s : model.topology->springs) {
+    energy += spring_energy(model.stiffness(s.kind), s.rest_length, state.x.get(s.j) - state.x.get(s.i));
+  }
+  return energy;
+}
+
+double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity) {
+  double energy = 0;
+  for (int i = 0; i < model.num_particles(); ++i)
+    energy += gravity_energy(model.mass[i], gravity, state.position(i));
+  return energy;
+}
+
+Vec3 compute_momentum(const ClothModel& model, const ClothState& state) {
+  Vec3 momentum = Vec3::Zero();
+  for (int i = 0; i < model.num_particles(); ++i) momentum += model.mass[i] * state.v.get(i);
+  return momentum;
+}
+
+Vec3 compute_angular_momentum(const ClothModel& model, const ClothState& state, const Vec3& point) {
+  Vec3 momentum = Vec3::Zero();
+  for (int i = 0; i < model.num_particles(); ++i) {
+    momentum += model.mass[i] * (state.position(i) - point).cross(state.v.get(i));
+  }
+  return momentum;
+}
+
+Vec3 compute_center_of_mass(const ClothModel& model, const ClothState& state) {
+  Vec3 sum = Vec3::Zero();
+  double mass = 0;
+  for (int i = 0; i < model.num_particles(); ++i) {
+    sum += model.mass[i] * state.x.get(i);
+    mass += model.mass[i];
+  }
+  return state.origin + sum / mass;
+}
+
+Strain compute_strain(const ClothModel& model, const ClothState& state) {
+  Strain strain{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0};
+  int count = 0;
+  for (const Spring& s : model.topology->springs) {
+    if (s.kind != SpringKind::structural) continue;
+    const double value = (state.x.get(s.j) - state.x.get(s.i)).norm() / s.rest_length - 1;
+    strain.min = std::min(strain.min, value);
+    strain.max = std::max(strain.max, value);
+    strain.mean += value;
+    ++count;
+  }
+  strain.mean /= count;
+  return strain;
+}
+
+double compute_lowest_y(const ClothState& state) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < state.x.size(); ++i) lowest = std::min(lowest, state.position(i).y());
+  return lowest;
+}
+
+}  // namespace weft

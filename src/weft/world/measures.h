@@ -1,0 +1,33 @@
+#pragma once
+/// What can be measured on a cloth: energies, momentum, strain. In double precision, whatever the cloth
+/// computes with.
+
+#include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
+
+namespace weft {
+
+double compute_kinetic_energy(const ClothModel& model, const ClothState& state);  // [J]
+
+/// Of all springs [J].
+double compute_elastic_energy(const ClothModel& model, const ClothState& state);
+
+/// −Σ m g·x, zero where everything is at the world's origin [J].
+double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity);
+
+Vec3 compute_momentum(const ClothModel& model, const ClothState& state);  // Σ m v [kg·m/s]
+
+/// Σ m (x − point) × v [kg·m²/s].
+Vec3 compute_angular_momentum(const ClothModel& model, const ClothState& state, const Vec3& point);
+
+Vec3 compute_center_of_mass(const ClothModel& model, const ClothState& state);  // [m]
+
+/// l/l0 − 1 over the structural springs: the mesh's edges, without grid diagonals and bending springs [1].
+struct Strain {
+  double min = 0, max = 0, mean = 0;
+};
+Strain compute_strain(const ClothModel& model, const ClothState& state);
+
+double compute_lowest_y(const ClothState& state);  // [m]
+
+}  // namespace weft

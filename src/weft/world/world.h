@@ -1,0 +1,128 @@
+#pragma once
+/// The world: cloths, pins, colliders, wind; and step(), which moves them all.
+///
+/// SI units, Y up, right-handed. Steps are deterministic: same world, same calls, same bits, for any number
+/// of threads.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "weft/contact/collider.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft {
+
+/// Handle of a cloth in a World.
+struct ClothId {
+  int index = 0;
+};
+
+struct ClothDesc {
+  std::string name = "cloth";                     // for reports
+  std::shared_ptr<const ClothTopology> topology;  // see build_grid_topology, build_mesh_topology
+  ClothMaterial material;
+  std::vector<Vec3> positions;   // (num_particles) at the start; empty: the rest shape [m]
+  Vec3 velocity = Vec3::Zero();  // of all particles at the start [m/s]
+};
+
+/// Particles that move by prescription: still, or along key frames from where they were when pinned.
+struct Pin {
+  std::vector<int> particles;
+  RigidMotion motion;
+  Vec3 pivot = Vec3::Zero();  // what the motion turns about [m]
+};
+
+/// Numerical trouble of a step, by name.
+struct Trouble {
+  std::string cloth;
+  int particle = -1;     // the first one concerned, -1 if none in particular
+  std::string sentence;  // what happened and which knob to turn
+};
+
+struct StepReport {
+  bool ok = true;                 // false: the step failed, and every cloth is as it was before it
+  std::vector<Trouble> troubles;  // with ok = true: the step was made, but less exactly than asked for
+  int substeps = 0;               // of the cloth that needed most [1]
+  int iterations = 0;             // of nonlinear solvers, all cloths [1]
+};
+
+class World {
+ public:
+  World();
+
+  /// Throws InputError if the description does not fit together (sizes, numbers out of range).
+  ClothId add_cloth(const ClothDesc& desc);
+  void add_collider(Collider collider) { colliders_.push_back(std::move(collider)); }
+
+  /// All of these may be called between any two steps; the next step uses the new values.
+  void set_pins(ClothId cloth,
+                std::vector<Pin> pins);  // replaces the cloth's pins; throws InputError for bad indices
+  void set_material(ClothId cloth, const ClothMaterial& material);
+  void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
+  void set_wind(const Wind& wind) { environment_.wind = wind; }
+  void set_contact(bool enabled) { contact_ = enabled; }
+  void set_integrator(const IntegratorSettings& settings);  // throws InputError for an unknown name
+  void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
+
+  /// Advances everything by dt > 0 [s].
+  StepReport step(double dt);
+
+  double time() const { return time_; }  // [s]
+  int num_cloths() const { return static_cast<int>(cloths_.size()); }
+  const std::string& name(ClothId cloth) const { return at(cloth).name; }
+  const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
+  const ClothState& state(ClothId cloth) const { return at(cloth).state; }
+  const std::vector<Collider>& colliders() const { return colliders_; }
+  const Vec3& gravity() const { return environment_.gravity; }
+  const IntegratorSettings& integrator() const { return integrator_settings_; }
+
+  /// Everything that moves; restoring it and stepping again gives the same bits again.
+  struct Snapshot {
+    double time = 0;
+    std::vector<ClothState> states;
+  };
+  Snapshot snapshot() const;
+  void restore(const Snapshot& snapshot);  // of this world: throws InputError if the cloths do not match
+
+  /// Of time, positions and velocities, bit by bit.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct PinnedParticle {
+    int particle, pin;
+    Vec3 anchor;  // where it was when pinned [m]
+  };
+
+  struct Cloth {
+    std::string name;
+    std::shared_ptr<const ClothModel> model;
+    ClothState state;
+    std::vector<Pin> pins;
+    std::vector<PinnedParticle> pinned;  // by ascending particle
+    std::vector<char> is_pinned;         // (num_particles)
+    std::unique_ptr<Integrator> integrator;
+  };
+
+  Cloth& at(ClothId id);
+  const Cloth& at(ClothId id) const;
+  void advance(Cloth& cloth, double dt, StepReport& report);
+  void save(Snapshot& snapshot) const;
+  void aim_pins(const Cloth& cloth, double time);
+
+  double time_ = 0;
+  bool contact_ = true;
+  Environment environment_;  // its pins and contacts are filled in for each cloth
+  IntegratorSettings integrator_settings_;
+  std::shared_ptr<JobSystem> jobs_;
+  std::vector<Cloth> cloths_;
+  std::vector<Collider> colliders_;
+
+  // Work space of step(), kept so that it allocates nothing.
+  ContactResponse contact_response_;
+  std::vector<Pose> poses_;
+  Snapshot before_;
+};
+
+}  // namespace weft

@@ -1,0 +1,263 @@
+/// The program as a shell sees it: exit codes, words and files.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kShippedScenes = WEFT_SOURCE_DIR "/scenes";
+const fs::path kBrokenScenes = WEFT_SOURCE_DIR "/tests/scene/broken";
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+nlohmann::json read_json(const fs::path& file) { return nlohmann::json::parse(read_text(file)); }
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// What a command left behind.
+struct Finished {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// Each test runs in an empty folder of its own.
+class App : public testing::Test {
+ protected:
+  void SetUp() override {
+    const fs::path folder = fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::current_path(folder);
+  }
+
+  /// Runs a shell command, in which "weft" is the program.
+  static Finished shell(const std::string& command) {
+    const std::string line = "weft() { '" WEFT_PROGRAM "' \"$@\"; }\n{ " + command + "\n} > stdout.txt 2> stderr.txt";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text("stdout.txt"), read_text("stderr.txt")};
+  }
+
+  /// Bad input: exit code 2, nothing on standard output, and these words on standard error.
+  static void expect_bad_input(const std::string& command, const std::string& words) {
+    const Finished done = shell(command);
+    EXPECT_EQ(done.exit_code, 2) << command;
+    EXPECT_EQ(done.out, "") << command;
+    EXPECT_TRUE(contains(done.err, words)) << command << "\nsaid: " << done.err << "expected: " << words;
+  }
+};
+
+TEST_F(App, RunWritesAnimationAndReport) {
+  const Finished done = shell("weft run paper/fig6_ball --frames 3 --out results");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err, "") << "no bar where there is no terminal";
+  EXPECT_TRUE(contains(done.out, "results/animation.glb")) << done.out;
+  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+  const nlohmann::json report = read_json("results/report.json");
+  EXPECT_EQ(report["scene"], "paper/fig6_ball");
+  EXPECT_EQ(report["outcome"], "done");
+  EXPECT_EQ(report["frames"], 3);
+}
+
+TEST_F(App, RunTakesAFileAndWritesIntoOutAndTheScenesName) {
+  fs::copy_file(kShippedScenes / "paper/fig6_ball.toml", "mine.toml");
+  EXPECT_EQ(shell("weft run mine.toml --frames 1").exit_code, 0);
+  EXPECT_TRUE(fs::exists("out/mine/animation.glb"));
+  EXPECT_TRUE(fs::exists("out/mine/report.json"));
+}
+
+TEST_F(App, RunReplacesTheFilesOfAnEarlierRun) {
+  fs::create_directories("results");
+  for (const char* file : {"results/animation.glb", "results/report.json", "results/notes.txt"}) {
+    std::ofstream(file) << "written before";
+  }
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results").exit_code, 0);
+  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+  EXPECT_EQ(read_json("results/report.json")["frames"], 1);
+  EXPECT_EQ(read_text("results/notes.txt"), "written before") << "what is not Weft's is left alone";
+}
+
+TEST_F(App, BadInputLeavesTheFilesOfAnEarlierRun) {
+  fs::create_directories("results");
+  for (const char* file : {"results/animation.glb", "results/report.json"}) std::ofstream(file) << "written before";
+  expect_bad_input("weft run paper/fig6_ball --out results --set solver.integrator=magic", "magic");
+  expect_bad_input("weft run paper/fig6_ball --out results --report no/such/folder.json", "no/such/folder.json");
+  EXPECT_EQ(read_text("results/animation.glb"), "written before");
+  EXPECT_EQ(read_text("results/report.json"), "written before");
+}
+
+TEST_F(App, ReportOptionWritesTheReportOnceMore) {
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --report results/copy.json").exit_code, 0);
+  EXPECT_EQ(read_text("results/copy.json"), read_text("results/report.json"));
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --report /dev/stdout | grep -c state_hash").out, "1\n");
+}
+
+TEST_F(App, SetChangesValuesOfTheScene) {
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --set solver.integrator=explicit "
+                  "--set cloth[0].grid.cells='[4, 4]'")
+                .exit_code,
+            0);
+  EXPECT_EQ(read_json("results/report.json")["integrator"], "explicit");
+  EXPECT_EQ(read_json("results/report.json")["particles"], 25);
+}
+
+TEST_F(App, ThreadsDoNotChangeTheResult) {
+  EXPECT_EQ(shell("for t in 1 2; do weft run paper/fig6_ball --frames 2 --threads $t --out $t; done").exit_code, 0);
+  EXPECT_EQ(read_json("1/report.json")["state_hash"], read_json("2/report.json")["state_hash"]);
+  EXPECT_EQ(read_json("2/report.json")["threads"], 2);
+}
+
+TEST_F(App, FailedSimulationExitsWithOneAndSaysWhichClothWhenAndWhy) {
+  const Finished done = shell(
+      "weft run paper/fig3_horizontal_real --out results --set cloth[0].name=sail "
+      "--set solver.integrator=explicit --set solver.explicit.substeps=1");
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  const std::regex expected("failed at frame [0-9]+, cloth \"sail\": .*solver\\.explicit\\.substeps");
+  EXPECT_TRUE(std::regex_search(done.out, expected)) << done.out;
+  EXPECT_EQ(read_json("results/report.json")["outcome"], "failed");
+  EXPECT_TRUE(fs::exists("results/animation.glb")) << "what was done before it failed is kept";
+}
+
+TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
+  const std::string broken = (kBrokenScenes / "typo_in_table_name.toml").string();
+  expect_bad_input("weft run '" + broken + "'", broken + ":5:3: unknown key \"cloht\"; did you mean \"cloth\"?");
+  expect_bad_input("weft run paper/fig6_bal", "did you mean \"paper/fig6_ball\"?");
+  expect_bad_input("weft run .", "there is no scene file");
+  expect_bad_input("weft run", "SCENE");
+  expect_bad_input("weft run paper/fig6_ball --fraims 3", "--fraims");
+  expect_bad_input("weft run paper/fig6_ball --frames 0", "--frames");
+  expect_bad_input("weft run paper/fig6_ball --frames many", "--frames");
+  expect_bad_input("weft run paper/fig6_ball --threads 0", "--threads");
+  expect_bad_input("weft run paper/fig6_ball --set solver", "expected path.to.key=value");
+  expect_bad_input("weft run paper/fig6_ball --set solver.integratr=paper", "did you mean \"integrator\"?");
+  expect_bad_input("weft", "--help");
+  expect_bad_input("weft fly", "--help");
+  expect_bad_input("weft bench integrators --integrators magic", "magic");
+  expect_bad_input("weft bench integrators --sizes 0", "--sizes");
+  expect_bad_input("WEFT_SCENES=no/such/folder weft scenes", "no/such/folder");
+}
+
+TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
+  std::ofstream("file") << "not a folder";
+  fs::create_directories("results/animation.glb/folder");
+  // A million frames take hours. /proc is a folder that nobody may write into, root included.
+  const std::string run = "timeout 60 '" WEFT_PROGRAM "' run paper/fig6_ball --frames 1000000 ";
+  expect_bad_input(run + "--out file", "the folder file cannot be made: Not a directory");
+  expect_bad_input(run + "--out file/results", "the folder file/results cannot be made: Not a directory");
+  expect_bad_input(run + "--out /proc", "/proc/animation.glb cannot be written: ");
+  expect_bad_input(run + "--out results", "results/animation.glb cannot be written: Is a directory");
+  expect_bad_input(run + "--report no/such/report.json", "no/such/report.json cannot be written: No such file");
+  EXPECT_EQ(read_text("file"), "not a folder");
+}
+
+TEST_F(App, InterruptKeepsWhatWasDone) {
+  // After two seconds, which is long after the first frame. The status kept is the program's, not timeout's.
+  const Finished done = shell("timeout --preserve-status --signal=INT 2 '" WEFT_PROGRAM
+                              "' run paper/fig6_ball --frames 1000000 --out results");
+  EXPECT_EQ(done.exit_code, 130);
+  EXPECT_TRUE(contains(done.out, "interrupted: what was done is kept")) << done.out;
+  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+  const nlohmann::json report = read_json("results/report.json");
+  EXPECT_EQ(report["outcome"], "interrupted");
+  EXPECT_GT(report["frames"], 0);
+  EXPECT_EQ(report["lowest_y"].size(), report["frames"]);
+}
+
+TEST_F(App, InterruptSentTwiceInARowCountsOnce) {
+  const Finished done = shell("'" WEFT_PROGRAM
+                              "' run paper/fig6_ball --frames 1000000 --out results & "
+                              "sleep 1; kill -INT $!; sleep 0.02; kill -INT $!; wait $!");
+  EXPECT_EQ(done.exit_code, 130);
+  EXPECT_EQ(read_json("results/report.json")["outcome"], "interrupted");
+}
+
+TEST_F(App, InterruptEndsTheDemo) {
+  const Finished done = shell("timeout --preserve-status --signal=INT 1 '" WEFT_PROGRAM "' demo --out results");
+  EXPECT_EQ(done.exit_code, 130) << done.err;
+  EXPECT_TRUE(contains(done.out, "ms/frame")) << done.out;
+}
+
+TEST_F(App, ScenesListsEverySceneWithItsDescription) {
+  std::set<std::string> expected;
+  for (const auto& entry : fs::recursive_directory_iterator(kShippedScenes)) {
+    if (entry.path().extension() != ".toml") continue;
+    expected.insert(entry.path().lexically_relative(kShippedScenes).replace_extension().generic_string());
+  }
+  ASSERT_GE(expected.size(), 8u);
+
+  const Finished done = shell("weft scenes");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  std::set<std::string> listed;
+  std::istringstream lines(done.out);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, description;
+    words >> name >> description;
+    listed.insert(name);
+    EXPECT_NE(description, "") << name;
+  }
+  EXPECT_EQ(listed, expected);
+}
+
+TEST_F(App, EarlyEndOfAPipeIsHarmless) {
+  const Finished first_line = shell("weft scenes | head -n 1");
+  EXPECT_EQ(first_line.exit_code, 0);
+  EXPECT_EQ(std::count(first_line.out.begin(), first_line.out.end(), '\n'), 1);
+  EXPECT_EQ(first_line.err, "");
+  EXPECT_EQ(shell("weft scenes | true").err, "");
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results | true").err, "");
+  EXPECT_EQ(read_json("results/report.json")["outcome"], "done");
+}
+
+TEST_F(App, CheckFindsEveryShippedSceneGood) {
+  const Finished done = shell("for scene in $(weft scenes | cut -d' ' -f1); do weft check $scene || exit 3; done");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_FALSE(contains(done.out, "warning")) << done.out;
+}
+
+TEST_F(App, CheckListsEveryMistakeWithItsPlace) {
+  const fs::path file = kBrokenScenes / "out_of_range.toml";
+  const Finished done = shell("weft check '" + file.string() + "'");
+  EXPECT_EQ(done.exit_code, 2);
+
+  const std::string mark = "# error: ";  // the file tells what is to be found in it
+  std::string expected;
+  std::istringstream lines(read_text(file));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(mark)) expected += file.string() + ":" + line.substr(mark.size()) + "\n";
+  }
+  EXPECT_GT(std::count(expected.begin(), expected.end(), '\n'), 10);
+  EXPECT_EQ(done.err, expected);
+}
+
+TEST_F(App, TellsItsVersionAndHowToUseIt) {
+  EXPECT_EQ(shell("weft --version").out, WEFT_VERSION "\n");
+  for (const char* command : {"", "run", "demo", "scenes", "check", "bench", "bench integrators"}) {
+    const Finished done = shell(std::string("weft ") + command + " --help");
+    EXPECT_EQ(done.exit_code, 0) << command;
+    EXPECT_TRUE(contains(done.out, "Usage: weft")) << command << done.out;
+  }
+}
+
+TEST_F(App, BenchMeasures) {
+  const Finished done = shell("weft bench integrators --sizes 8 --threads 1 --seconds 0.01 --integrators paper");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "paper")) << done.out;
+}
+
+}  // namespace

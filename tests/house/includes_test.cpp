@@ -1,0 +1,77 @@
+/// The house rule of ARCHITECTURE.md: includes only point down.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each folder of src/weft may include, besides itself.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"core", {}},
+    {"mesh", {"core"}},
+    {"model", {"core", "mesh"}},
+    {"forces", {"core", "mesh", "model"}},
+    {"solvers", {"core"}},
+    {"animation", {"core", "mesh"}},
+    {"contact", {"core", "model", "animation"}},
+    {"integrators", {"core", "model", "forces", "solvers", "contact"}},
+    {"world", {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators"}},
+    {"io", {"core", "mesh", "animation"}},
+    {"scene",
+     {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators", "world", "io"}},
+    {"run",
+     {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators", "world", "io",
+      "scene"}},
+};
+
+/// Folders of weft that a file includes from.
+std::set<std::string> included_folders(const fs::path& file) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]weft/([a-z_]+)/)");
+  std::set<std::string> folders;
+  std::ifstream in(file);
+  std::smatch match;
+  for (std::string line; std::getline(in, line);) {
+    if (std::regex_search(line, match, kInclude)) folders.insert(match[1]);
+  }
+  return folders;
+}
+
+TEST(Includes, OnlyPointDown) {
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(WEFT_SOURCE_DIR) / "src/weft")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string folder = entry.path().parent_path().filename().string();
+    if (folder == "weft") continue;  // weft.h includes everything
+    ++files;
+    ASSERT_TRUE(kMayInclude.contains(folder))
+        << "a new folder: give it its place in ARCHITECTURE.md and here";
+    for (const std::string& target : included_folders(entry.path())) {
+      EXPECT_TRUE(target == folder || kMayInclude.at(folder).contains(target))
+          << entry.path() << " includes from " << target << "/, which is not below " << folder << "/";
+    }
+  }
+  EXPECT_GT(files, 40) << "the test must have looked at the sources";
+}
+
+TEST(Includes, HaveNoCycleInTheRuleItself) {
+  // Each folder stands after all that it may include, in some order: take away those with nothing left below.
+  auto rest = kMayInclude;
+  while (!rest.empty()) {
+    const auto bottom = std::find_if(rest.begin(), rest.end(), [&](const auto& folder) {
+      return std::none_of(folder.second.begin(), folder.second.end(),
+                          [&](const auto& f) { return rest.contains(f); });
+    });
+    ASSERT_NE(bottom, rest.end());
+    rest.erase(bottom);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,46 @@
+# cmake -DBUILD=… -DCONFIG=… -DTREE=… -DWORK=… -DGENERATOR=… -DCXX=… -P package_test.cmake
+#
+# Installs the build folder BUILD, moves what was installed, and uses it in its new place: the program with its scenes,
+# and the library from a project that knows the package alone. TREE is the source tree, WORK a folder for the results.
+
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+file(REMOVE_RECURSE ${WORK})
+run(output ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${WORK}/installed)
+set(prefix ${WORK}/moved)
+file(RENAME ${WORK}/installed ${prefix})
+
+# Nothing in the package leads back to where it was built.
+file(GLOB_RECURSE package_files ${prefix}/*.cmake)
+expect("${package_files}" "weft-config.cmake" "the package is not installed")
+foreach(file IN LISTS package_files)
+  file(READ ${file} text)
+  foreach(place IN ITEMS ${TREE} ${BUILD} ${WORK}/installed)
+    string(FIND "${text}" "${place}" found)
+    if(NOT found EQUAL -1)
+      message(FATAL_ERROR "${file} names ${place}")
+    endif()
+  endforeach()
+endforeach()
+
+# The program finds the scenes beside it, not those of the source tree: one of these exists nowhere else.
+unset(ENV{WEFT_SCENES})
+set(scenes ${prefix}/share/weft/scenes)
+file(COPY_FILE ${scenes}/paper/fig6_ball.toml ${scenes}/only_here.toml)
+run(output ${prefix}/bin/weft scenes)
+expect("${output}" "only_here " "the installed program does not list the installed scenes")
+run(output ${prefix}/bin/weft run only_here --frames 2 --out ${WORK}/run)
+file(READ ${WORK}/run/report.json program_report)
+
+# The library.
+run(output ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/consumer -G ${GENERATOR}
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_PREFIX_PATH=${prefix})
+run(output ${CMAKE_COMMAND} --build ${WORK}/consumer --config ${CONFIG} --parallel 2)
+run(output ${WORK}/consumer/bin/hello)
+expect("${output}" "^lowest point: -[01]\\.[0-9]+ m\n$" "the program printed in weft.h does not do what it says")
+run(consumer_report ${WORK}/consumer/bin/run_scene)
+foreach(report IN ITEMS program_report consumer_report)
+  string(JSON ${report}_hash GET "${${report}}" state_hash)
+endforeach()
+expect("${consumer_report_hash}" "^${program_report_hash}$" "the library and the program differ in the state's hash")

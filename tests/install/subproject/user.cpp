@@ -1,0 +1,3 @@
+#include "weft/weft.h"
+
+int main() { weft::World().step(1.0 / 60); }

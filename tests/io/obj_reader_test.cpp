@@ -1,0 +1,248 @@
+#include "weft/io/obj_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <string>
+
+#include "weft/core/angle.h"
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+const std::string kFourVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TriangleMesh parse(const std::string& text) { return parse_obj(text, "x.obj").mesh; }
+
+/// The message that reading the text fails with.
+std::string failure(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+double total_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (int t = 0; t < mesh.num_triangles(); ++t) area += triangle_area(mesh, t);
+  return area;
+}
+
+std::string polygon_text(const std::vector<Vec3>& corners) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& x : corners) text << "v " << x.transpose() << '\n';
+  text << 'f';
+  for (size_t k = 1; k <= corners.size(); ++k) text << ' ' << k;
+  return text.str();
+}
+
+// ---- What is read ----
+
+TEST(ObjReader, KeepsTheFilesVertexOrder) {
+  const TriangleMesh mesh = parse("v 9 9 9\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 2\nv 7 7 7\n");
+  ASSERT_EQ(mesh.num_vertices(), 6);  // unused and repeated ones too
+  EXPECT_EQ(mesh.positions[0], Vec3(9, 9, 9));
+  EXPECT_EQ(mesh.positions[5], Vec3(7, 7, 7));
+  ASSERT_EQ(mesh.num_triangles(), 1);
+  EXPECT_EQ(mesh.triangles[0], (Triangle{3, 4, 1}));
+}
+
+TEST(ObjReader, ReadsAllFormsOfFaceCorners) {
+  for (const std::string face : {"f 1 2 3", "f 1/7 2/8 3/9", "f 1//7 2//8 3//9", "f 1/1/1 2/2/2 3/3/3"}) {
+    EXPECT_EQ(parse(kFourVertices + face).triangles[0], (Triangle{0, 1, 2})) << face;
+  }
+}
+
+TEST(ObjReader, CountsNegativeIndicesBackwardsFromTheFace) {
+  const TriangleMesh mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -1 -4 -2\n");
+  EXPECT_EQ(mesh.triangles[0], (Triangle{0, 1, 2}));
+  EXPECT_EQ(mesh.triangles[1], (Triangle{3, 0, 2}));
+}
+
+TEST(ObjReader, AllowsFacesBeforeTheirVertices) {
+  EXPECT_EQ(parse("f 1 2 3\n" + kFourVertices).triangles[0], (Triangle{0, 1, 2}));
+}
+
+TEST(ObjReader, PassesOverWeightsAndColours) {
+  const TriangleMesh mesh = parse("v 1 2 3 1\nv 4 5 6 0.1 0.2 0.3\nv 7 8 +9e0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions[0], Vec3(1, 2, 3));
+  EXPECT_EQ(mesh.positions[1], Vec3(4, 5, 6));
+  EXPECT_EQ(mesh.positions[2], Vec3(7, 8, 9));
+}
+
+TEST(ObjReader, TakesAnyLayoutOfLines) {
+  const std::vector<std::string> texts = {
+      "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",                 // Windows
+      "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",                         // old Macintosh
+      "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3",               // byte order mark, no end of line
+      "\tv\t0\t0  0 \n\n  v 1 0 0\nv 0 1 0\n\n\nf\t1 2 3\t\n",        // blanks
+      "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2\\\r\n \\\n 3\n",          // continued lines
+      "# a\\\nv 0 0 0 # here\nv 1 0 0#\nv 0 1 0\nf 1 2 3 # f 9 9 9",  // comments
+  };
+  for (const std::string& text : texts) {
+    const TriangleMesh mesh = parse(text);
+    ASSERT_EQ(mesh.num_vertices(), 3) << text;
+    EXPECT_EQ(mesh.positions[1], Vec3(1, 0, 0)) << text;
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << text;
+  }
+}
+
+TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
+  const ObjMesh known = parse_obj(
+      "mtllib a.mtl\no a\ng b\ns off\nusemtl c\nvn 0 0 1\nvt 0 0\n" + kFourVertices + "f 1 2 3\nl 1 2\np 1\n",
+      "x.obj");
+  EXPECT_TRUE(known.warnings.empty());
+
+  // As the garment files of Berkeley: `t` is no face, `vv` no vertex.
+  const ObjMesh garment = parse_obj("v 0 0 0\nvv 0 0 0\nv 1 0 0\nvv 1 0 0\nv 0 1 0\nf 1 2 3\nt 0\n", "x.obj");
+  ASSERT_EQ(garment.warnings.size(), 2u);
+  EXPECT_EQ(garment.warnings[0], "x.obj:7: unknown keyword 't' was passed over; it begins 1 lines");
+  EXPECT_EQ(garment.warnings[1], "x.obj:2: unknown keyword 'vv' was passed over; it begins 2 lines");
+  EXPECT_EQ(garment.mesh.num_vertices(), 3);
+}
+
+TEST(ObjReader, TellsFewOfVeryManyUnknownKeywords) {
+  std::string text = kFourVertices + "f 1 2 3\n";
+  for (int k = 0; k < 1000; ++k) text += "word" + std::to_string(k) + "\n";
+  EXPECT_EQ(parse_obj(text, "x.obj").warnings.size(), 9u);
+}
+
+// ---- Polygons ----
+
+TEST(ObjReader, CutsQuadsAlongTheShorterDiagonal) {
+  const TriangleMesh mesh = parse("v 0 0 0\nv 3 0 0\nv 4 1 0\nv 1 1 0\nf 1 2 3 4\n");
+  ASSERT_EQ(mesh.num_triangles(), 2);
+  for (const Triangle& triangle : mesh.triangles) {
+    EXPECT_TRUE(std::find(triangle.begin(), triangle.end(), 1) != triangle.end());
+    EXPECT_TRUE(std::find(triangle.begin(), triangle.end(), 3) != triangle.end());
+  }
+}
+
+TEST(ObjReader, CutsAnArrowheadThroughItsNotchThoughThatIsTheLongerDiagonal) {
+  const TriangleMesh mesh = parse("v 0 30 0\nv -2 -1 0\nv 0 0 0\nv 2 -1 0\nf 1 2 3 4\n");
+  EXPECT_DOUBLE_EQ(total_area(mesh), 60);
+}
+
+TEST(ObjReader, CutsConcavePolygonsWithoutOverlapAnywhereInSpace) {
+  std::mt19937 random(1);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (int trial = 0; trial < 500; ++trial) {
+    const int n = 4 + trial % 9;
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5, uniform()).normalized();
+    const Vec3 offset(10 * uniform() - 5, 10 * uniform() - 5, 10 * uniform() - 5);
+    std::vector<Vec3> corners;
+    Vec3 area = Vec3::Zero();
+    for (int k = 0; k < n; ++k) {  // a star with rays of random length
+      const SinCos angle = sin_cos_deg(360.0 * (k + 0.3 * uniform()) / n);
+      corners.push_back(offset + turn * (Vec3(angle.cos, angle.sin, 0) * (0.2 + uniform())));
+    }
+    for (int k = 0; k < n; ++k) area += 0.5 * (corners[k] - offset).cross(corners[(k + 1) % n] - offset);
+    const TriangleMesh mesh = parse(polygon_text(corners));
+    ASSERT_EQ(mesh.num_triangles(), n - 2);
+    EXPECT_NEAR(total_area(mesh), area.norm(), 1e-12 * n);  // round-off; an overlap would add to it
+  }
+}
+
+TEST(ObjReader, CutsPolygonsWithStraightCornersIntoTrianglesWithArea) {
+  const TriangleMesh mesh = parse(
+      "v 0 0 5\nv 1 0 5\nv 2 0 5\nv 2 1 5\nv 2 2 5\nv 1 2 5\nv 0 2 5\nv 0 1 5\n"
+      "f 1 2 3 4 5 6 7 8\n");
+  ASSERT_EQ(mesh.num_triangles(), 6);
+  EXPECT_DOUBLE_EQ(total_area(mesh), 4);
+  for (int t = 0; t < mesh.num_triangles(); ++t) EXPECT_GT(triangle_area(mesh, t), 0.1);
+}
+
+TEST(ObjReader, SurvivesPolygonsThatAreNone) {
+  EXPECT_EQ(parse(kFourVertices + "f 1 1 1 1 1\n").num_triangles(), 3);    // one point
+  EXPECT_EQ(parse(kFourVertices + "f 1 2 1 2 1 2\n").num_triangles(), 4);  // one edge
+  EXPECT_EQ(parse(kFourVertices + "f 1 3 2 4\n").num_triangles(), 2);      // crosses itself
+  EXPECT_EQ(parse("v 1e300 0 0\nv 0 1e300 0\nv 0 0 1e300\nv 1 1 1\nf 1 2 3 4").num_triangles(),
+            2);  // overflow
+}
+
+// ---- What is refused ----
+
+TEST(ObjReader, NamesTheLineOfWhatItRefuses) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"v 0 0 0\nv 1 nan 0\n", "x.obj:2: 'nan' is not a coordinate; expected a finite number"},
+      {"v 0 0 inf\n", "x.obj:1: 'inf'"},
+      {"v 0 0 1e999\n", "x.obj:1: '1e999'"},
+      {"\n\nv 0 0 1,5\n", "x.obj:3: '1,5'"},
+      {"v 0 0\n", "x.obj:1: a vertex with 2 coordinates; expected v X Y Z with three numbers"},
+      {"v\n", "x.obj:1: a vertex with 0 coordinates"},
+      {kFourVertices + "f 1 2\n", "x.obj:5: a face with 2 vertices; expected three or more"},
+      {kFourVertices + "f 1 2 \\\n\n", "x.obj:5: a face with 2 vertices"},
+      {kFourVertices + "f 1 2 5\n", "x.obj:5: vertex 5 does not exist; expected at most 4"},
+      {kFourVertices + "f 1 2 -5\n", "x.obj:5: vertex -5 does not exist; 4 vertices come before this face"},
+      {kFourVertices + "f 0 1 2\n", "x.obj:5: '0' is not a vertex of a face"},
+      {kFourVertices + "f 1 2 x\n", "x.obj:5: 'x' is not a vertex of a face"},
+      {kFourVertices + "f 1 2 /3\n", "x.obj:5: '/3' is not a vertex of a face"},
+      {kFourVertices + "f 1 2 3.5\n", "x.obj:5: '3.5' is not a vertex of a face"},
+      {kFourVertices + "f 1 2 4294967297\n", "x.obj:5: vertex 4294967297 does not exist"},
+      {kFourVertices + "f 1 2 99999999999999999999\n", "x.obj:5: '99999999999999999999' is not a vertex"},
+      {"", "x.obj: there are no vertices; expected lines v X Y Z"},
+      {"solid stl\n", "x.obj: there are no vertices"},
+      {kFourVertices, "x.obj: there are no faces; expected lines f A B C"},
+  };
+  for (const auto& [text, message] : cases) EXPECT_EQ(failure(text).rfind(message, 0), 0u) << failure(text);
+}
+
+TEST(ObjReader, RefusesFoldersAndMissingFiles) {
+  EXPECT_THROW(read_obj(testing::TempDir()), InputError);
+  EXPECT_THROW(read_obj(testing::TempDir() + "no_such_file.obj"), InputError);
+}
+
+TEST(ObjReader, EndsInAMeshOrAnInputErrorOnDamagedText) {
+  const std::string sound =
+      kFourVertices + "vn 0 0 1\nf 1 2 3\nf 1//1 2//1 3//1 4//1\nf -1 -2 -3 \\\n-4\no a\n";
+  const std::string letters = "vf 0123456789-+./\\#\n\r\te\xEF\xFF";
+  std::mt19937 random(1);
+  int num_read = 0;
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::string text = sound;
+    for (int k = 0; k < 1 + trial % 5; ++k) text[random() % text.size()] = letters[random() % letters.size()];
+    try {
+      const TriangleMesh mesh = parse(text);
+      ++num_read;
+      for (const Triangle& triangle : mesh.triangles) {
+        for (const int v : triangle) ASSERT_TRUE(0 <= v && v < mesh.num_vertices()) << text;
+      }
+    } catch (const InputError&) {
+    }
+  }
+  EXPECT_GT(num_read, 500);  // the damage is often harmless
+}
+
+// ---- Writing ----
+
+TEST(ObjWriter, WritesWhatReadsBackToTheLastBit) {
+  TriangleMesh mesh;
+  mesh.positions = {{0.1, -1.0 / 3, 1e-300}, {1e22, 2, 5e-324}, {0, 123456789.123456789, -7}};
+  mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
+  const std::string file = testing::TempDir() + "weft_round_trip.obj";
+  write_obj(file, mesh);
+  const ObjMesh read = read_obj(file);
+  EXPECT_EQ(read.mesh.positions, mesh.positions);
+  EXPECT_EQ(read.mesh.triangles, mesh.triangles);
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(ObjWriter, CountsTheVerticesOfSeveralObjectsOn) {
+  const TriangleMesh mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string file = testing::TempDir() + "weft_objects.obj";
+  write_obj(file, {{"a", mesh}, {"b", mesh}});
+  EXPECT_EQ(read_obj(file).mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+}
+
+TEST(ObjWriter, RefusesAFolderThatDoesNotExist) {
+  EXPECT_THROW(write_obj(testing::TempDir() + "no_such_folder/x.obj", TriangleMesh{}), InputError);
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,98 @@
+#include "weft/mesh/clean.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+const TriangleMesh kSquare{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {2, 1, 3}}};
+
+bool has_warning(const CleanMesh& clean, const std::string& words) {
+  for (const std::string& warning : clean.warnings) {
+    if (warning.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(CleanMesh, LeavesAGoodMeshAsItIs) {
+  const CleanMesh clean = clean_mesh(kSquare);
+  EXPECT_EQ(clean.mesh.positions, kSquare.positions);
+  EXPECT_EQ(clean.mesh.triangles, kSquare.triangles);
+  EXPECT_TRUE(clean.warnings.empty());
+}
+
+TEST(CleanMesh, RefusesWhatIsNotANumber) {
+  TriangleMesh mesh = kSquare;
+  mesh.positions[2].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(clean_mesh(mesh), InputError);
+  mesh.positions[2].y() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(clean_mesh(mesh), InputError);
+}
+
+TEST(CleanMesh, RefusesIndicesOutOfRangeAndEmptyMeshes) {
+  TriangleMesh mesh = kSquare;
+  mesh.triangles[1][2] = 4;
+  EXPECT_THROW(clean_mesh(mesh), InputError);
+  mesh.triangles[1][2] = -1;
+  EXPECT_THROW(clean_mesh(mesh), InputError);
+  EXPECT_THROW(clean_mesh({}), InputError);
+  EXPECT_THROW(clean_mesh({kSquare.positions, {}}), InputError);
+}
+
+TEST(CleanMesh, DropsTrianglesWithoutAreaByName) {
+  TriangleMesh mesh = kSquare;
+  mesh.positions.push_back({2, 0, 0});
+  mesh.triangles.push_back({0, 0, 1});  // a repeated corner
+  mesh.triangles.push_back({0, 1, 4});  // three on a line
+  const CleanMesh clean = clean_mesh(mesh);
+  EXPECT_EQ(clean.mesh.num_triangles(), 2);
+  EXPECT_TRUE(has_warning(clean, "2 triangles without area"));
+  EXPECT_TRUE(has_warning(clean, "1 vertices without triangles"));
+  EXPECT_THROW(clean_mesh({kSquare.positions, {{0, 0, 1}}}), InputError);
+}
+
+TEST(CleanMesh, DropsRepeatedTrianglesAndIsolatedVertices) {
+  TriangleMesh mesh = kSquare;
+  mesh.positions.insert(mesh.positions.begin(), Vec3(5, 5, 5));
+  for (Triangle& tri : mesh.triangles) {
+    for (int& v : tri) ++v;
+  }
+  mesh.triangles.push_back({2, 3, 1});  // the first again, turned
+  const CleanMesh clean = clean_mesh(mesh);
+  EXPECT_EQ(clean.mesh.positions, kSquare.positions);
+  EXPECT_EQ(clean.mesh.triangles, kSquare.triangles);
+  EXPECT_EQ(clean.vertex_of_source, (std::vector<int>{-1, 0, 1, 2, 3}));
+  EXPECT_TRUE(has_warning(clean, "repeat"));
+  EXPECT_TRUE(has_warning(clean, "without triangles"));
+}
+
+TEST(CleanMesh, TellsOfSeamsAndSewsThemOnRequest) {
+  // Two squares side by side with a doubled edge at x = 1, one of its vertices a little off.
+  TriangleMesh mesh = kSquare;
+  for (const Vec3& p : kSquare.positions) mesh.positions.push_back(p + Vec3(1, 0, 0));
+  for (const auto& [a, b, c] : kSquare.triangles) mesh.triangles.push_back({a + 4, b + 4, c + 4});
+  mesh.positions[6].z() = 1e-7;
+  EXPECT_TRUE(has_warning(clean_mesh(mesh), "1 vertices lie exactly on another one"));
+
+  const CleanMesh sewn = clean_mesh(mesh, {.weld_distance = 1e-6});
+  EXPECT_EQ(sewn.mesh.num_vertices(), 6);
+  EXPECT_EQ(sewn.mesh.num_triangles(), 4);
+  EXPECT_EQ(sewn.vertex_of_source[4], 1);
+  EXPECT_EQ(sewn.vertex_of_source[6], 3);
+  EXPECT_EQ(sewn.mesh.positions[3], kSquare.positions[3]) << "the lowest index keeps its place";
+  EXPECT_TRUE(sewn.warnings.empty());
+}
+
+TEST(CleanMesh, NamesNonManifoldEdges) {
+  TriangleMesh mesh = kSquare;
+  mesh.positions.push_back({0.5, 0.5, 1});
+  mesh.triangles.push_back({1, 2, 4});
+  EXPECT_TRUE(has_warning(clean_mesh(mesh), "1 edges belong to more than two triangles"));
+}
+
+}  // namespace
+}  // namespace weft

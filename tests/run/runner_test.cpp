@@ -1,0 +1,168 @@
+#include "weft/run/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "weft/core/error.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft {
+namespace {
+
+SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
+  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
+}
+
+bool warns(const RunReport& report, const std::string& words) {
+  for (const std::string& warning : report.warnings) {
+    if (warning.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Half a second of each of the paper's scenes: the same bits on every machine, for any number of threads,
+/// debug and release. A change here means that the motion of existing scenes has changed: say so in
+/// CHANGELOG.md.
+const std::map<std::string, std::string> kHashes = {
+    {"paper/fig3_horizontal", "3d813bc4f911725d"},
+    {"paper/fig4_vertical", "86d15ba11c648be0"},
+    {"paper/fig5_falling", "4850df5bbcd652d1"},
+    {"paper/fig6_ball", "779762334eaaf9fd"},
+};
+
+TEST(PaperScenes, HaveTheSameBitsEverywhere) {
+  for (const auto& [name, hash] : kHashes) {
+    for (const int threads : {1, 2}) {
+      const RunResult result =
+          run_scene(shipped(name), {.frames = 30, .threads = threads, .record_animation = false});
+      EXPECT_EQ(result.report.state_hash, hash) << name << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST(PaperScenes, TwinsHaveTheSameBitsEverywhere) {
+  // Smaller and shorter: the sparse Cholesky of a debug build is slow. What is tested is the arithmetic.
+  const SceneDesc scene = shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"});
+  for (const int threads : {1, 2}) {
+    const RunResult result = run_scene(scene, {.frames = 20, .threads = threads, .record_animation = false});
+    EXPECT_EQ(result.report.state_hash, "f5770a82f2b2de52") << threads;
+  }
+}
+
+TEST(PaperScenes, KeepTheStiffnessNumberAtOneOrBelow) {
+  for (const auto& [name, hash] : kHashes) {
+    const RunResult result = run_scene(shipped(name), {.frames = 1, .record_animation = false});
+    EXPECT_FALSE(warns(result.report, "too stiff")) << name;
+  }
+}
+
+TEST(PaperScenes, BallKeepsEveryParticleOutside) {
+  const RunResult paper = run_scene(shipped("paper/fig6_ball"), {.record_animation = false});
+  ASSERT_TRUE(paper.report.penetration_max.has_value());
+  EXPECT_EQ(*paper.report.penetration_max, 0);
+  EXPECT_EQ(paper.report.outcome, RunOutcome::done);
+  EXPECT_EQ(paper.report.frames, 180);
+
+  const RunResult twin = run_scene(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[31, 31]"}),
+                                   {.frames = 90, .record_animation = false});
+  EXPECT_EQ(*twin.report.penetration_max, 0);
+}
+
+TEST(PaperScenes, FallFreelyForTheFirstSixtyCentimetres) {
+  // From its lowest corner the tilted sheet falls as Eq. 16 lets it: between the factors of a = a_max and of
+  // none.
+  const SceneDesc scene = shipped("paper/fig5_falling");
+  const RunResult result = run_scene(scene, {.frames = 20, .record_animation = false});
+  const std::vector<double>& y = result.report.lowest_y;
+  const double t = 19.0 / 60, fallen = y[0] - y[19];
+  EXPECT_GT(fallen, 0.5);
+  const double v0 = 9.81 / 60;
+  EXPECT_NEAR(fallen, v0 * t + 0.5 * 9.81 * t * t, 0.06 * fallen);
+}
+
+TEST(Runner, WarnsOfThePapersFrozenClothWithTheEffectiveGravity) {
+  const RunResult result = run_scene(shipped("paper/fig3_horizontal_real", {"solver.integrator=paper"}),
+                                     {.frames = 1, .record_animation = false});
+  EXPECT_TRUE(warns(result.report, "too stiff for the paper's Eq. 16"));
+  EXPECT_TRUE(warns(result.report, "of gravity"));
+}
+
+TEST(Runner, RecordsTheStartAndEveryFrame) {
+  const RunResult result = run_scene(shipped("paper/fig6_ball"), {.frames = 5});
+  ASSERT_EQ(result.animation.cloths.size(), 1u);
+  EXPECT_EQ(result.animation.cloths[0].frames.size(), 6u);
+  EXPECT_EQ(result.animation.cloths[0].frames[0].size(), 3u * 33 * 33);
+  ASSERT_EQ(result.animation.bodies.size(), 1u);
+  EXPECT_EQ(result.report.lowest_y.size(), 5u);
+  EXPECT_EQ(result.report.kinetic_energy.size(), 5u);
+}
+
+TEST(Runner, KeepsWhatWasDoneWhenInterrupted) {
+  const RunResult result =
+      run_scene(shipped("paper/fig6_ball"), {.frames = 50}, [](const Progress& p) { return p.frame < 7; });
+  EXPECT_EQ(result.report.outcome, RunOutcome::interrupted);
+  EXPECT_EQ(result.report.frames, 7);
+  EXPECT_EQ(result.animation.cloths[0].frames.size(), 8u);
+}
+
+TEST(Runner, TellsWhichClothFailedWhenAndWhatToDo) {
+  const RunResult result =
+      run_scene(shipped("paper/fig3_horizontal_real",
+                        {"solver.integrator=explicit", "solver.explicit.substeps=1", "cloth[0].name=sail"}),
+                {.frames = 200, .record_animation = false});
+  EXPECT_EQ(result.report.outcome, RunOutcome::failed);
+  EXPECT_NE(result.report.failure.find("frame "), std::string::npos);
+  EXPECT_NE(result.report.failure.find("sail"), std::string::npos);
+  EXPECT_NE(result.report.failure.find("substeps"), std::string::npos);
+}
+
+TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
+  const RunResult result =
+      run_scene(shipped("paper/fig3_horizontal"), {.frames = 3, .record_animation = false});
+  const nlohmann::json json = nlohmann::json::parse(to_json(result.report));
+  for (const char* key : {"scene",        "integrator",      "particles",         "triangles",
+                          "springs",      "frames",          "seconds_simulated", "threads",
+                          "version",      "ms_per_frame",    "cpu_ms_per_frame",  "max_strain",
+                          "min_strain",   "mean_strain",     "kinetic_energy",    "potential_energy",
+                          "lowest_y",     "penetration_max", "intersections",     "infeasible",
+                          "guard_events", "state_hash",      "warnings"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_GT(json["ms_per_frame"]["median"], 0);
+  EXPECT_GE(json["ms_per_frame"]["p95"], json["ms_per_frame"]["median"]);
+  for (const char* key : {"intersections", "infeasible", "guard_events"})
+    EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_TRUE(json["penetration_max"].is_null()) << "there is no collider in this scene";
+  EXPECT_EQ(json["particles"], 33 * 33);
+  EXPECT_EQ(json["triangles"], 2 * 32 * 32);
+  EXPECT_EQ(json["springs"], 2 * 33 * 32 + 32 * 32 + 2 * 33 * 31);
+  EXPECT_NEAR(json["seconds_simulated"], 0.05, 1e-12);
+}
+
+TEST(Report, EnergyOfFallingClothIsThatOfItsWeight) {
+  const RunResult result = run_scene(shipped("paper/fig5_falling", {"solver.integrator=explicit"}),
+                                     {.frames = 20, .record_animation = false});
+  const auto& k = result.report.kinetic_energy;
+  const auto& p = result.report.potential_energy;
+  EXPECT_NEAR(k[19] + p[19], k[0] + p[0], 2e-3 * p[0]) << "nothing but gravity works on it";
+  const double v = 9.81 / 3;  // after a third of a second
+  EXPECT_NEAR(k[19], 0.5 * 0.2 * v * v, 1e-3);
+}
+
+TEST(Report, QuantilesAreNearestRanks) {
+  EXPECT_EQ(quantile({}, 0.5), 0);
+  EXPECT_EQ(quantile({3}, 0.95), 3);
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 0.5), 2);
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 0.95), 4);
+}
+
+TEST(Report, CannotBeWrittenIntoAMissingFolder) {
+  EXPECT_THROW(write_report("/nonexistent/folder/report.json", {}), InputError);
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,85 @@
+#include "weft/scene/scene_library.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "weft/core/error.h"
+#include "weft/scene/nearest_name.h"
+
+namespace weft {
+namespace {
+
+const std::filesystem::path kScenes = WEFT_SOURCE_DIR "/scenes";
+
+/// $WEFT_SCENES while the test runs.
+class SceneLibrary : public testing::Test {
+ protected:
+  void SetUp() override { set_folder(kScenes); }
+  void TearDown() override { unsetenv("WEFT_SCENES"); }
+
+  static void set_folder(const std::filesystem::path& folder) { setenv("WEFT_SCENES", folder.c_str(), 1); }
+
+  static std::string failure(const std::string& name) {
+    try {
+      find_scene(name);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+TEST_F(SceneLibrary, FindsScenesByName) {
+  EXPECT_EQ(find_scene("paper/fig6_ball"), kScenes / "paper" / "fig6_ball.toml");
+}
+
+TEST_F(SceneLibrary, PrefersFilesThatExist) {
+  const std::string file = WEFT_SOURCE_DIR "/tests/scene/broken/no_cloth.toml";
+  EXPECT_EQ(find_scene(file), file);
+}
+
+TEST_F(SceneLibrary, ListsScenesByName) {
+  const std::vector<ShippedScene> scenes = list_scenes();
+  ASSERT_GE(scenes.size(), 8u);
+  for (std::size_t i = 1; i < scenes.size(); ++i) EXPECT_LT(scenes[i - 1].name, scenes[i].name);
+}
+
+TEST_F(SceneLibrary, NamesTheNearestScene) {
+  const std::string meant = "did you mean \"paper/fig6_ball\"?";
+  EXPECT_NE(failure("paper/fig6_bal").find(meant), std::string::npos);
+  EXPECT_NE(failure("fig6_ball").find(meant), std::string::npos);
+  EXPECT_NE(failure("something else").find("there are "), std::string::npos);
+}
+
+TEST_F(SceneLibrary, FolderFromTheEnvironmentMustExist) {
+  set_folder("no/such/folder");
+  EXPECT_THROW(scene_folder(), InputError);
+}
+
+TEST_F(SceneLibrary, FallsBackToTheSourceTree) {
+  unsetenv("WEFT_SCENES");
+  EXPECT_TRUE(std::filesystem::equivalent(scene_folder(), kScenes));
+}
+
+TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
+  EXPECT_EQ(edit_distance("density", "density", 3), 0);
+  EXPECT_EQ(edit_distance("denisty", "density", 3), 1);
+  EXPECT_EQ(edit_distance("desity", "density", 3), 1);
+  EXPECT_EQ(edit_distance("densityy", "density", 3), 1);
+  EXPECT_EQ(edit_distance("dansity", "density", 3), 1);
+  EXPECT_EQ(edit_distance("", "abc", 3), 3);
+  EXPECT_EQ(edit_distance("abcdef", "uvwxyz", 3), 4);
+}
+
+TEST(NearestName, KeepsSilentWhereNothingIsNear) {
+  const std::vector<std::string> names = {"grid", "mesh", "g", "color"};
+  EXPECT_EQ(find_nearest("gird", names), "grid");
+  EXPECT_EQ(find_nearest("colour", names), "color");
+  EXPECT_EQ(find_nearest("h", names), "");
+  EXPECT_EQ(find_nearest("elephant", names), "");
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,63 @@
+#pragma once
+/// What several tests need: small cloths, chains, random motion.
+
+#include <memory>
+#include <vector>
+
+#include "weft/core/random.h"
+#include "weft/integrators/integrator.h"
+#include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
+#include "weft/world/world.h"
+
+namespace weft::test {
+
+inline Vec3 random_vector(Random& random, double size) {
+  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+}
+
+/// A square grid of the given cells and size.
+inline Grid square(int cells, double size = 1) {
+  return {.size_x = size, .size_z = size, .cells_x = cells, .cells_z = cells};
+}
+
+/// The grid's cloth as a triangle mesh: same particles, springs on every edge.
+inline std::shared_ptr<const ClothTopology> mesh_of(const Grid& grid) {
+  return build_mesh_topology(build_grid_mesh(grid, GridDiagonals::alternating));
+}
+
+/// Shaken positions and velocities, the same for every call.
+inline void shake(ClothState& state, double displacement, double speed, std::uint64_t seed = 1) {
+  Random random(seed);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    state.x.set(i, state.x.get(i) + random_vector(random, displacement));
+    state.v.set(i, state.v.get(i) + random_vector(random, speed));
+  }
+}
+
+/// A chain of particles at the given places, each of the given mass (density 1), joined by structural springs
+/// of the given rest length.
+inline std::shared_ptr<const ClothTopology> chain(const std::vector<Vec3>& places, double mass,
+                                                  double rest_length) {
+  auto topology = std::make_shared<ClothTopology>();
+  topology->mesh.positions = places;
+  topology->area.assign(places.size(), mass);
+  for (int i = 0; i + 1 < static_cast<int>(places.size()); ++i) {
+    topology->springs.push_back({i, i + 1, SpringKind::structural, rest_length});
+  }
+  topology->table = build_neighbour_table(topology->num_particles(), topology->springs);
+  return topology;
+}
+
+/// Steps an integrator without a world: no substeps, no contact.
+inline void advance(Integrator& integrator, const ClothModel& model, const Environment& environment,
+                    double step, int num_steps, ClothState& state) {
+  const auto jobs = make_serial_jobs();
+  for (int s = 0; s < num_steps; ++s) integrator.advance(model, environment, step, *jobs, state);
+}
+
+inline std::unique_ptr<Integrator> integrator(std::string_view name) {
+  return make_integrator({.integrator = std::string(name)});
+}
+
+}  // namespace weft::test

@@ -1,0 +1,46 @@
+/// Steps of the fast integrators allocate no memory once they have begun.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/support.h"
+
+namespace {
+std::atomic<long> g_allocations{0};
+}
+
+// Not inlined, or g++ sees free() meet memory of what it still takes for its own operator new, and warns.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++g_allocations;
+  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace weft {
+namespace {
+
+TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
+  for (const char* name : {"explicit", "paper", "paper_fixed"}) {
+    for (const auto& topology :
+         {build_grid_topology(test::square(12), SpringModel::simplified), test::mesh_of(test::square(12))}) {
+      World world;
+      world.set_integrator({.integrator = name});
+      world.add_collider({"ball", Sphere{{0.5, -0.1, 0.5}, 0.1}, 0.3, {}});
+      const ClothId cloth =
+          world.add_cloth({.topology = topology, .material = {.structural = 20, .shear = 10}});
+      world.set_pins(cloth, {{.particles = {0, 12}, .motion = RigidMotion({{.time = 0}, {.time = 1}})}});
+      for (int s = 0; s < 3; ++s) ASSERT_TRUE(world.step(1.0 / 600).ok);
+      const long before = g_allocations;
+      for (int s = 0; s < 100; ++s) world.step(1.0 / 600);
+      EXPECT_EQ(g_allocations - before, 0) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Installs the Debian/Ubuntu packages that Weft needs and that are missing. --fuzz adds those for `make fuzz`.
+# Does nothing, and needs no rights, where nothing is missing.
+set -euo pipefail
+
+packages=(
+  cmake g++ make          # building
+  libeigen3-dev           # small vectors and matrices, sparse Cholesky
+  libtbb-dev              # threads
+  libtinygltf-dev         # glTF out
+  libtomlplusplus-dev     # scene files
+  libfmt-dev              # words
+  nlohmann-json3-dev      # reports
+  libcli11-dev            # the command line
+  libgtest-dev            # tests
+)
+if [ "${1:-}" = --fuzz ]; then packages+=(clang libclang-rt-dev); fi
+
+is_installed() { dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q '^install ok installed$'; }
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "This is not Debian or Ubuntu: please install what these packages hold by your system's means:" >&2
+  echo "  ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do is_installed "$package" || missing+=("$package"); done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+  as_root=()
+elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+  as_root=(sudo)
+else
+  echo "Missing packages: ${missing[*]}" >&2
+  echo "Neither root nor sudo is at hand. Ask somebody who is root to run:" >&2
+  echo "  apt-get install ${missing[*]}" >&2
+  exit 1
+fi
+
+echo "Installing: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
