@@ -16,20 +16,24 @@ namespace fs = std::filesystem;
 /// What each folder of src/weft may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"core", {}},
-    {"mesh", {"core"}},
+    {"geometry", {"core"}},
+    {"mesh", {"core", "geometry"}},
     {"model", {"core", "mesh"}},
-    {"forces", {"core", "mesh", "model"}},
+    {"forces", {"core", "geometry", "mesh", "model"}},
     {"solvers", {"core"}},
     {"animation", {"core", "mesh"}},
-    {"contact", {"core", "model", "animation"}},
+    {"contact", {"core", "geometry", "mesh", "model", "animation"}},
     {"integrators", {"core", "model", "forces", "solvers", "contact"}},
-    {"world", {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators"}},
+    {"world",
+     {"core", "geometry", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators"}},
+    {"verify", {"core", "mesh"}},
     {"io", {"core", "mesh", "animation"}},
     {"scene",
-     {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators", "world", "io"}},
+     {"core", "geometry", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators",
+      "world", "io"}},
     {"run",
-     {"core", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators", "world", "io",
-      "scene"}},
+     {"core", "geometry", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators",
+      "world", "verify", "io", "scene"}},
 };
 
 /// Folders of weft that a file includes from.

@@ -1,21 +1,31 @@
 #pragma once
 /// Solid shapes that cloth is held off from, each still or moving by prescription.
 
+#include <memory>
 #include <string>
 #include <variant>
 
 #include "weft/animation/rigid_motion.h"
 #include "weft/core/shapes.h"
+#include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
 
-using ColliderShape = std::variant<Sphere, Plane>;
+/// A triangle mesh as a collider, moved from the mesh's own coordinates: p ↦ rotation p + translation. Closed
+/// meshes face outwards; open ones hold cloth off on both sides.
+struct MeshShape {
+  std::shared_ptr<const TriangleMesh> mesh;  // never null
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();  // [m]
+};
+
+using ColliderShape = std::variant<Sphere, Plane, Capsule, OrientedBox, MeshShape>;
 
 struct Collider {
   std::string name;
   ColliderShape shape;
   double friction = 0.3;  // Coulomb's coefficient, >= 0 [1]
-  RigidMotion motion;     // turns about the sphere's centre or the plane's point
+  RigidMotion motion;     // turns about pivot()
 };
 
 /// Signed distance from p to the shape's surface, negative inside, and the outward unit normal there. At a
@@ -27,7 +37,8 @@ struct SignedDistance {
 
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p);
 
-/// The point that the collider turns about.
+/// The point that the collider turns about: a sphere's or box's centre, a plane's point, the middle of a
+/// capsule's axis, a mesh's own origin.
 Vec3 pivot(const ColliderShape& shape);
 
 /// The collider's shape where its motion has taken it.

@@ -70,6 +70,12 @@ void mark_near(const Plane& plane, double reach, const ClothState& state, int be
   }
 }
 
+/// Of other shapes every particle counts as near.
+template <class Shape>
+void mark_near(const Shape&, double, const ClothState&, int begin, int end, char* is_near) {
+  std::fill(is_near + begin, is_near + end, char{1});
+}
+
 }  // namespace
 
 Vec3 MovingCollider::velocity_at(const Vec3& p, double step) const {

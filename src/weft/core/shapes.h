@@ -16,6 +16,20 @@ struct Plane {
   Vec3 normal = Vec3::UnitY();  // unit length [1]
 };
 
+/// All points within `radius` of the segment a–b; a = b is a sphere.
+struct Capsule {
+  Vec3 a = Vec3::Zero();   // [m]
+  Vec3 b = Vec3::UnitY();  // [m]
+  double radius = 0.5;     // > 0 [m]
+};
+
+/// A solid box, turned any way.
+struct OrientedBox {
+  Vec3 center = Vec3::Zero();            // [m]
+  Vec3 half_size = Vec3::Constant(0.5);  // along its own axes, > 0 [m]
+  Mat3 rotation = Mat3::Identity();      // from the box's own axes (its columns) to the world's [1]
+};
+
 /// Axis-aligned box.
 struct Box {
   Vec3 min = Vec3::Zero();  // [m]

@@ -109,8 +109,8 @@ class Filmer {
     body.name = collider.name;
     if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
       body.mesh = make_sphere_mesh(Vec3::Zero(), sphere->radius, kSphereRings);
-    } else {
-      body.mesh = make_square_mesh(Vec3::Zero(), std::get<Plane>(collider.shape).normal, kPlaneSide);
+    } else if (const Plane* plane = std::get_if<Plane>(&collider.shape)) {
+      body.mesh = make_square_mesh(Vec3::Zero(), plane->normal, kPlaneSide);
     }
     return body;
   }
