@@ -1,0 +1,64 @@
+#pragma once
+/// Axis-aligned boxes in floats: what collision detection looks at first.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "weft/core/vec.h"
+
+namespace weft {
+
+/// { p : min <= p <= max }, component by component. By default empty: it overlaps nothing, not even itself.
+struct Aabb {
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::array<float, 3> min = {kInfinity, kInfinity, kInfinity};
+  std::array<float, 3> max = {-kInfinity, -kInfinity, -kInfinity};
+
+  /// Two boxes overlap if and only if their projections on all three axes do: six comparisons at most.
+  /// Boxes that touch overlap.
+  bool overlaps(const Aabb& other) const {
+    return min[0] <= other.max[0] && other.min[0] <= max[0] && min[1] <= other.max[1] &&
+           other.min[1] <= max[1] && min[2] <= other.max[2] && other.min[2] <= max[2];
+  }
+
+  void merge(const Aabb& other) {
+    for (int k = 0; k < 3; ++k) {
+      min[k] = std::min(min[k], other.min[k]);
+      max[k] = std::max(max[k], other.max[k]);
+    }
+  }
+
+  /// Half its surface, 0 if empty.
+  float half_area() const {
+    const float a = std::max(0.0f, max[0] - min[0]), b = std::max(0.0f, max[1] - min[1]),
+                c = std::max(0.0f, max[2] - min[2]);
+    return a * b + b * c + c * a;
+  }
+
+  /// Squared distance from p, 0 inside.
+  double distance_sq(const Vec3& p) const {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double beyond = std::max({0.0, min[k] - p[k], p[k] - max[k]});
+      sum += beyond * beyond;
+    }
+    return sum;
+  }
+};
+
+/// The smallest box in floats that holds everything from min to max and `margin` around it.
+inline Aabb make_aabb(const Vec3& min, const Vec3& max, double margin = 0) {
+  Aabb box;
+  for (int k = 0; k < 3; ++k) {
+    const double low = min[k] - margin, high = max[k] + margin;
+    box.min[k] = static_cast<float>(low);
+    box.max[k] = static_cast<float>(high);
+    if (box.min[k] > low) box.min[k] = std::nextafter(box.min[k], -Aabb::kInfinity);
+    if (box.max[k] < high) box.max[k] = std::nextafter(box.max[k], Aabb::kInfinity);
+  }
+  return box;
+}
+
+}  // namespace weft

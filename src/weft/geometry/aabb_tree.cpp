@@ -1,0 +1,307 @@
+#include "weft/geometry/aabb_tree.h"
+
+#include <numeric>
+
+#include "weft/core/simd.h"
+
+namespace weft {
+namespace {
+
+constexpr int kNodeGrain = 256;         // nodes per chunk of a query
+constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are held against another tree side by side
+constexpr std::size_t kNumRanges = 32;  // parts of a tree that are built side by side
+
+/// Sorts items into leaves: halves a range of whole leaves by the median of its longest side, again and
+/// again. Ties are broken by the item's number, so that the parts do not depend on how the library finds a
+/// median.
+class Splitter {
+ public:
+  Splitter(const std::vector<Aabb>& boxes, int leaf_size)
+      : leaf_size_(leaf_size), centers_(boxes.size()), items_(boxes.size()) {
+    std::iota(items_.begin(), items_.end(), 0);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const float center = 0.5f * boxes[i].min[k] + 0.5f * boxes[i].max[k];
+        centers_[i][k] = std::isfinite(center) ? center : 0.0f;
+      }
+    }
+  }
+
+  std::vector<int> split(JobSystem& jobs) {
+    std::vector<Range> ranges = {{0, static_cast<int>(items_.size())}};
+    while (ranges.size() < kNumRanges) {
+      std::vector<Range> halves;
+      for (const Range& r : ranges) {
+        const int middle = halve(r);
+        halves.push_back({r.begin, middle});
+        if (middle < r.end) halves.push_back({middle, r.end});
+      }
+      if (halves.size() == ranges.size()) break;
+      ranges = std::move(halves);
+    }
+    parallel_for(jobs, static_cast<int>(ranges.size()), 1, [&](int r, int) { split_below(ranges[r]); });
+    return std::move(items_);
+  }
+
+ private:
+  struct Range {
+    int begin, end;
+  };
+
+  void split_below(const Range& range) {
+    const int middle = halve(range);
+    if (middle == range.end) return std::sort(items_.begin() + range.begin, items_.begin() + range.end);
+    split_below({range.begin, middle});
+    split_below({middle, range.end});
+  }
+
+  /// Where the right half begins; the range's end if all of it fits into a leaf.
+  int halve(const Range& range) {
+    const int num_leaves = (range.end - range.begin + leaf_size_ - 1) / leaf_size_;
+    if (num_leaves <= 1) return range.end;
+    const int middle = range.begin + num_leaves / 2 * leaf_size_;
+    const int axis = longest_side(range);
+    std::nth_element(items_.begin() + range.begin, items_.begin() + middle, items_.begin() + range.end,
+                     [&](int a, int b) {
+                       const float left = centers_[a][axis], right = centers_[b][axis];
+                       return left < right || (left == right && a < b);
+                     });
+    return middle;
+  }
+
+  int longest_side(const Range& range) const {
+    std::array<float, 3> low = centers_[items_[range.begin]], high = low;
+    for (int i = range.begin + 1; i < range.end; ++i) {
+      const std::array<float, 3>& c = centers_[items_[i]];
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], c[k]);
+        high[k] = std::max(high[k], c[k]);
+      }
+    }
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    }
+    return axis;
+  }
+
+  int leaf_size_;
+  std::vector<std::array<float, 3>> centers_;
+  std::vector<int> items_;
+};
+
+using aabb_tree::kLanes;
+
+/// Which of the eight boxes b overlap box i of the eight boxes a and share no key with it: 1 each, else 0.
+/// The result is 0 if none does.
+template <class Leaf>
+WEFT_ALWAYS_INLINE int test_lane(const Leaf& a, int i, const Leaf& b, int* hit) {
+  const float min_x = a.min[0][i], min_y = a.min[1][i], min_z = a.min[2][i];
+  const float max_x = a.max[0][i], max_y = a.max[1][i], max_z = a.max[2][i];
+  const int p = a.key[0][i], q = a.key[1][i], r = a.key[2][i];
+  int any = 0;
+  for (int j = 0; j < kLanes; ++j) {
+    const int overlaps = (min_x <= b.max[0][j]) & (b.min[0][j] <= max_x) & (min_y <= b.max[1][j]) &
+                         (b.min[1][j] <= max_y) & (min_z <= b.max[2][j]) & (b.min[2][j] <= max_z);
+    const int u = b.key[0][j], v = b.key[1][j], w = b.key[2][j];
+    const int is_joined =
+        (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
+    hit[j] = overlaps & (is_joined ^ 1);
+    any |= hit[j];
+  }
+  return any;
+}
+
+/// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once.
+template <class Leaf, class LeafPair>
+WEFT_ALWAYS_INLINE void test_leaf_pairs_body(const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs,
+                                             int count, bool is_self, std::vector<ItemPair>& pairs) {
+  for (int n = 0; n < count; ++n) {
+    const Leaf& a = left[leaf_pairs[n].a];
+    const Leaf& b = right[leaf_pairs[n].b];
+    const bool is_same = is_self && leaf_pairs[n].a == leaf_pairs[n].b;
+    alignas(64) int hits[kLanes][kLanes];
+    int any = 0;
+    for (int i = 0; i < kLanes; ++i) any |= test_lane(a, i, b, hits[i]);
+    if (any == 0) continue;
+    for (int i = 0; i < kLanes; ++i) {
+      for (int j = is_same ? i + 1 : 0; j < kLanes; ++j) {
+        if (!hits[i][j]) continue;
+        const bool swaps = is_self && b.item[j] < a.item[i];
+        pairs.push_back(swaps ? ItemPair{b.item[j], a.item[i]} : ItemPair{a.item[i], b.item[j]});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+using aabb_tree::Leaf;
+using aabb_tree::LeafPair;
+WEFT_MULTIVERSION(test_leaf_pairs,
+                  (const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs, int count, bool is_self,
+                   std::vector<ItemPair>& pairs),
+                  (left, right, leaf_pairs, count, is_self, pairs))
+
+void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs) {
+  num_items_ = static_cast<int>(boxes.size());
+  const int num_leaves = (num_items_ + kLanes - 1) / kLanes;
+  leaves_.assign(num_leaves, Leaf());
+  nodes_.clear();
+  const std::vector<int> items = Splitter(boxes, kLanes).split(jobs);
+  for (int slot = 0; slot < num_leaves * kLanes; ++slot) {
+    Leaf& leaf = leaves_[slot / kLanes];
+    const int lane = slot % kLanes, item = slot < num_items_ ? items[slot] : -1;
+    leaf.item[lane] = item;
+    set_box(slot / kLanes, lane, item < 0 ? Aabb() : boxes[item]);
+    const bool has_keys = item >= 0 && !keys.empty();
+    for (int k = 0; k < 3; ++k) {
+      const int own = -2 - 3 * slot - k;  // nobody else's
+      leaf.key[k][lane] = has_keys && keys[item] != kNoKeys ? keys[item][k] : own;
+    }
+  }
+  if (num_leaves == 0) return;
+  nodes_.reserve(2 * num_leaves - 1);
+  build_nodes(0, num_leaves);
+  refit_nodes();
+  built_area_ = total_area();
+}
+
+void AabbTree::build_nodes(int first_leaf, int num_leaves) {
+  const int n = static_cast<int>(nodes_.size());
+  nodes_.push_back({{}, 0, first_leaf});
+  if (num_leaves == 1) return;
+  build_nodes(first_leaf, num_leaves / 2);
+  nodes_[n].right = static_cast<int>(nodes_.size());
+  build_nodes(first_leaf + num_leaves / 2, num_leaves - num_leaves / 2);
+}
+
+void AabbTree::refit_nodes() {
+  for (int n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
+    Node& node = nodes_[n];
+    node.box = Aabb();
+    if (node.right != 0) {
+      node.box.merge(nodes_[n + 1].box);
+      node.box.merge(nodes_[node.right].box);
+    } else {
+      const Leaf& leaf = leaves_[node.leaf];
+      for (int k = 0; k < 3; ++k) {
+        node.box.min[k] = *std::min_element(leaf.min[k], leaf.min[k] + kLanes);
+        node.box.max[k] = *std::max_element(leaf.max[k], leaf.max[k] + kLanes);
+      }
+    }
+  }
+}
+
+float AabbTree::total_area() const {
+  float sum = 0;
+  for (const Node& node : nodes_) sum += node.box.half_area();
+  return sum;
+}
+
+double AabbTree::looseness() const { return built_area_ > 0 ? total_area() / built_area_ : 1.0; }
+
+bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direction, double max_t) {
+  double near = 0, far = max_t;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0) {
+      if (origin[k] < box.min[k] || origin[k] > box.max[k]) return false;
+      continue;
+    }
+    const double a = (box.min[k] - origin[k]) / direction[k], b = (box.max[k] - origin[k]) / direction[k];
+    near = std::max(near, std::min(a, b));
+    far = std::min(far, std::max(a, b));
+  }
+  constexpr double kRounding = 1e-12;  // of the quotients: rather a box too many
+  return near <= far + kRounding * (std::abs(near) + std::abs(far));
+}
+
+/// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
+void AabbTree::collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
+                       std::int64_t& box_pairs) const {
+  LeafPair stack[2 * kMaxDepth];
+  int depth = 0;
+  stack[depth++] = start;
+  while (depth > 0) {
+    const auto [n, m] = stack[--depth];
+    const Node &a = nodes_[n], &b = other.nodes_[m];
+    ++box_pairs;
+    if (!a.box.overlaps(b.box)) continue;
+    if (a.right == 0 && b.right == 0) {
+      out.push_back({a.leaf, b.leaf});
+    } else if (b.right == 0 || (a.right != 0 && a.right - n >= b.right - m)) {
+      stack[depth++] = {a.right, m};
+      stack[depth++] = {n + 1, m};
+    } else {
+      stack[depth++] = {n, b.right};
+      stack[depth++] = {n, m + 1};
+    }
+  }
+}
+
+/// Runs search(begin, end, leaf_pairs, box_pairs), which finds pairs of leaves, over [0, num_starts) in
+/// chunks, tests the leaves' items against each other, and strings the chunks' results together in order.
+template <class Search>
+void AabbTree::find_in_chunks(int num_starts, int grain, const Search& search, const AabbTree& other,
+                              bool is_self, JobSystem& jobs, std::vector<ItemPair>& pairs,
+                              QueryCount* count) const {
+  struct Chunk {
+    std::vector<LeafPair> leaf_pairs;
+    std::vector<ItemPair> pairs;
+    std::int64_t box_pairs = 0;
+  };
+  std::vector<Chunk> chunks((num_starts + grain - 1) / grain);
+  parallel_for(jobs, num_starts, grain, [&](int begin, int end) {
+    Chunk& chunk = chunks[begin / grain];
+    search(begin, end, chunk.leaf_pairs, chunk.box_pairs);
+    test_leaf_pairs(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
+                    static_cast<int>(chunk.leaf_pairs.size()), is_self, chunk.pairs);
+  });
+  pairs.clear();
+  for (const Chunk& chunk : chunks) {
+    pairs.insert(pairs.end(), chunk.pairs.begin(), chunk.pairs.end());
+    if (count)
+      count->box_pairs +=
+          chunk.box_pairs + kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
+  }
+}
+
+void AabbTree::find_self_pairs(JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count) const {
+  // Each node's two halves are held against each other, and each leaf against itself.
+  const auto search = [&](int begin, int end, std::vector<LeafPair>& leaf_pairs, std::int64_t& box_pairs) {
+    for (int n = begin; n < end; ++n) {
+      const Node& node = nodes_[n];
+      if (node.right != 0) {
+        collect(*this, {n + 1, node.right}, leaf_pairs, box_pairs);
+      } else {
+        leaf_pairs.push_back({node.leaf, node.leaf});
+      }
+    }
+  };
+  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, search, *this, true, jobs, pairs, count);
+}
+
+void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, std::vector<ItemPair>& pairs,
+                          QueryCount* count) const {
+  pairs.clear();
+  if (nodes_.empty() || other.nodes_.empty()) return;
+  std::vector<int> starts = {0};
+  while (starts.size() < kMaxStarts) {
+    std::vector<int> below;
+    for (const int n : starts) {
+      if (nodes_[n].right == 0) {
+        below.push_back(n);
+      } else {
+        below.insert(below.end(), {n + 1, nodes_[n].right});
+      }
+    }
+    if (below.size() == starts.size()) break;
+    starts = std::move(below);
+  }
+  const auto search = [&](int begin, int end, std::vector<LeafPair>& leaf_pairs, std::int64_t& box_pairs) {
+    for (int s = begin; s < end; ++s) collect(other, {starts[s], 0}, leaf_pairs, box_pairs);
+  };
+  find_in_chunks(static_cast<int>(starts.size()), 1, search, other, false, jobs, pairs, count);
+}
+
+}  // namespace weft

@@ -1,0 +1,208 @@
+#pragma once
+/// A hierarchy of axis-aligned boxes over triangles, edges, points or whatever else has a box.
+///
+///                    [ all ]                  Leaves hold up to eight items, side by side for vector
+///               [ ... ]   [ ... ]             instructions. A tree is built once, refitted to moved items in
+///            [8][8][8]     [8][8][5]          linear time, and built anew when it has become loose.
+///
+/// What a query reports does not depend on the tree's shape; the order in which it does, does.
+
+#include <cstdint>
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/geometry/aabb.h"
+
+namespace weft {
+
+struct ItemPair {
+  int a = 0, b = 0;
+  bool operator==(const ItemPair&) const = default;
+  auto operator<=>(const ItemPair&) const = default;
+};
+
+/// What a query has done, for benchmarks.
+struct QueryCount {
+  std::int64_t box_pairs = 0;  // boxes compared with boxes, at most six comparisons each [1]
+};
+
+/// Private to the tree.
+namespace aabb_tree {
+
+constexpr int kLanes = 8;
+
+/// Eight items side by side; the empty lanes of the last leaf have empty boxes.
+struct Leaf {
+  float min[3][kLanes], max[3][kLanes];
+  int key[3][kLanes];
+  int item[kLanes];
+};
+
+struct LeafPair {
+  int a, b;
+};
+
+}  // namespace aabb_tree
+
+class AabbTree {
+ public:
+  /// What an item hangs on, such as a triangle's vertices: a query on the tree itself does not report pairs
+  /// of items that have a key in common. Items without: kNoKeys.
+  using Keys = std::array<int, 3>;
+  static constexpr Keys kNoKeys = {-1, -1, -1};
+
+  /// Builds the tree over `boxes` (num_items), split at medians. `keys` is (num_items) or empty.
+  void build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs);
+
+  /// Fits the tree to boxes that have moved: box_of(item) gives an item's box.
+  template <class BoxOf>
+  void refit(const BoxOf& box_of, JobSystem& jobs) {
+    parallel_for(jobs, static_cast<int>(leaves_.size()), kLeafGrain, [&](int begin, int end) {
+      for (int leaf = begin; leaf < end; ++leaf) {
+        for (int lane = 0; lane < num_items_in(leaf); ++lane) {
+          set_box(leaf, lane, box_of(leaves_[leaf].item[lane]));
+        }
+      }
+    });
+    refit_nodes();
+  }
+
+  int num_items() const { return num_items_; }
+
+  /// The surface of all nodes over what it was when the tree was built: about 1 while it fits, and the more
+  /// above, the more boxes a query has to look at. 2 is a good moment to build anew.
+  double looseness() const;
+
+  /// All pairs of items whose boxes overlap and that share no key, each once with a < b.
+  void find_self_pairs(JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count = nullptr) const;
+
+  /// All pairs of an item a of this tree and an item b of another one whose boxes overlap, whatever their
+  /// keys.
+  void find_pairs(const AabbTree& other, JobSystem& jobs, std::vector<ItemPair>& pairs,
+                  QueryCount* count = nullptr) const;
+
+  /// Calls visit(item) for all items whose boxes overlap `box`.
+  template <class Visit>
+  void for_each_overlapping(const Aabb& box, const Visit& visit) const {
+    descend([&](const Aabb& node) { return node.overlaps(box); }, visit);
+  }
+
+  /// Calls visit(item) for all items whose boxes the ray may meet: { origin + t direction : 0 <= t <= max_t
+  /// }. visit returns the t beyond which it wants to hear no more (max_t to hear all).
+  template <class Visit>
+  void for_each_along_ray(const Vec3& origin, const Vec3& direction, double max_t, const Visit& visit) const {
+    double reach = max_t;
+    descend([&](const Aabb& node) { return meets_ray(node, origin, direction, reach); },
+            [&](int item) { reach = std::min(reach, visit(item)); });
+  }
+
+  /// The item nearest to p, or -1 if none is nearer than `max_distance_sq`: distance_sq(item) gives an item's
+  /// own squared distance, at least that of its box. Of equally near ones the lowest item.
+  template <class DistanceSq>
+  int find_nearest(const Vec3& p, double max_distance_sq, const DistanceSq& distance_sq) const {
+    int nearest = -1;
+    double best = max_distance_sq;
+    descend_nearest(p, best, [&](int item) {
+      const double d = distance_sq(item);
+      if (d < best || (d == best && nearest >= 0 && item < nearest)) {
+        best = d;
+        nearest = item;
+      }
+    });
+    return nearest;
+  }
+
+ private:
+  static constexpr int kLeafGrain = 256;
+  static constexpr int kMaxDepth = 64;
+
+  using Leaf = aabb_tree::Leaf;
+  using LeafPair = aabb_tree::LeafPair;
+  static constexpr int kLanes = aabb_tree::kLanes;
+
+  /// In preorder: the left child follows its parent.
+  struct Node {
+    Aabb box;
+    int right = 0;  // the right child's index, 0 at a leaf
+    int leaf = 0;   // the first leaf below
+  };
+
+  int num_items_in(int leaf) const { return std::min(kLanes, num_items_ - leaf * kLanes); }
+
+  void set_box(int leaf, int lane, const Aabb& box) {
+    for (int k = 0; k < 3; ++k) {
+      leaves_[leaf].min[k][lane] = box.min[k];
+      leaves_[leaf].max[k][lane] = box.max[k];
+    }
+  }
+
+  Aabb box_of_lane(const Leaf& leaf, int lane) const {
+    return {{leaf.min[0][lane], leaf.min[1][lane], leaf.min[2][lane]},
+            {leaf.max[0][lane], leaf.max[1][lane], leaf.max[2][lane]}};
+  }
+
+  static bool meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direction, double max_t);
+
+  /// Visits the items whose boxes, and all boxes above them, are wanted.
+  template <class IsWanted, class Visit>
+  void descend(const IsWanted& is_wanted, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    int stack[kMaxDepth];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const int n = stack[--depth];
+      const Node& node = nodes_[n];
+      if (!is_wanted(node.box)) continue;
+      if (node.right != 0) {
+        stack[depth++] = node.right;
+        stack[depth++] = n + 1;
+        continue;
+      }
+      const Leaf& leaf = leaves_[node.leaf];
+      for (int lane = 0; lane < num_items_in(node.leaf); ++lane) {
+        if (is_wanted(box_of_lane(leaf, lane))) visit(leaf.item[lane]);
+      }
+    }
+  }
+
+  /// Visits the items whose boxes are no farther from p than `best`, which visit may lower; near boxes first.
+  template <class Visit>
+  void descend_nearest(const Vec3& p, const double& best, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    int stack[kMaxDepth];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const int n = stack[--depth];
+      const Node& node = nodes_[n];
+      if (node.box.distance_sq(p) > best) continue;
+      if (node.right != 0) {
+        const bool left_first = nodes_[n + 1].box.distance_sq(p) <= nodes_[node.right].box.distance_sq(p);
+        stack[depth++] = left_first ? node.right : n + 1;
+        stack[depth++] = left_first ? n + 1 : node.right;
+        continue;
+      }
+      const Leaf& leaf = leaves_[node.leaf];
+      for (int lane = 0; lane < num_items_in(node.leaf); ++lane) {
+        if (box_of_lane(leaf, lane).distance_sq(p) <= best) visit(leaf.item[lane]);
+      }
+    }
+  }
+
+  void build_nodes(int first_leaf, int num_leaves);
+  void refit_nodes();
+  float total_area() const;
+  void collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
+               std::int64_t& box_pairs) const;
+  template <class Search>
+  void find_in_chunks(int num_starts, int grain, const Search& search, const AabbTree& other, bool is_self,
+                      JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count) const;
+
+  int num_items_ = 0;
+  float built_area_ = 0;
+  std::vector<Leaf> leaves_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace weft
