@@ -163,6 +163,7 @@ void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& ke
   if (num_leaves == 0) return;
   nodes_.reserve(2 * num_leaves - 1);
   build_nodes(0, num_leaves);
+  choose_starts();
   refit_nodes();
   built_area_ = total_area();
 }
@@ -239,69 +240,73 @@ void AabbTree::collect(const AabbTree& other, LeafPair start, std::vector<LeafPa
   }
 }
 
-/// Runs search(begin, end, leaf_pairs, box_pairs), which finds pairs of leaves, over [0, num_starts) in
-/// chunks, tests the leaves' items against each other, and strings the chunks' results together in order.
-template <class Search>
-void AabbTree::find_in_chunks(int num_starts, int grain, const Search& search, const AabbTree& other,
-                              bool is_self, JobSystem& jobs, std::vector<ItemPair>& pairs,
-                              QueryCount* count) const {
-  struct Chunk {
-    std::vector<LeafPair> leaf_pairs;
-    std::vector<ItemPair> pairs;
-    std::int64_t box_pairs = 0;
-  };
-  std::vector<Chunk> chunks((num_starts + grain - 1) / grain);
+/// Runs find_leaf_pairs(begin, end, chunk) over [0, num_starts) in chunks, tests the leaves' items against
+/// each other, and strings the chunks' results together in order.
+template <class FindLeafPairs>
+void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs,
+                              const AabbTree& other, bool is_self, JobSystem& jobs,
+                              PairSearch& search) const {
+  const std::size_t num_chunks = (num_starts + grain - 1) / grain;
+  if (search.chunks.size() < num_chunks) search.chunks.resize(num_chunks);
   parallel_for(jobs, num_starts, grain, [&](int begin, int end) {
-    Chunk& chunk = chunks[begin / grain];
-    search(begin, end, chunk.leaf_pairs, chunk.box_pairs);
+    aabb_tree::Chunk& chunk = search.chunks[begin / grain];
+    chunk.leaf_pairs.clear();
+    chunk.pairs.clear();
+    chunk.box_pairs = 0;
+    find_leaf_pairs(begin, end, chunk);
     test_leaf_pairs(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
                     static_cast<int>(chunk.leaf_pairs.size()), is_self, chunk.pairs);
+    chunk.box_pairs += kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
   });
-  pairs.clear();
-  for (const Chunk& chunk : chunks) {
-    pairs.insert(pairs.end(), chunk.pairs.begin(), chunk.pairs.end());
-    if (count)
-      count->box_pairs +=
-          chunk.box_pairs + kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
+  search.pairs.clear();
+  search.num_box_pairs = 0;
+  for (std::size_t c = 0; c < num_chunks; ++c) {
+    const aabb_tree::Chunk& chunk = search.chunks[c];
+    search.pairs.insert(search.pairs.end(), chunk.pairs.begin(), chunk.pairs.end());
+    search.num_box_pairs += chunk.box_pairs;
   }
 }
 
-void AabbTree::find_self_pairs(JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count) const {
+void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
   // Each node's two halves are held against each other, and each leaf against itself.
-  const auto search = [&](int begin, int end, std::vector<LeafPair>& leaf_pairs, std::int64_t& box_pairs) {
+  const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
     for (int n = begin; n < end; ++n) {
       const Node& node = nodes_[n];
       if (node.right != 0) {
-        collect(*this, {n + 1, node.right}, leaf_pairs, box_pairs);
+        collect(*this, {n + 1, node.right}, chunk.leaf_pairs, chunk.box_pairs);
       } else {
-        leaf_pairs.push_back({node.leaf, node.leaf});
+        chunk.leaf_pairs.push_back({node.leaf, node.leaf});
       }
     }
   };
-  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, search, *this, true, jobs, pairs, count);
+  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, find_leaf_pairs, *this, true, jobs, search);
 }
 
-void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, std::vector<ItemPair>& pairs,
-                          QueryCount* count) const {
-  pairs.clear();
+void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const {
+  search.pairs.clear();
+  search.num_box_pairs = 0;
   if (nodes_.empty() || other.nodes_.empty()) return;
-  std::vector<int> starts = {0};
-  while (starts.size() < kMaxStarts) {
+  const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
+    for (int s = begin; s < end; ++s) collect(other, {starts_[s], 0}, chunk.leaf_pairs, chunk.box_pairs);
+  };
+  find_in_chunks(static_cast<int>(starts_.size()), 1, find_leaf_pairs, other, false, jobs, search);
+}
+
+/// Nodes that together hold everything, a few dozen: parts that can be searched side by side.
+void AabbTree::choose_starts() {
+  starts_ = {0};
+  while (starts_.size() < kMaxStarts) {
     std::vector<int> below;
-    for (const int n : starts) {
+    for (const int n : starts_) {
       if (nodes_[n].right == 0) {
         below.push_back(n);
       } else {
         below.insert(below.end(), {n + 1, nodes_[n].right});
       }
     }
-    if (below.size() == starts.size()) break;
-    starts = std::move(below);
+    if (below.size() == starts_.size()) return;
+    starts_ = std::move(below);
   }
-  const auto search = [&](int begin, int end, std::vector<LeafPair>& leaf_pairs, std::int64_t& box_pairs) {
-    for (int s = begin; s < end; ++s) collect(other, {starts[s], 0}, leaf_pairs, box_pairs);
-  };
-  find_in_chunks(static_cast<int>(starts.size()), 1, search, other, false, jobs, pairs, count);
 }
 
 }  // namespace weft

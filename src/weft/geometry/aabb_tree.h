@@ -21,11 +21,6 @@ struct ItemPair {
   auto operator<=>(const ItemPair&) const = default;
 };
 
-/// What a query has done, for benchmarks.
-struct QueryCount {
-  std::int64_t box_pairs = 0;  // boxes compared with boxes, at most six comparisons each [1]
-};
-
 /// Private to the tree.
 namespace aabb_tree {
 
@@ -42,7 +37,21 @@ struct LeafPair {
   int a, b;
 };
 
+struct Chunk {
+  std::vector<LeafPair> leaf_pairs;
+  std::vector<ItemPair> pairs;
+  std::int64_t box_pairs;
+};
+
 }  // namespace aabb_tree
+
+/// The result of a query for pairs. Reuse it, and queries allocate nothing once it has grown.
+struct PairSearch {
+  std::vector<ItemPair> pairs;
+  std::int64_t num_box_pairs = 0;  // boxes compared with boxes, by six comparisons at most [1]
+
+  std::vector<aabb_tree::Chunk> chunks;  // private to the tree
+};
 
 class AabbTree {
  public:
@@ -74,12 +83,11 @@ class AabbTree {
   double looseness() const;
 
   /// All pairs of items whose boxes overlap and that share no key, each once with a < b.
-  void find_self_pairs(JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count = nullptr) const;
+  void find_self_pairs(JobSystem& jobs, PairSearch& search) const;
 
   /// All pairs of an item a of this tree and an item b of another one whose boxes overlap, whatever their
   /// keys.
-  void find_pairs(const AabbTree& other, JobSystem& jobs, std::vector<ItemPair>& pairs,
-                  QueryCount* count = nullptr) const;
+  void find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const;
 
   /// Calls visit(item) for all items whose boxes overlap `box`.
   template <class Visit>
@@ -191,18 +199,20 @@ class AabbTree {
   }
 
   void build_nodes(int first_leaf, int num_leaves);
+  void choose_starts();
   void refit_nodes();
   float total_area() const;
   void collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
                std::int64_t& box_pairs) const;
-  template <class Search>
-  void find_in_chunks(int num_starts, int grain, const Search& search, const AabbTree& other, bool is_self,
-                      JobSystem& jobs, std::vector<ItemPair>& pairs, QueryCount* count) const;
+  template <class FindLeafPairs>
+  void find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs, const AabbTree& other,
+                      bool is_self, JobSystem& jobs, PairSearch& search) const;
 
   int num_items_ = 0;
   float built_area_ = 0;
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
+  std::vector<int> starts_;  // nodes
 };
 
 }  // namespace weft

@@ -2,7 +2,7 @@
 ///
 ///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + h · (damping and wind dissipation at velocity (x −
 ///     x₀)/h)
-///            + Σ ½ k_c max(0, offset − n·x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
+///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
 /// by Newton's method with line search and sparse Cholesky, in double precision. Where the true Hessian is
 /// not positive definite (compressed springs) that of spring_jacobian_clamped takes its place: with a line
@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
@@ -49,14 +50,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     environment_ = &environment;
     step_ = step;
     const int n = model.num_particles();
-    if (analyzed_ != model.topology) {
-      matrix_.pairs.clear();
-      for (const Spring& s : model.topology->springs) matrix_.pairs.push_back({s.i, s.j});
-      matrix_.diagonal.resize(n);
-      matrix_.off_diagonal.resize(matrix_.pairs.size());
-      cholesky_.analyze(n, matrix_.pairs);
-      analyzed_ = model.topology;
-    }
+    fit_pattern();
     pins_.prepare(environment.pins, step, state);
     is_pinned_.assign(n, 0);
     start_.resize(n);
@@ -70,6 +64,59 @@ class ImplicitEulerIntegrator final : public Integrator {
       is_pinned_[environment.pins.particle[p]] = 1;
       x_[environment.pins.particle[p]] = environment.pins.position[p] - state.origin;
     }
+  }
+
+  using Pair = std::pair<int, int>;
+
+  /// Makes the matrix hold a block for every spring and for every two particles of a contact. Analysed anew
+  /// only when a pair comes that was not there before.
+  void fit_pattern() {
+    const std::vector<Spring>& springs = model_->topology->springs;
+    if (analyzed_ != model_->topology) {
+      analyzed_ = model_->topology;
+      matrix_.diagonal.resize(model_->num_particles());
+      matrix_.pairs.clear();
+      for (const Spring& s : springs) matrix_.pairs.push_back({s.i, s.j});
+      spring_pairs_.clear();
+      for (const Spring& s : springs) spring_pairs_.push_back(std::minmax(s.i, s.j));
+      std::sort(spring_pairs_.begin(), spring_pairs_.end());
+      contact_pairs_.clear();
+      is_analyzed_ = false;
+    }
+    wanted_pairs_.clear();
+    for (const Contact& c : environment_->contacts) {
+      for (int k = 1; k < c.num_particles; ++k) {
+        for (int l = 0; l < k; ++l) {
+          const Pair pair = std::minmax(c.particle[k], c.particle[l]);
+          if (!std::binary_search(spring_pairs_.begin(), spring_pairs_.end(), pair))
+            wanted_pairs_.push_back(pair);
+        }
+      }
+    }
+    std::sort(wanted_pairs_.begin(), wanted_pairs_.end());
+    wanted_pairs_.erase(std::unique(wanted_pairs_.begin(), wanted_pairs_.end()), wanted_pairs_.end());
+    if (!std::includes(contact_pairs_.begin(), contact_pairs_.end(), wanted_pairs_.begin(),
+                       wanted_pairs_.end())) {
+      contact_pairs_ = wanted_pairs_;
+      is_analyzed_ = false;
+    }
+    if (is_analyzed_) return;
+    matrix_.pairs.resize(springs.size());
+    for (const auto& [i, j] : contact_pairs_) matrix_.pairs.push_back({i, j});
+    matrix_.off_diagonal.resize(matrix_.pairs.size());
+    pair_index_.clear();
+    for (std::size_t p = 0; p < matrix_.pairs.size(); ++p) {
+      pair_index_.push_back({std::minmax(matrix_.pairs[p][0], matrix_.pairs[p][1]), static_cast<int>(p)});
+    }
+    std::sort(pair_index_.begin(), pair_index_.end());
+    cholesky_.analyze(model_->num_particles(), matrix_.pairs);
+    is_analyzed_ = true;
+  }
+
+  /// Where the block of particles i and j is.
+  int index_of_pair(int i, int j) const {
+    const Pair pair = std::minmax(i, j);
+    return std::lower_bound(pair_index_.begin(), pair_index_.end(), std::pair(pair, 0))->second;
   }
 
   /// Newton's method from x_. Afterwards x_ is the minimum, or the best that was found.
@@ -105,20 +152,11 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     for (std::size_t c = 0; c < environment_->contacts.size(); ++c) {
       const Contact& contact = environment_->contacts[c];
-      const double depth = contact_depth(contact, x);
+      const double depth = contact.depth(x);
       energy += 0.5 * contact.stiffness * depth * depth;
-      energy += contact.friction * normal_force_[c] * friction_length(slide(contact, x).norm());
+      energy += contact.friction * normal_force_[c] * friction_length(contact.slide(x).norm());
     }
     return energy;
-  }
-
-  static double contact_depth(const Contact& c, const std::vector<Vec3>& x) {
-    return std::max(0.0, c.offset - c.normal.dot(x[c.particle]));
-  }
-
-  static Vec3 slide(const Contact& c, const std::vector<Vec3>& x) {
-    const Vec3 moved = x[c.particle] - c.grip;
-    return moved - moved.dot(c.normal) * c.normal;
   }
 
   /// |slide|, rounded off to a parabola where the slide is slower than kStickSpeed: there friction grows with
@@ -134,10 +172,19 @@ class ImplicitEulerIntegrator final : public Integrator {
     normal_force_.resize(environment_->contacts.size());
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       const Contact& contact = environment_->contacts[c];
-      const double inertia = model_->mass[contact.particle] / (step_ * step_);
-      const double share = first ? inertia / (inertia + contact.stiffness) : 1.0;
-      normal_force_[c] = share * contact.stiffness * contact_depth(contact, x_);
+      const double share = first ? inertia_share(contact) : 1.0;
+      normal_force_[c] = share * contact.stiffness * contact.depth(x_);
     }
+  }
+
+  /// How much of the contact's stiffness a lone stencil's inertia leaves of its force: a/(a + k) for inertia
+  /// a = 1/(h² Σ w²/m).
+  double inertia_share(const Contact& c) const {
+    double inverse = 0;
+    for (int k = 0; k < c.num_particles; ++k) {
+      if (!is_pinned_[c.particle[k]]) inverse += c.weight[k] * c.weight[k] / model_->mass[c.particle[k]];
+    }
+    return 1 / (1 + c.stiffness * step_ * step_ * inverse);
   }
 
   Vec3 relative_velocity(const Spring& s, const std::vector<Vec3>& x) const {
@@ -174,10 +221,11 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       const Contact& contact = environment_->contacts[c];
-      const Vec3 s = slide(contact, x_);
+      const Vec3 s = contact.slide(x_);
       const double friction = contact.friction * normal_force_[c] / std::max(s.norm(), kStickSpeed * step_);
-      gradient_[contact.particle] +=
-          friction * s - contact.stiffness * contact_depth(contact, x_) * contact.normal;
+      const Vec3 pull = friction * s - contact.stiffness * contact.depth(x_) * contact.normal;
+      for (int k = 0; k < contact.num_particles; ++k)
+        gradient_[contact.particle[k]] += contact.weight[k] * pull;
     }
     for (const int i : environment_->pins.particle) gradient_[i].setZero();
   }
@@ -204,9 +252,21 @@ class ImplicitEulerIntegrator final : public Integrator {
       matrix_.off_diagonal[p] = pinned ? Mat3::Zero() : Mat3(-block);
     }
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
-      matrix_.diagonal[environment_->contacts[c].particle] += contact_hessian(c);
+      add_contact_blocks(environment_->contacts[c], contact_hessian(c));
     }
     for (const int i : environment_->pins.particle) matrix_.diagonal[i].setIdentity();
+  }
+
+  void add_contact_blocks(const Contact& contact, const Mat3& hessian) {
+    for (int k = 0; k < contact.num_particles; ++k) {
+      const int i = contact.particle[k];
+      matrix_.diagonal[i] += contact.weight[k] * contact.weight[k] * hessian;
+      for (int l = 0; l < k; ++l) {
+        const int j = contact.particle[l];
+        if (is_pinned_[i] || is_pinned_[j]) continue;
+        matrix_.off_diagonal[index_of_pair(i, j)] += contact.weight[k] * contact.weight[l] * hessian;
+      }
+    }
   }
 
   /// The contact's push along the normal, and friction across it; a slide that is under way resists only
@@ -214,8 +274,8 @@ class ImplicitEulerIntegrator final : public Integrator {
   Mat3 contact_hessian(std::size_t c) const {
     const Contact& contact = environment_->contacts[c];
     const Mat3 normal = contact.normal * contact.normal.transpose();
-    const double stiffness = contact_depth(contact, x_) > 0 ? contact.stiffness : 0.0;
-    const Vec3 s = slide(contact, x_);
+    const double stiffness = contact.depth(x_) > 0 ? contact.stiffness : 0.0;
+    const Vec3 s = contact.slide(x_);
     const double length = s.norm(), sticking = kStickSpeed * step_;
     Mat3 across = Mat3::Identity() - normal;
     if (length > sticking) across -= s * s.transpose() / (length * length);
@@ -261,6 +321,9 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   ImplicitEulerSettings settings_;
   std::shared_ptr<const ClothTopology> analyzed_;
+  bool is_analyzed_ = false;
+  std::vector<Pair> spring_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
+  std::vector<std::pair<Pair, int>> pair_index_;                   // of matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;
   PinMotion pins_;

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "weft/contact/response.h"
+#include "weft/contact/contact.h"
 #include "weft/core/job_system.h"
 #include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"

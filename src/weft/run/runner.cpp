@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 
-#include "weft/contact/response.h"
 #include "weft/core/error.h"
 #include "weft/core/version.h"
 #include "weft/run/stopwatch.h"
@@ -50,10 +49,6 @@ class Recorder {
           compute_elastic_energy(model, state) + compute_gravity_energy(model, state, world_.gravity());
       lowest = std::min(lowest, compute_lowest_y(state));
       mean_strain += add_strain(compute_strain(model, state)) / world_.num_cloths();
-      if (report_.penetration_max) {
-        *report_.penetration_max =
-            std::max(*report_.penetration_max, compute_penetration(world_.colliders(), world_.time(), state));
-      }
     }
     report_.kinetic_energy.push_back(kinetic);
     report_.potential_energy.push_back(potential);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "weft/contact/response.h"
 #include "weft/core/error.h"
 #include "weft/core/hash.h"
 
@@ -25,6 +24,7 @@ void validate(const ClothMaterial& m, const std::string& cloth) {
   at_least_zero(m.bend, "bending stiffness");
   at_least_zero(m.damping, "damping");
   at_least_zero(m.thickness, "thickness");
+  at_least_zero(m.friction, "friction");
 }
 
 /// A sum of products with zero: 0 if all values are finite, else not a number.
@@ -123,50 +123,61 @@ void World::set_integrator(const IntegratorSettings& settings) {
   for (Cloth& cloth : cloths_) cloth.integrator = make_integrator(settings);
 }
 
-void World::aim_pins(const Cloth& cloth, double time) {
+void World::aim_pins(Cloth& cloth, double time) {
   poses_.clear();
   for (const Pin& pin : cloth.pins) poses_.push_back(pin.motion.at(time));
-  PinTargets& targets = environment_.pins;
-  targets.particle.clear();
-  targets.position.clear();
+  cloth.targets.particle.clear();
+  cloth.targets.position.clear();
   for (const PinnedParticle& p : cloth.pinned) {
-    targets.particle.push_back(p.particle);
-    targets.position.push_back(apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor));
+    cloth.targets.particle.push_back(p.particle);
+    cloth.targets.position.push_back(apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor));
   }
 }
 
-void World::advance(Cloth& cloth, double dt, StepReport& report) {
-  const ClothModel& model = *cloth.model;
-  const bool touches = contact_ && !colliders_.empty();
-  const int substeps = cloth.integrator->num_substeps(model, environment_, dt);
-  const double h = dt / substeps;
-  bool converged = true;
-  for (int s = 1; s <= substeps; ++s) {
-    const double now = time_ + dt * s / substeps;
-    // What moves by prescription.
-    aim_pins(cloth, now);
-    if (touches)
-      contact_response_.begin_step(colliders_, {.gap = model.material.thickness / 2, .time = now, .step = h});
+/// As many as the cloth that needs most: they meet at the end of every one.
+int World::num_substeps(double dt) const {
+  int substeps = 1;
+  for (const Cloth& cloth : cloths_) {
+    substeps = std::max(substeps, cloth.integrator->num_substeps(*cloth.model, environment_, dt));
+  }
+  return substeps;
+}
+
+void World::begin_contact(double time, double dt) {
+  contact_cloths_.clear();
+  pin_positions_.clear();
+  bool is_predicted = false;
+  for (Cloth& cloth : cloths_) {
+    contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
+    pin_positions_.insert(pin_positions_.end(), cloth.targets.position.begin(), cloth.targets.position.end());
+    is_predicted |= cloth.integrator->resolves_contacts();
+  }
+  contact_system_.begin_step(contact_cloths_, colliders_, {.time = time, .step = dt});
+  if (is_predicted) contact_system_.predict(environment_.gravity, pin_positions_, *jobs_);
+}
+
+/// One substep of all cloths, to `time`.
+void World::advance(double time, double dt, StepReport& report) {
+  // What moves by prescription.
+  for (Cloth& cloth : cloths_) aim_pins(cloth, time);
+  if (contact_) begin_contact(time, dt);
+  for (int c = 0; c < num_cloths(); ++c) {
+    Cloth& cloth = cloths_[c];
     // What is in the cloth's way.
+    environment_.pins = cloth.targets;
     environment_.contacts.clear();
-    if (touches && cloth.integrator->resolves_contacts()) {
-      contact_response_.find_contacts(environment_.gravity, model.mass, cloth.is_pinned, cloth.state,
-                                      environment_.contacts);
+    if (contact_ && cloth.integrator->resolves_contacts()) {
+      contact_system_.find_contacts(c, environment_.contacts);
     }
     // The cloth's own motion.
-    const IntegratorReport done = cloth.integrator->advance(model, environment_, h, *jobs_, cloth.state);
+    const IntegratorReport done =
+        cloth.integrator->advance(*cloth.model, environment_, dt, *jobs_, cloth.state);
     report.iterations += done.iterations;
-    converged &= done.converged;
-    // What has come too close all the same.
-    if (touches) contact_response_.hold_off(cloth.is_pinned, *jobs_, cloth.state);
+    if (!done.converged) has_converged_[c] = 0;
+    if (contact_) contact_system_.end_of(c);
   }
-  follow_cloth(cloth.state);
-  report.substeps = std::max(report.substeps, substeps);
-  if (!converged) {
-    report.troubles.push_back({cloth.name, -1,
-                               "the solver ran out of iterations before it reached its tolerance; raise "
-                               "solver.iterations or solver.steps_per_frame"});
-  }
+  // What has come too close all the same.
+  if (contact_) contact_system_.hold_off(*jobs_);
 }
 
 StepReport World::step(double dt) {
@@ -174,16 +185,26 @@ StepReport World::step(double dt) {
     throw InputError("the time step must be a finite number of seconds above 0");
   StepReport report;
   save(before_);
+  has_converged_.assign(cloths_.size(), 1);
+  report.substeps = num_substeps(dt);
+  for (int s = 1; s <= report.substeps; ++s) {
+    advance(time_ + dt * s / report.substeps, dt / report.substeps, report);
+  }
   for (Cloth& cloth : cloths_) {
-    advance(cloth, dt, report);
     const int broken = find_non_finite(cloth.state);
-    if (broken < 0) continue;
-    report.ok = false;
-    report.troubles.push_back({cloth.name, broken,
-                               "the motion of particle " + std::to_string(broken) + " became infinite; " +
-                                   advice(integrator_settings_.integrator)});
-    restore(before_);
-    return report;
+    if (broken >= 0) {
+      report.ok = false;
+      report.troubles.push_back({cloth.name, broken,
+                                 "the motion of particle " + std::to_string(broken) + " became infinite; " +
+                                     advice(integrator_settings_.integrator)});
+      restore(before_);
+      return report;
+    }
+    follow_cloth(cloth.state);
+    if (has_converged_[&cloth - cloths_.data()]) continue;
+    report.troubles.push_back({cloth.name, -1,
+                               "the solver ran out of iterations before it reached its tolerance; raise "
+                               "solver.iterations or solver.steps_per_frame"});
   }
   time_ += dt;
   return report;

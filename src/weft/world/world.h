@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "weft/contact/collider.h"
+#include "weft/contact/contact_system.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft {
@@ -62,7 +63,7 @@ class World {
   void set_material(ClothId cloth, const ClothMaterial& material);
   void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
   void set_wind(const Wind& wind) { environment_.wind = wind; }
-  void set_contact(bool enabled) { contact_ = enabled; }
+  void set_contact(bool enabled) { contact_ = enabled; }    // with colliders, itself and other cloths
   void set_integrator(const IntegratorSettings& settings);  // throws InputError for an unknown name
   void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
 
@@ -101,15 +102,18 @@ class World {
     ClothState state;
     std::vector<Pin> pins;
     std::vector<PinnedParticle> pinned;  // by ascending particle
+    PinTargets targets;                  // of a substep
     std::vector<char> is_pinned;         // (num_particles)
     std::unique_ptr<Integrator> integrator;
   };
 
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
-  void advance(Cloth& cloth, double dt, StepReport& report);
+  int num_substeps(double dt) const;
+  void advance(double time, double dt, StepReport& report);
+  void begin_contact(double time, double dt);
   void save(Snapshot& snapshot) const;
-  void aim_pins(const Cloth& cloth, double time);
+  void aim_pins(Cloth& cloth, double time);
 
   double time_ = 0;
   bool contact_ = true;
@@ -120,7 +124,10 @@ class World {
   std::vector<Collider> colliders_;
 
   // Work space of step(), kept so that it allocates nothing.
-  ContactResponse contact_response_;
+  ContactSystem contact_system_;
+  std::vector<ContactCloth> contact_cloths_;
+  std::vector<Vec3> pin_positions_;  // of all cloths
+  std::vector<char> has_converged_;  // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_;
 };

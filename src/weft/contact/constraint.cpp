@@ -1,0 +1,77 @@
+#include "weft/contact/constraint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+namespace {
+
+constexpr double kPositionTolerance = 1e-6;  // corrections below need no further pass [m]
+constexpr double kVelocityTolerance = 1e-5;  // [m/s]
+constexpr int kVelocityPasses = 12;
+
+/// Makes v_n >= 0; returns the change [m/s].
+double stop_approach(Constraint& c, const std::vector<double>& inverse_masses,
+                     std::vector<Vec3>& velocities) {
+  const double speed = c.normal.dot(c.sum(velocities) - c.surface_velocity);
+  const double impulse = std::max(0.0, c.impulse - speed / c.inverse_mass);
+  const double change = impulse - c.impulse;
+  if (change == 0) return 0;
+  c.impulse = impulse;
+  c.apply(change * c.normal, inverse_masses, velocities);
+  return std::abs(change) * c.inverse_mass;
+}
+
+/// Friction against the slide; returns the change [m/s].
+double slow_slide(Constraint& c, const std::vector<double>& inverse_masses, std::vector<Vec3>& velocities,
+                  std::vector<Vec3>& slowed) {
+  const Vec3 relative = c.sum(velocities) - c.surface_velocity;
+  const Vec3 slide = relative - relative.dot(c.normal) * c.normal;
+  Vec3 impulse = c.friction_impulse - slide / c.inverse_mass;
+  const double most = c.friction * c.impulse, length = impulse.norm();
+  if (length > most) impulse *= most / length;
+  const Vec3 change = impulse - c.friction_impulse;
+  c.friction_impulse = impulse;
+  c.apply(change, inverse_masses, velocities);
+  c.apply(change, inverse_masses, slowed);
+  return change.norm() * c.inverse_mass;
+}
+
+}  // namespace
+
+double project_positions(const std::vector<double>& inverse_masses, int passes,
+                         std::vector<Constraint>& constraints, std::vector<Vec3>& positions) {
+  double first = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    double largest = 0;
+    for (Constraint& c : constraints) {
+      if (c.inverse_mass == 0) continue;
+      const double lack = c.target - c.normal.dot(c.sum(positions));
+      const double push = std::max(0.0, c.push + lack / c.inverse_mass);
+      const double change = push - c.push;
+      if (change == 0) continue;
+      c.push = push;
+      c.is_active |= push > 0;
+      c.apply(change * c.normal, inverse_masses, positions);
+      largest = std::max(largest, std::abs(change) * c.inverse_mass);
+    }
+    if (pass == 0) first = largest;
+    if (largest < kPositionTolerance) break;
+  }
+  return first;
+}
+
+void project_velocities(const std::vector<double>& inverse_masses, std::vector<Constraint>& constraints,
+                        std::vector<Vec3>& velocities, std::vector<Vec3>& slowed) {
+  for (int pass = 0; pass < kVelocityPasses; ++pass) {
+    double largest = 0;
+    for (Constraint& c : constraints) {
+      if (!c.is_active) continue;
+      largest = std::max(largest, stop_approach(c, inverse_masses, velocities));
+      if (c.friction > 0) largest = std::max(largest, slow_slide(c, inverse_masses, velocities, slowed));
+    }
+    if (largest < kVelocityTolerance) break;
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,484 @@
+#include "weft/contact/contact_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/geometry/distance.h"
+
+namespace weft {
+namespace {
+
+constexpr int kPairGrain = 1024;  // pairs per chunk
+
+/// How much stiffer than its inertia, m/h², a contact is in the solve: the higher, the less cloth is pressed
+/// in, and the less is left for hold_off to mend. At rest under gravity g h²/1000, 3 µm at 60 steps per
+/// second.
+constexpr double kShapeStiffness = 1000;
+constexpr double kPairStiffness = 300;
+
+/// Cloth found too near to cloth at the start of a step is set apart little by little, by this share of what
+/// lacks per step: all at once would throw it.
+constexpr double kRecovery = 0.2;
+
+/// Almost parallel edges have no reliable direction between them: sin² of the angle.
+constexpr double kParallelSq = 0.03;
+
+/// Features this near have no direction between them at all [m].
+constexpr double kTouching = 1e-9;
+
+/// A triangle counts beside its corners where it comes this much nearer to a shape than they do [m].
+constexpr double kNearerThanCorners = 1e-6;
+
+constexpr int kRounds = 6;         // planes of round shapes are taken anew this often
+constexpr int kPasses = 8;         // over all constraints between
+constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
+
+double slack_of(const ClothTopology& topology, double thickness) {
+  constexpr double kShareOfEdge = 0.15;
+  double sum = 0;
+  int count = 0;
+  for (const Spring& s : topology.springs) {
+    if (s.kind != SpringKind::structural) continue;
+    sum += s.rest_length;
+    ++count;
+  }
+  return std::max(thickness, count > 0 ? kShareOfEdge * sum / count : 0.0);
+}
+
+/// A ball around the shape; planes have none.
+struct Bound {
+  Vec3 center = Vec3::Zero();
+  double radius = std::numeric_limits<double>::infinity();
+};
+Bound bound_of(const Sphere& s) { return {s.center, s.radius}; }
+Bound bound_of(const Plane&) { return {}; }
+Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).norm() + c.radius}; }
+Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
+Bound bound_of(const MeshShape&) { return {}; }
+
+TriangleSignedDistance triangle_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
+                                         const Vec3& c, double reach = kNoReach) {
+  return std::visit(
+      [&](const auto& s) -> TriangleSignedDistance {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) {
+          return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
+        } else {
+          return signed_distance(s, a, b, c, reach);
+        }
+      },
+      shape);
+}
+
+}  // namespace
+
+// ---- The step ----
+
+Vec3 ContactSystem::MovingShape::velocity_at(const Vec3& p, double step) const {
+  if (collider->motion.is_still()) return Vec3::Zero();
+  return (p - apply(pose_before, pivot, apply_inverse(pose_after, pivot, p))) / step;
+}
+
+void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
+                               const ContactStep& step) {
+  cloths_.assign(cloths.begin(), cloths.end());
+  step_ = step;
+  shapes_.clear();
+  const double start = step.time - step.step;
+  for (const Collider& c : colliders) {
+    shapes_.push_back({&c, shape_at(c, start), shape_at(c, step.time), c.motion.at(start),
+                       c.motion.at(step.time), weft::pivot(c.shape)});
+  }
+  renumber(colliders);
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothModel& model = *cloths_[c].model;
+    for (int i = 0, v = first_vertex_[c]; i < model.num_particles(); ++i, ++v) {
+      motion_.start[v] = cloths_[c].state->position(i);
+      motion_.half_thickness[v] = model.material.thickness / 2;
+      inverse_mass_[v] = (*cloths_[c].is_pinned)[i] ? 0.0 : 1 / model.mass[i];
+    }
+  }
+  place_bodies();
+}
+
+void ContactSystem::renumber(const std::vector<Collider>& colliders) {
+  std::vector<const TriangleMesh*>& meshes = meshes_now_;
+  meshes.clear();
+  for (const Collider& c : colliders) {
+    if (const MeshShape* mesh = std::get_if<MeshShape>(&c.shape)) meshes.push_back(mesh->mesh.get());
+  }
+  const auto same_cloth = [](const ContactCloth& c, const auto& topology) {
+    return c.model->topology == topology;
+  };
+  const auto same_mesh = [](const TriangleMesh* m, const auto& mesh) { return m == mesh.get(); };
+  if (!first_vertex_.empty() &&
+      std::equal(cloths_.begin(), cloths_.end(), numbered_cloths_.begin(), numbered_cloths_.end(),
+                 same_cloth) &&
+      std::equal(meshes.begin(), meshes.end(), numbered_meshes_.begin(), numbered_meshes_.end(), same_mesh)) {
+    return;
+  }
+
+  numbered_cloths_.clear();
+  numbered_meshes_.clear();
+  first_vertex_.clear();
+  bodies_.clear();
+  Surface surface;
+  std::vector<Vec3> rest;
+  double slack = std::numeric_limits<double>::infinity();
+  for (const ContactCloth& cloth : cloths_) {
+    const ClothTopology& topology = *cloth.model->topology;
+    numbered_cloths_.push_back(cloth.model->topology);
+    first_vertex_.push_back(surface.num_vertices);
+    surface.add(topology.mesh.triangles, topology.num_particles());
+    rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
+    slack = std::min(slack, slack_of(topology, cloth.model->material.thickness));
+  }
+  const int num_cloth_vertices = surface.num_vertices;
+  const int num_cloth_triangles = static_cast<int>(surface.triangles.size());
+  first_vertex_.push_back(num_cloth_vertices);
+  for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
+    const MeshShape* shape = std::get_if<MeshShape>(&colliders[c].shape);
+    if (!shape) continue;
+    numbered_meshes_.push_back(shape->mesh);
+    const std::vector<Edge> edges = build_edges(*shape->mesh);
+    const bool is_closed =
+        std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.num_triangles == 2; });
+    bodies_.push_back(
+        {c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(), is_closed});
+    surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
+  }
+  surface.build_fans();
+  const int n = surface.num_vertices;
+  motion_.start.assign(n, Vec3::Zero());
+  motion_.end.assign(n, Vec3::Zero());
+  motion_.half_thickness.assign(n, 0.0);
+  inverse_mass_.assign(n, 0.0);
+  velocity_.assign(n, Vec3::Zero());
+  slowed_.assign(n, Vec3::Zero());
+  is_touched_.assign(n, 0);
+  proximity_.reset(std::move(surface), std::move(rest), num_cloth_vertices, num_cloth_triangles, slack);
+}
+
+void ContactSystem::place_bodies() {
+  for (const Body& body : bodies_) {
+    const MovingShape& shape = shapes_[body.collider];
+    const MeshShape &before = std::get<MeshShape>(shape.before), &after = std::get<MeshShape>(shape.after);
+    for (int v = body.first_vertex; v < body.end_vertex; ++v) {
+      const Vec3& p = after.mesh->positions[v - body.first_vertex];
+      motion_.start[v] = before.rotation * p + before.translation;
+      motion_.end[v] = after.rotation * p + after.translation;
+      velocity_[v] = (motion_.end[v] - motion_.start[v]) / step_.step;
+    }
+  }
+}
+
+void ContactSystem::end_of(int cloth) {
+  for (int v = first_vertex_[cloth]; v < first_vertex_[cloth + 1]; ++v) {
+    motion_.end[v] = cloths_[cloth].state->position(v - first_vertex_[cloth]);
+  }
+}
+
+void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
+  const double h = step_.step;
+  std::size_t pin = 0;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
+      const int i = v - first_vertex_[c];
+      const bool is_pinned = (*cloths_[c].is_pinned)[i];
+      motion_.end[v] = is_pinned
+                           ? pin_targets[pin++]
+                           : Vec3(motion_.start[v] + h * cloths_[c].state->v.get(i) + h * h * acceleration);
+    }
+  }
+  proximity_.update(motion_, jobs);
+  constraints_.clear();
+  collect_pairs(jobs);
+  collect_shapes(1.0);
+  if (cloths_.size() > 1) project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+}
+
+void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) const {
+  contacts.clear();
+  const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
+  const Vec3& origin = cloths_[cloth].state->origin;
+  const double h = step_.step;
+  for (const Constraint& c : constraints_) {
+    Contact contact;
+    contact.num_particles = 0;
+    contact.normal = c.normal;
+    contact.offset = c.target;
+    contact.grip = h * c.surface_velocity;
+    contact.friction = c.friction;
+    contact.stiffness = (c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h);
+    double own_inverse_mass = 0;
+    for (int k = 0; k < c.num_vertices; ++k) {
+      const int v = c.vertex[k];
+      const double w = c.weight[k];
+      if (v >= begin && v < end) {
+        contact.particle[contact.num_particles] = v - begin;
+        contact.weight[contact.num_particles++] = w;
+        contact.offset -= w * c.normal.dot(origin);
+        contact.grip += w * (motion_.start[v] - origin);
+        own_inverse_mass += w * w * inverse_mass_[v];
+      } else {
+        contact.offset -= w * c.normal.dot(motion_.end[v]);
+        contact.grip -= w * (motion_.end[v] - motion_.start[v]);
+      }
+    }
+    if (own_inverse_mass > 0) contacts.push_back(contact);
+  }
+}
+
+void ContactSystem::hold_off(JobSystem& jobs) {
+  proximity_.update(motion_, jobs);
+  constraints_.clear();
+  collect_pairs(jobs);
+  collect_shapes(0.0);
+  if (constraints_.empty()) return;
+  project();
+  store_touched();
+}
+
+// ---- Pairs of features ----
+
+void ContactSystem::collect_pairs(JobSystem& jobs) {
+  const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& make) {
+    const int count = static_cast<int>(pairs.size());
+    const std::size_t num_chunks = (count + kPairGrain - 1) / kPairGrain;
+    if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
+    parallel_for(jobs, count, kPairGrain, [&](int begin, int end) {
+      std::vector<Constraint>& chunk = chunks_[begin / kPairGrain];
+      chunk.clear();
+      for (int p = begin; p < end; ++p) {
+        Constraint c;
+        if (make(pairs[p], c)) chunk.push_back(c);
+      }
+    });
+    for (std::size_t k = 0; k < num_chunks; ++k) {
+      constraints_.insert(constraints_.end(), chunks_[k].begin(), chunks_[k].end());
+    }
+  };
+  collect(proximity_.vertex_triangle(),
+          [&](const auto& p, Constraint& c) { return make_vertex_triangle(p, c); });
+  collect(proximity_.edge_edge(), [&](const auto& p, Constraint& c) { return make_edge_edge(p, c); });
+}
+
+/// Only with the foot inside the triangle: towards its border the direction would lie sideways and make cloth
+/// sticky. What is beyond is the neighbouring triangles' or the edges' matter.
+bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c) const {
+  const auto [i, j, k] = proximity_.surface().triangles[pair.b];
+  const std::vector<Vec3>& x = motion_.start;
+  const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
+  if (d.region != TriangleRegion::face) return false;
+  c.num_vertices = 4;
+  c.vertex = {pair.a, i, j, k};
+  c.weight = {1, -d.weights[0], -d.weights[1], -d.weights[2]};
+  double distance = d.distance();
+  if (is_on_closed_body(i)) {
+    // The outside is known, so that what is inside by a little is pushed out.
+    c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
+    distance = c.normal.dot(c.sum(x));
+  } else {
+    if (distance < kTouching) return false;
+    c.normal = c.sum(x) / distance;
+  }
+  return finish_pair(pair, distance, c);
+}
+
+bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const {
+  const auto [i, j] = proximity_.surface().edges[pair.a];
+  const auto [k, l] = proximity_.surface().edges[pair.b];
+  const std::vector<Vec3>& x = motion_.start;
+  const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
+  if (d.region_a != EdgeRegion::interior || d.region_b != EdgeRegion::interior) return false;
+  const Vec3 u = x[j] - x[i], v = x[l] - x[k];
+  if (u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm()) return false;
+  const double distance = d.distance();
+  if (distance < kTouching) return false;
+  c.num_vertices = 4;
+  c.vertex = {i, j, k, l};
+  c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
+  c.normal = c.sum(x) / distance;
+  return finish_pair(pair, distance, c);
+}
+
+/// False if the pair cannot meet during the step.
+bool ContactSystem::finish_pair(const FeaturePair& pair, double distance, Constraint& c) const {
+  const int first = c.vertex[0], last = c.vertex[3];
+  const double thickness = motion_.half_thickness[first] + motion_.half_thickness[last];
+  const double gap = std::min(thickness, double{pair.max_gap});
+  const double approach = (c.sum(motion_.end) - c.sum(motion_.start)).norm();
+  if (distance > 2 * gap + 2 * approach) return false;
+  for (int k = 0; k < 4; ++k) c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+  if (c.inverse_mass == 0) return false;
+  const bool is_body = std::max(first, last) >= first_vertex_.back();
+  c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
+  c.friction = is_body ? shapes_[body_of(std::max(first, last)).collider].collider->friction
+                       : std::sqrt(friction_of(first) * friction_of(last));
+  return true;
+}
+
+int ContactSystem::cloth_of(int vertex) const {
+  return static_cast<int>(std::upper_bound(first_vertex_.begin(), first_vertex_.end(), vertex) -
+                          first_vertex_.begin()) -
+         1;
+}
+
+double ContactSystem::friction_of(int vertex) const {
+  return cloths_[cloth_of(vertex)].model->material.friction;
+}
+
+const ContactSystem::Body& ContactSystem::body_of(int vertex) const {
+  return *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return vertex < b.end_vertex; });
+}
+
+bool ContactSystem::is_on_closed_body(int vertex) const {
+  return vertex >= first_vertex_.back() && body_of(vertex).is_closed;
+}
+
+// ---- Plain shapes ----
+
+void ContactSystem::collect_shapes(double share_of_travel) {
+  for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
+    if (!shapes_[s].is_mesh()) collect_shape(s, share_of_travel);
+  }
+}
+
+/// Particles nearer than their gap and as much again, and `share_of_travel` of their way in this step; and
+/// triangles that are nearer than their corners.
+void ContactSystem::collect_shape(int shape, double share_of_travel) {
+  const MovingShape& moving = shapes_[shape];
+  const Bound bound = std::visit([](const auto& s) { return bound_of(s); }, moving.after);
+  const double triangle_reach = proximity_.longest_edge() / std::sqrt(3.0);
+  const int num_vertices = first_vertex_.back();
+  shape_distance_.resize(num_vertices);
+  bool is_any_near = false;
+  for (int v = 0; v < num_vertices; ++v) {
+    const double reach =
+        2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
+    const Vec3& p = motion_.end[v];
+    shape_distance_[v] = std::numeric_limits<double>::infinity();
+    const double farthest = bound.radius + reach + triangle_reach;
+    if ((p - bound.center).squaredNorm() > farthest * farthest) continue;
+    shape_distance_[v] = signed_distance(moving.after, p).distance;
+    is_any_near = true;
+    if (shape_distance_[v] < reach && inverse_mass_[v] > 0) add_shape_constraint(shape, 1, {v, v, v});
+  }
+  if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
+  const std::vector<Triangle>& triangles = proximity_.surface().triangles;
+  for (const Triangle& t : triangles) {
+    if (t[0] >= num_vertices) break;
+    const double nearest = std::min({shape_distance_[t[0]], shape_distance_[t[1]], shape_distance_[t[2]]});
+    const double travel = share_of_travel * (motion_.end[t[0]] - motion_.start[t[0]]).norm();
+    const double reach = 2 * motion_.half_thickness[t[0]] + travel;
+    if (nearest > reach + triangle_reach) continue;
+    const std::vector<Vec3>& x = motion_.end;
+    const double distance = triangle_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
+    if (distance < reach && distance < nearest - kNearerThanCorners) add_shape_constraint(shape, 3, t);
+  }
+}
+
+void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Triangle& vertices) {
+  Constraint c;
+  c.num_vertices = num_vertices;
+  c.vertex = {vertices[0], vertices[1], vertices[2], 0};
+  c.shape = shape;
+  c.friction = shapes_[shape].collider->friction;
+  take_plane(c);
+  if (c.inverse_mass > 0) constraints_.push_back(c);
+}
+
+/// The plane that touches the shape where the particle or triangle is nearest at the end of the step; unless
+/// that lies beyond the shape's middle: then where it was nearest at the start.
+void ContactSystem::take_plane(Constraint& c) const {
+  const MovingShape& moving = shapes_[c.shape];
+  struct Nearest {
+    double distance;
+    Vec3 normal;
+  };
+  const auto find_nearest = [&](const ColliderShape& shape, const std::vector<Vec3>& x) -> Nearest {
+    if (c.num_vertices == 1) {
+      const SignedDistance d = signed_distance(shape, x[c.vertex[0]]);
+      return {d.distance, d.normal};
+    }
+    const TriangleSignedDistance d = triangle_distance(shape, x[c.vertex[0]], x[c.vertex[1]], x[c.vertex[2]]);
+    c.weight = {d.weights[0], d.weights[1], d.weights[2], 0};
+    return {d.distance, d.normal};
+  };
+  const Nearest before = find_nearest(moving.before, motion_.start);
+  const Vec3 old_foot = c.sum(motion_.start) - before.distance * before.normal;
+  const std::array<double, 4> old_weight = c.weight;
+  const Nearest after = find_nearest(moving.after, motion_.end);
+  Vec3 foot = c.sum(motion_.end) - after.distance * after.normal;
+  c.normal = after.normal;
+  const Mat3 turn = moving.pose_after.rotation * moving.pose_before.rotation.transpose();
+  if (before.distance > 0 && after.distance < 0 && c.normal.dot(turn * before.normal) <= 0) {
+    c.is_fixed = true;
+    c.weight = old_weight;
+    c.normal = turn * before.normal;
+    foot = apply(moving.pose_after, moving.pivot, apply_inverse(moving.pose_before, moving.pivot, old_foot));
+  }
+  c.target = c.normal.dot(foot) + motion_.half_thickness[c.vertex[0]];
+  c.surface_velocity = moving.velocity_at(foot, step_.step);
+  c.inverse_mass = 0;
+  for (int k = 0; k < c.num_vertices; ++k)
+    c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+}
+
+// ---- Setting apart ----
+
+void ContactSystem::settle_positions() {
+  for (int round = 0; round < kRounds; ++round) {
+    const double moved = project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+    if (moved < kSettled) return;
+    for (Constraint& c : constraints_) {
+      if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
+      take_plane(c);
+      c.push = 0;
+    }
+  }
+}
+
+void ContactSystem::project() {
+  settle_positions();
+  for (const Constraint& c : constraints_) {
+    for (int k = 0; k < c.num_vertices; ++k) {
+      const int v = c.vertex[k];
+      slowed_[v].setZero();
+      if (v >= first_vertex_.back()) continue;
+      const int cloth = cloth_of(v);
+      velocity_[v] = cloths_[cloth].state->v.get(v - first_vertex_[cloth]);
+    }
+  }
+  project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
+  take_back_slides();
+  settle_positions();
+  mark_touched();
+}
+
+/// Friction also takes back the slide of this step, so that what sticks does not creep.
+void ContactSystem::take_back_slides() {
+  mark_touched();
+  for (int v = 0; v < first_vertex_.back(); ++v) {
+    if (is_touched_[v]) motion_.end[v] += step_.step * slowed_[v];
+  }
+}
+
+void ContactSystem::mark_touched() {
+  for (const Constraint& c : constraints_) {
+    if (!c.is_active) continue;
+    for (int k = 0; k < c.num_vertices; ++k) is_touched_[c.vertex[k]] = 1;
+  }
+}
+
+void ContactSystem::store_touched() {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
+      if (!is_touched_[v] || inverse_mass_[v] == 0) continue;
+      cloths_[c].state->set_position(v - first_vertex_[c], motion_.end[v]);
+      cloths_[c].state->v.set(v - first_vertex_[c], velocity_[v]);
+    }
+  }
+  std::fill(is_touched_.begin(), is_touched_.end(), char{0});
+}
+
+}  // namespace weft

@@ -1,0 +1,122 @@
+#pragma once
+/// Holds cloth off colliders, off itself and off other cloth.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "weft/contact/collider.h"
+#include "weft/contact/constraint.h"
+#include "weft/contact/contact.h"
+#include "weft/contact/proximity.h"
+#include "weft/core/job_system.h"
+#include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
+
+namespace weft {
+
+/// What contact sees of a cloth during a step.
+struct ContactCloth {
+  const ClothModel* model = nullptr;
+  ClothState* state = nullptr;
+  const std::vector<char>* is_pinned = nullptr;  // (num_particles)
+};
+
+struct ContactStep {
+  double time = 0;  // at the end of the step [s]
+  double step = 0;  // its length [s]
+};
+
+/// Contact of all cloths with all colliders and with each other, step by step:
+///
+///     begin_step        remembers where everything is, and takes the colliders through the step
+///     predict           for integrators that resolve contacts: what will probably meet
+///     find_contacts     … as planes in one cloth's way
+///     end_of            a cloth has been moved
+///     hold_off          what has come too close all the same is set apart
+///
+/// Cloth keeps half its thickness from colliders, and half of both thicknesses from other cloth. Pinned
+/// particles push others, and are not pushed. Keeps its work space between steps; what it does depends on the
+/// arguments alone.
+class ContactSystem {
+ public:
+  void begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
+                  const ContactStep& step);
+
+  /// Where inertia and `acceleration` would take each cloth; `pin_targets` are the places of pinned particles
+  /// at the end of the step, cloth after cloth in ascending order of particles.
+  void predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);
+
+  /// The contacts of a cloth's particles; what the other cloths will do is taken from where they have been
+  /// moved already, or from the prediction.
+  void find_contacts(int cloth, std::vector<Contact>& contacts) const;
+
+  /// The cloth's state now is that of the end of the step.
+  void end_of(int cloth);
+
+  /// Sets apart what is too close, takes from velocities what approaches, and slows what slides (see
+  /// constraint.h). To be called when every cloth is at its end.
+  void hold_off(JobSystem& jobs);
+
+ private:
+  struct MovingShape {
+    const Collider* collider = nullptr;
+    ColliderShape before, after;
+    Pose pose_before, pose_after;
+    Vec3 pivot = Vec3::Zero();
+
+    bool is_mesh() const { return std::holds_alternative<MeshShape>(after); }
+    Vec3 velocity_at(const Vec3& p, double step) const;
+  };
+
+  struct Body {
+    int collider = 0;      // number
+    int first_vertex = 0;  // of the common numbering
+    int end_vertex = 0;
+    bool is_closed = false;
+  };
+
+  void renumber(const std::vector<Collider>& colliders);
+  void place_bodies();
+  void collect_pairs(JobSystem& jobs);
+  bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
+  bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
+  bool finish_pair(const FeaturePair& pair, double distance, Constraint& c) const;
+  int cloth_of(int vertex) const;
+  double friction_of(int vertex) const;
+  const Body& body_of(int vertex) const;
+  bool is_on_closed_body(int vertex) const;
+  void collect_shapes(double share_of_travel);
+  void collect_shape(int shape, double share_of_travel);
+  void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
+  void take_plane(Constraint& c) const;
+  void settle_positions();
+  void project();
+  void take_back_slides();
+  void mark_touched();
+  void store_touched();
+
+  // What does not change from step to step.
+  std::vector<std::shared_ptr<const ClothTopology>> numbered_cloths_;
+  std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
+  std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
+  std::vector<Body> bodies_;
+  Proximity proximity_;
+
+  // The step.
+  std::vector<ContactCloth> cloths_;
+  std::vector<MovingShape> shapes_;
+  ContactStep step_;
+  SurfaceMotion motion_;
+  std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
+  std::vector<Constraint> constraints_;
+
+  // Work space.
+  std::vector<std::vector<Constraint>> chunks_;
+  std::vector<const TriangleMesh*> meshes_now_;
+  std::vector<char> is_touched_;
+  std::vector<double> shape_distance_;
+  std::vector<Vec3> velocity_, slowed_;
+};
+
+}  // namespace weft

@@ -1,0 +1,207 @@
+#include "weft/contact/proximity.h"
+
+#include <cmath>
+
+#include "weft/geometry/distance.h"
+
+namespace weft {
+namespace {
+
+/// A tree this much looser than when it was built is built anew.
+constexpr double kLoosest = 1.6;
+
+/// The triangles around a vertex are its neighbours on the mesh. As long as their normals are this near to
+/// their sum, seen along it they do not overlap, and nothing of them can come close: cos 45°.
+constexpr double kSharp = 0.7;
+
+/// Of two neighbours' distance at rest, what contact may ask for.
+constexpr float kShareOfRest = 0.5f;
+
+}  // namespace
+
+void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices,
+                      int num_cloth_triangles, double slack) {
+  surface_ = std::move(surface);
+  rest_ = std::move(rest);
+  num_cloth_vertices_ = num_cloth_vertices;
+  num_cloth_triangles_ = num_cloth_triangles;
+  slack_ = slack;
+  cloth_tree_ = body_tree_ = AabbTree();
+  reference_.clear();
+}
+
+void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
+  if (still_holds(motion)) return;
+  rebuild(motion, jobs);
+}
+
+bool Proximity::still_holds(const SurfaceMotion& motion) {
+  if (reference_.size() != motion.end.size()) return false;
+  for (const std::vector<Vec3>* places : {&motion.start, &motion.end}) {
+    Vec3 mean = Vec3::Zero();
+    for (int v = 0; v < num_cloth_vertices_; ++v) mean += (*places)[v] - reference_[v];
+    mean /= std::max(1, num_cloth_vertices_);
+    double farthest_sq = 0;
+    for (std::size_t v = 0; v < reference_.size(); ++v) {
+      farthest_sq = std::max(farthest_sq, ((*places)[v] - reference_[v] - mean).squaredNorm());
+    }
+    if (farthest_sq > slack_ * slack_) return false;
+  }
+  return true;
+}
+
+void Proximity::box_vertices(const SurfaceMotion& motion) {
+  drift_ = Vec3::Zero();
+  for (int v = 0; v < num_cloth_vertices_; ++v) drift_ += motion.end[v] - motion.start[v];
+  drift_ /= std::max(1, num_cloth_vertices_);
+  const std::size_t n = motion.start.size();
+  vertex_box_.resize(n);
+  travel_.resize(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec3 a = motion.start[v] - motion.start[0], b = motion.end[v] - drift_ - motion.start[0];
+    travel_[v] = (b - a).norm();
+    vertex_box_[v] = make_aabb(a.cwiseMin(b), a.cwiseMax(b), motion.half_thickness[v] + slack_);
+  }
+}
+
+Aabb Proximity::box_of_triangle(int triangle) const {
+  const Triangle& t = surface_.triangles[triangle];
+  Aabb box = vertex_box_[t[0]];
+  box.merge(vertex_box_[t[1]]);
+  box.merge(vertex_box_[t[2]]);
+  return box;
+}
+
+/// Over the triangles [begin, end).
+void Proximity::fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
+  if (tree.num_items() == end - begin) {
+    tree.refit([&](int item) { return box_of_triangle(begin + item); }, jobs);
+    if (tree.looseness() < kLoosest) return;
+  }
+  std::vector<Aabb> boxes;
+  for (int t = begin; t < end; ++t) boxes.push_back(box_of_triangle(t));
+  tree.build(boxes, {surface_.triangles.begin() + begin, surface_.triangles.begin() + end}, jobs);
+}
+
+void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
+  box_vertices(motion);
+  vertex_triangle_.clear();
+  edge_edge_.clear();
+  const int num_triangles = static_cast<int>(surface_.triangles.size());
+  fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
+  cloth_tree_.find_self_pairs(jobs, search_);
+  for (const ItemPair& pair : search_.pairs) add_pairs_of_triangles(motion, pair, false);
+  add_fans(motion);
+  if (num_triangles > num_cloth_triangles_) {
+    fit_tree(body_tree_, num_cloth_triangles_, num_triangles, jobs);
+    cloth_tree_.find_pairs(body_tree_, jobs, search_);
+    for (const ItemPair& pair : search_.pairs) {
+      add_pairs_of_triangles(motion, {pair.a, pair.b + num_cloth_triangles_}, false);
+    }
+  }
+  // The tree's shape, and with it the order, depends on what came before; contact must not.
+  for (auto* pairs : {&vertex_triangle_, &edge_edge_}) {
+    std::sort(pairs->begin(), pairs->end(), [](const FeaturePair& x, const FeaturePair& y) {
+      return x.a < y.a || (x.a == y.a && x.b < y.b);
+    });
+  }
+  measure_edges(motion);
+  reference_ = motion.end;
+}
+
+/// Each end may move by the slack before this is done again.
+void Proximity::measure_edges(const SurfaceMotion& motion) {
+  double longest_sq = 0;
+  for (const auto& [i, j] : surface_.edges) {
+    if (i < num_cloth_vertices_)
+      longest_sq = std::max(longest_sq, (motion.end[j] - motion.end[i]).squaredNorm());
+  }
+  longest_edge_ = std::sqrt(longest_sq) + 2 * slack_;
+}
+
+void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan) {
+  const Surface::OwnedFeatures &a = surface_.owned[pair.a], &b = surface_.owned[pair.b];
+  const Triangle &ta = surface_.triangles[pair.a], &tb = surface_.triangles[pair.b];
+  const auto has = [](const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; };
+  for (const int v : a.vertex) {
+    if (v >= 0 && !has(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan);
+  }
+  for (const int v : b.vertex) {
+    if (v >= 0 && !has(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan);
+  }
+  for (const int e : a.edge) {
+    for (const int f : b.edge) {
+      if (e >= 0 && f >= 0) add_edge_edge(motion, std::min(e, f), std::max(e, f), is_fan);
+    }
+  }
+}
+
+void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan) {
+  if (!vertex_box_[vertex].overlaps(box_of_triangle(triangle))) return;
+  const auto [i, j, k] = surface_.triangles[triangle];
+  const std::vector<Vec3>& x = motion.start;
+  const double reach = motion.half_thickness[vertex] + motion.half_thickness[i] + 2 * slack_ +
+                       travel_[vertex] + std::max({travel_[i], travel_[j], travel_[k]});
+  if (point_triangle_distance(x[vertex], x[i], x[j], x[k]).distance_sq > reach * reach) return;
+  FeaturePair pair{vertex, triangle};
+  if (is_fan) {
+    const double rest = point_triangle_distance(rest_[vertex], rest_[i], rest_[j], rest_[k]).distance();
+    pair.max_gap = kShareOfRest * static_cast<float>(rest);
+  }
+  vertex_triangle_.push_back(pair);
+}
+
+void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan) {
+  const auto [i, j] = surface_.edges[a];
+  const auto [k, l] = surface_.edges[b];
+  if (i == k || i == l || j == k || j == l) return;
+  Aabb box_a = vertex_box_[i], box_b = vertex_box_[k];
+  box_a.merge(vertex_box_[j]);
+  box_b.merge(vertex_box_[l]);
+  if (!box_a.overlaps(box_b)) return;
+  const std::vector<Vec3>& x = motion.start;
+  const double reach = motion.half_thickness[i] + motion.half_thickness[k] + 2 * slack_ +
+                       std::max(travel_[i], travel_[j]) + std::max(travel_[k], travel_[l]);
+  if (edge_edge_distance(x[i], x[j], x[k], x[l]).distance_sq > reach * reach) return;
+  FeaturePair pair{a, b};
+  if (is_fan) {
+    const double rest = edge_edge_distance(rest_[i], rest_[j], rest_[k], rest_[l]).distance();
+    pair.max_gap = kShareOfRest * static_cast<float>(rest);
+  }
+  edge_edge_.push_back(pair);
+}
+
+/// Triangles that share a vertex are not reported by the tree. They matter only where the cloth makes a
+/// point.
+void Proximity::add_fans(const SurfaceMotion& motion) {
+  is_sharp_.assign(num_cloth_vertices_, 0);
+  std::vector<Vec3>& normal = fan_normal_;
+  for (const std::vector<Vec3>* x : {&motion.start, &motion.end}) {
+    normal.resize(num_cloth_triangles_);
+    for (int t = 0; t < num_cloth_triangles_; ++t) {
+      const auto [i, j, k] = surface_.triangles[t];
+      normal[t] = ((*x)[j] - (*x)[i]).cross((*x)[k] - (*x)[i]).stableNormalized();
+    }
+    for (int v = 0; v < num_cloth_vertices_; ++v) {
+      Vec3 sum = Vec3::Zero();
+      for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) sum += normal[surface_.fan[f]];
+      const double length = sum.norm();
+      for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
+        if (!(normal[surface_.fan[f]].dot(sum) >= kSharp * length)) is_sharp_[v] = 1;
+      }
+    }
+  }
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    if (!is_sharp_[v]) continue;
+    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
+      for (int g = f + 1; g < surface_.fan_begin[v + 1]; ++g) {
+        const int a = surface_.fan[f], b = surface_.fan[g];
+        if (num_shared_vertices(surface_.triangles[a], surface_.triangles[b]) == 1) {
+          add_pairs_of_triangles(motion, {a, b}, true);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace weft
