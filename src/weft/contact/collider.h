@@ -7,6 +7,7 @@
 
 #include "weft/animation/rigid_motion.h"
 #include "weft/core/shapes.h"
+#include "weft/geometry/shape_distance.h"
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
@@ -28,13 +29,7 @@ struct Collider {
   RigidMotion motion;     // turns about pivot()
 };
 
-/// Signed distance from p to the shape's surface, negative inside, and the outward unit normal there. At a
-/// sphere's centre the normal points up.
-struct SignedDistance {
-  double distance;  // [m]
-  Vec3 normal;
-};
-
+/// Signed distance from p to the shape's surface, and the normal there (geometry/shape_distance.h).
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p);
 
 /// The point that the collider turns about: a sphere's or box's centre, a plane's point, the middle of a
