@@ -232,7 +232,7 @@ TEST(EdgeEdge, AgreesWithTheSlowSearch) {
 TEST(EdgeEdge, AgreesWithTheSlowSearchOnUnluckyInput) {
   Claim claim;
   Random random(8);
-  for (int trial = 0; trial < 200'000; ++trial) check_edge_edge<Quad>(claim, test::unlucky_points(random, 4));
+  for (int trial = 0; trial < 120'000; ++trial) check_edge_edge<Quad>(claim, test::unlucky_points(random, 4));
   claim.expect();
 }
 
