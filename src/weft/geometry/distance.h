@@ -134,8 +134,8 @@ inline PointSegmentDistance point_segment_distance(const Vec3& p, const Vec3& a,
 ///
 /// The areas that p's projection spans with the edges are the weights: all positive, it is on the face;
 /// otherwise the closest point is on an edge. A needle's areas leave the place along it uncertain, but not
-/// that across, so a projection onto the longest edge follows; and on the thinnest it may turn out that an
-/// edge is closer after all.
+/// that across, so a projection onto the longest edge follows. Where that leads to a side, and on the
+/// thinnest triangles, an edge may be closer after all.
 inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b,
                                                      const Vec3& c) {
   constexpr double kThinSq = 1e-12;  // of height over length: from there the areas may be all rounding
