@@ -10,37 +10,47 @@ Vec3 edge_weights(int from, double t) {
   return weights;
 }
 
-void keep_closer(const SegmentTriangleDistance& candidate, SegmentTriangleDistance& best) {
-  if (candidate.distance_sq < best.distance_sq) best = candidate;
-}
-
-/// The triangle's point closest to the segment's point s.
-SegmentTriangleDistance seen_from(double s, const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const PointTriangleDistance d = point_triangle_distance(p, a, b, c);
-  return {d.distance_sq, s, d.weights};
-}
-
 }  // namespace
 
 SegmentTriangleDistance segment_triangle_distance(const Vec3& p0, const Vec3& p1, const Vec3& a,
                                                   const Vec3& b, const Vec3& c) {
+  // From a on, so that far from the origin no digits are lost.
+  const Vec3 x[4] = {Vec3::Zero(), b - a, c - a, Vec3::Zero()};
+  const Vec3 start = p0 - a, end = p1 - a, along = p1 - p0;
+  SegmentTriangleDistance best{std::numeric_limits<double>::infinity(), 0, Vec3::UnitX()};
+  const auto consider = [&](const SegmentTriangleDistance& candidate) {
+    if (candidate.distance_sq < best.distance_sq) best = candidate;
+  };
+  const auto consider_point = [&](double s, const Vec3& p) {
+    const PointTriangleDistance d = point_triangle_distance(p, x[0], x[1], x[2]);
+    consider({d.distance_sq, s, d.weights});
+  };
+
   // Closest is an end of the segment, a side of the triangle ...
-  SegmentTriangleDistance best = seen_from(0, p0, a, b, c);
-  keep_closer(seen_from(1, p1, a, b, c), best);
-  const Vec3 x[4] = {a, b, c, a};
+  consider_point(0, start);
+  consider_point(1, end);
   for (int i = 0; i < 3; ++i) {
-    const EdgeEdgeDistance d = edge_edge_distance(p0, p1, x[i], x[i + 1]);
-    keep_closer({d.distance_sq, d.s, edge_weights(i, d.t)}, best);
+    const EdgeEdgeDistance d = edge_edge_distance(start, end, x[i], x[i + 1]);
+    consider({d.distance_sq, d.s, edge_weights(i, d.t)});
   }
-  // ... or where the segment goes through the face.
-  const Vec3 n = (b - a).cross(c - a);
-  const double height_0 = n.dot(p0 - a), height_1 = n.dot(p1 - a);
+  // ... or where the segment goes through the face. Of a needle's normal only the part across its longest
+  // side is worth anything; and the segment's point is improved by seeing it from the triangle's.
+  const Vec3 sides[3] = {x[1], x[2] - x[1], x[2]};
+  const Vec3* longest = std::max_element(
+      sides, sides + 3, [](const Vec3& u, const Vec3& v) { return u.squaredNorm() < v.squaredNorm(); });
+  Vec3 n = x[1].cross(x[2]);
+  n -= n.dot(*longest) * detail::inverse_or_zero(longest->squaredNorm()) * *longest;
+  const double height_0 = n.dot(start), height_1 = n.dot(end);
   if ((height_0 < 0) != (height_1 < 0)) {
     const double s = detail::clamp_01(height_0 / (height_0 - height_1));
-    keep_closer(seen_from(s, p0 + s * (p1 - p0), a, b, c), best);
+    consider_point(s, start + s * along);
+    const double back = point_segment_distance(point_at(best.weights, x[0], x[1], x[2]), start, end).t;
+    consider_point(back, start + back * along);
   }
-  const double size_sq = std::max({(p1 - p0).squaredNorm(), (b - a).squaredNorm(), (c - a).squaredNorm()});
-  if (best.distance_sq <= kDistanceTolerance * kDistanceTolerance * size_sq) best.distance_sq = 0;
+  const double size_sq =
+      std::max({start.squaredNorm(), end.squaredNorm(), x[1].squaredNorm(), x[2].squaredNorm()});
+  const double touching = 0.25 * kDistanceTolerance;
+  if (best.distance_sq <= touching * touching * size_sq) best.distance_sq = 0;
   return best;
 }
 

@@ -134,9 +134,11 @@ inline PointSegmentDistance point_segment_distance(const Vec3& p, const Vec3& a,
 ///
 /// The areas that p's projection spans with the edges are the weights: all positive, it is on the face;
 /// otherwise the closest point is on an edge. A needle's areas leave the place along it uncertain, but not
-/// that across, so a projection onto the longest edge follows.
+/// that across, so a projection onto the longest edge follows. Where that leads to a side, and on the
+/// thinnest triangles, an edge may be closer after all.
 inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b,
                                                      const Vec3& c) {
+  constexpr double kThinSq = 1e-12;  // of height over length: from there the areas may be all rounding
   const Vec3 e[3] = {b - a, c - b, a - c};
   const Vec3 to_p[3] = {p - a, p - b, p - c};
   const Vec3 length_sq(e[0].squaredNorm(), e[1].squaredNorm(), e[2].squaredNorm());
@@ -151,10 +153,15 @@ inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& 
   const int k = 3 - i - j;
   // p − q = (p − x_i) − w_j (x_j − x_i) − w_k (x_k − x_i), then q moves along x_j − x_i, not past the sides.
   const Vec3 rest = to_p[i] - w[j] * e[i] + w[k] * e[k];
-  const double move = std::min(std::max(rest.dot(e[i]) / length_sq[i], -w[j]), w[i]);
-  w[i] -= move;
-  w[j] += move;
-  return {(rest - move * e[i]).squaredNorm(), w, TriangleRegion::face};
+  const double move = rest.dot(e[i]) / length_sq[i];
+  const bool stays_inside = move >= -w[j] && move <= w[i];
+  const double moved = std::min(std::max(move, -w[j]), w[i]);
+  w[i] = std::min(w[i] - moved, 1.0);
+  w[j] = std::min(w[j] + moved, 1.0);
+  const PointTriangleDistance face{(rest - moved * e[i]).squaredNorm(), w, TriangleRegion::face};
+  if (stays_inside && n.squaredNorm() > kThinSq * length_sq[i] * length_sq[i]) return face;
+  const PointTriangleDistance edge = detail::point_triangle_edges(to_p, e, length_sq);
+  return edge.distance_sq < face.distance_sq ? edge : face;
 }
 
 /// The edges a0–a1 and b0–b1. Of parallel edges side by side, the points are the middle of where they

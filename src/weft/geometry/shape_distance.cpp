@@ -58,31 +58,38 @@ struct BoxSearch {
       weights = w;
     }
   }
-  void consider_nearest_to(const Vec3& p) { consider(point_triangle_distance(p, x[0], x[1], x[2]).weights); }
 };
 
 /// Where max_k (|p_k| − h_k) is smallest on p + t d, 0 <= t <= 1.
 ///
-/// It is the larger of two functions, one rising and one falling: U = max_k (s_k p_k − h_k) and
-/// D = max_m (−s_m p_m − h_m), s the signs of d. Of all pairs U_k, D_m the one that meets highest meets where
-/// U and D do: at the mean of their values at t = 0, weighted each by the other's slope.
+/// It is the larger of two functions, one rising and one falling: max_k (u_k + m_k t) and max_k (v_k − m_k
+/// t), with m = |d|. Of all pairs of lines u_i, v_j the one that meets highest meets as high as the two
+/// functions do: at the mean of u_i and v_j, each weighted by the other's slope. From there follows the
+/// stretch of t where no line is higher.
 double deepest_inside(const Vec3& p, const Vec3& d, const Vec3& h) {
-  double highest = -std::numeric_limits<double>::infinity();
-  double t = 0;
+  const Vec3 m = d.cwiseAbs();
+  Vec3 u, v;
   for (int k = 0; k < 3; ++k) {
-    for (int m = 0; m < 3; ++m) {
-      const double slope_u = std::abs(d[k]), slope_d = std::abs(d[m]);
-      if (!(slope_u + slope_d > 0)) continue;
-      const double u = std::copysign(1.0, d[k]) * p[k] - h[k];
-      const double v = -std::copysign(1.0, d[m]) * p[m] - h[m];
-      const double value = (u * slope_d + v * slope_u) / (slope_u + slope_d);
-      if (value > highest) {
-        highest = value;
-        t = (v - u) / (slope_u + slope_d);
-      }
+    const double rising = d[k] < 0 ? -p[k] : p[k];
+    u[k] = rising - h[k];
+    v[k] = -rising - h[k];
+  }
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double slopes = m[i] + m[j];
+      if (slopes > 0) highest = std::max(highest, (u[i] * m[j] + v[j] * m[i]) / slopes);
     }
   }
-  return detail::clamp_01(t);
+  // Rounding must not tip a line that hardly slopes.
+  highest += 1e-15 * (p.cwiseAbs() + m + h).maxCoeff();
+  double first = 0, last = 1;
+  for (int k = 0; k < 3; ++k) {
+    if (m[k] == 0) continue;
+    first = std::max(first, (v[k] - highest) / m[k]);
+    last = std::min(last, (highest - u[k]) / m[k]);
+  }
+  return 0.5 * (detail::clamp_01(first) + detail::clamp_01(last));
 }
 
 /// Where the squared distance φ = Σ_k max(|p_k| − h_k, 0)² is smallest on p + t d, 0 <= t <= 1. Its slope
@@ -128,7 +135,7 @@ void search_inside(BoxSearch& search) {
   if (f > 0) return;
   Vec3 p;
   for (int k = 0; k < 3; ++k) p[k] = std::copysign(f + h[k], n[k]);
-  search.consider_nearest_to(p);
+  search.consider(point_triangle_distance(p, x[0], x[1], x[2]).weights);
 
   // The cut with the middle plane p_k = 0 between the two faces that are closest to each other.
   int k;
@@ -155,7 +162,8 @@ void search_outside(BoxSearch& search) {
   if (n.dot(x[0]) < 0) n = -n;
   Vec3 corner;
   for (int k = 0; k < 3; ++k) corner[k] = std::copysign(h[k], n[k]);
-  search.consider_nearest_to(corner);
+  const PointTriangleDistance below = point_triangle_distance(corner, x[0], x[1], x[2]);
+  if (below.region == TriangleRegion::face) search.consider(below.weights);
 }
 
 /// Of the faces that the deepest point p is equally far from, the one that all corners pass soonest.
@@ -241,17 +249,15 @@ TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, co
   BoxSearch search{box.half_size,
                    {to_box * (a - box.center), to_box * (b - box.center), to_box * (c - box.center)}};
   const auto& x = search.x;
+  const Vec3& h = search.h;
+  // No point of the triangle is nearer to the middle, along any axis, than its bounds are.
   const Vec3 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]), high = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
-  const Vec3& h = box.half_size;
-  const Vec3 apart = (low - h).cwiseMax(-high - h);
-  const double least = apart.cwiseMax(0.0).norm();
+  const double least = box_distance(low.cwiseMax(-high).cwiseMax(0.0), h);
   if (least > reach) return {least, Vec3::UnitX(), Vec3::UnitY()};
 
   for (int i = 0; i < 3; ++i) search.consider(Vec3::Unit(i));
-  if (search.distance > least || least == 0) {
-    if (least == 0) search_inside(search);
-    if (search.distance > 0) search_outside(search);
-  }
+  if (search.distance > least && least <= 0) search_inside(search);
+  if (search.distance > least && search.distance > 0) search_outside(search);
   const Vec3 p = search.point(search.weights);
   const Vec3 normal = search.distance > 0 ? box_normal(p, h) : shortest_way_out(search, p);
   return {search.distance, search.weights, box.rotation * normal};

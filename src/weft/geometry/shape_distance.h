@@ -15,7 +15,9 @@
 /// The normal is the gradient of the signed distance at that point: the unit direction out of the solid. For
 /// a triangle with weights w the distance changes with the corners by ∂d/∂x_i = w_i normal.
 ///
-/// Exact to some 1e-14 of the largest length in play (shape, triangle, and how far they are apart).
+/// Distances are exact to some 1e-14 of the largest length in play (shape, triangle, and how far they are
+/// apart), normals to as much over the distance; where two features are equally near to within rounding, the
+/// normal is that of either.
 
 #include <limits>
 
