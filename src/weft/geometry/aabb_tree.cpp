@@ -126,7 +126,8 @@ WEFT_ALWAYS_INLINE void test_leaf_pairs_body(const Leaf* left, const Leaf* right
     if (any == 0) continue;
     for (int i = 0; i < kLanes; ++i) {
       for (int j = is_same ? i + 1 : 0; j < kLanes; ++j) {
-        if (!hits[i][j]) continue;
+        // An infinite box overlaps even the empty ones that fill the last leaf.
+        if (!hits[i][j] || a.item[i] < 0 || b.item[j] < 0) continue;
         const bool swaps = is_self && b.item[j] < a.item[i];
         pairs.push_back(swaps ? ItemPair{b.item[j], a.item[i]} : ItemPair{a.item[i], b.item[j]});
       }
