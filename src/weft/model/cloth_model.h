@@ -31,6 +31,7 @@ struct ClothMaterial {
   double damping = 0;        // of every spring, >= 0 [N·s/m]
   DampingKind damping_kind = DampingKind::projected;
   double thickness = 1e-3;  // particles keep half of it from colliders, >= 0 [m]
+  double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
 };
 
 struct ClothTopology {

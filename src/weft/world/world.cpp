@@ -25,6 +25,7 @@ void validate(const ClothMaterial& m, const std::string& cloth) {
   at_least_zero(m.bend, "bending stiffness");
   at_least_zero(m.damping, "damping");
   at_least_zero(m.thickness, "thickness");
+  at_least_zero(m.friction, "friction");
 }
 
 /// A sum of products with zero: 0 if all values are finite, else not a number.
