@@ -144,10 +144,10 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
   const SceneWorld built = build_world(desc, make_serial_jobs());
   const RunResult result = run_scene(desc, {.frames = 3});
   ASSERT_EQ(result.animation.bodies.size(), 3u);
-  for (const std::size_t frame : {0, 3}) {
+  for (const int frame : {0, 3}) {
     for (const int b : {0, 1}) {
       const ColliderShape shape = shape_at(built.world.colliders()[b], frame / 60.0);
-      for (const Vec3& p : vertices(result.animation.bodies[b], frame)) {
+      for (const Vec3& p : vertices(result.animation.bodies[b], static_cast<std::size_t>(frame))) {
         // Rounding of turning and moving.
         EXPECT_NEAR(signed_distance(shape, p).distance, 0, 1e-12) << "collider " << b << ", frame " << frame;
       }
@@ -157,7 +157,7 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
   const auto middle = [&](std::size_t frame) {
     Vec3 sum = Vec3::Zero();
     const std::vector<Vec3> placed = vertices(result.animation.bodies[2], frame);
-    for (const Vec3& p : placed) sum += p / placed.size();
+    for (const Vec3& p : placed) sum += p / static_cast<double>(placed.size());
     return sum;
   };
   EXPECT_LT((middle(0) - Vec3(2, 0.1, 0)).norm(), 1e-12);
