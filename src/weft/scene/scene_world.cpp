@@ -103,7 +103,7 @@ void warn_about_start(const std::vector<Collider>& colliders, const std::string&
     if (inside == 0) continue;
     warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
                        (inside == 1 ? " particle" : " particles") + " inside collider \"" + collider.name +
-                       "\"; move one of the two apart");
+                       "\"; move them apart");
   }
 }
 
