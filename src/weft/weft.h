@@ -28,6 +28,7 @@
 #include "weft/core/vec.h"
 #include "weft/mesh/clean.h"
 #include "weft/mesh/grid.h"
+#include "weft/mesh/solid.h"
 #include "weft/mesh/triangle_mesh.h"
 // What a cloth is, and what of it moves:
 #include "weft/model/cloth_model.h"

@@ -2,27 +2,53 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
+#include "weft/mesh/clean.h"
 #include "weft/mesh/grid.h"
+#include "weft/mesh/solid.h"
 
 namespace weft {
 namespace {
-
-double signed_volume(const TriangleMesh& mesh) {
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    volume += mesh.positions[a].dot(mesh.positions[b].cross(mesh.positions[c])) / 6;
-  }
-  return volume;
-}
 
 TEST(SphereMesh, IsClosedOutwardAndAlmostTheSphere) {
   const TriangleMesh mesh = make_sphere_mesh(Vec3(1, 2, 3), 0.5, 32);
   for (const Edge& edge : build_edges(mesh)) EXPECT_EQ(edge.num_triangles, 2);
   const double sphere = 4.0 / 3 * 3.14159265358979 * 0.125;
-  EXPECT_GT(signed_volume(mesh), 0.98 * sphere);
-  EXPECT_LT(signed_volume(mesh), sphere);
+  EXPECT_GT(compute_signed_volume(mesh), 0.98 * sphere);
+  EXPECT_LT(compute_signed_volume(mesh), sphere);
+}
+
+TEST(CapsuleMesh, IsClosedOutwardAndAlmostTheCapsule) {
+  const Vec3 a(1, 2, 3), b(1.3, 1.5, 3.8);
+  const double pi = 3.14159265358979, r = 0.2, length = (b - a).norm();
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a), std::pair(a, a)}) {
+    const TriangleMesh mesh = make_capsule_mesh(from, to, r, 32);
+    const SurfaceEdges edges = count_surface_edges(mesh);
+    // Without length the two ends lie on each other, and the side between them has no area.
+    EXPECT_EQ(edges.border + edges.non_manifold + edges.twisted, 0);
+    const double capsule = pi * r * r * (4.0 / 3 * r + (to - from).norm());
+    EXPECT_GT(compute_signed_volume(mesh), 0.98 * capsule);
+    EXPECT_LT(compute_signed_volume(mesh), capsule);
+    for (const Vec3& p : mesh.positions) {
+      const double s = from == to ? 0 : std::clamp((p - from).dot(to - from) / (length * length), 0.0, 1.0);
+      EXPECT_NEAR((p - from - s * (to - from)).norm(), r, 1e-12);
+    }
+  }
+}
+
+TEST(BoxMesh, IsClosedOutwardAndTheBox) {
+  const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const TriangleMesh mesh = make_box_mesh(Vec3(3, 2, 1), Vec3(0.5, 0.1, 0.3), rotation);
+  const SurfaceEdges edges = count_surface_edges(clean_mesh(mesh, {.weld_distance = 1e-9}).mesh);
+  EXPECT_EQ(edges.border + edges.non_manifold + edges.twisted, 0);
+  EXPECT_NEAR(compute_signed_volume(mesh), 8 * 0.5 * 0.1 * 0.3, 1e-12);
+  for (const Vec3& p : mesh.positions) {
+    const Vec3 corner = (rotation.transpose() * (p - Vec3(3, 2, 1))).cwiseAbs();
+    EXPECT_TRUE(corner.isApprox(Vec3(0.5, 0.1, 0.3), 1e-12));
+  }
 }
 
 TEST(SquareMesh, FacesAlongItsNormal) {

@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "weft/core/error.h"
+#include "weft/io/obj_reader.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
 
 namespace weft {
 namespace {
@@ -99,6 +103,66 @@ TEST(Runner, RecordsTheStartAndEveryFrame) {
   ASSERT_EQ(result.animation.bodies.size(), 1u);
   EXPECT_EQ(result.report.lowest_y.size(), 5u);
   EXPECT_EQ(result.report.kinetic_energy.size(), 5u);
+}
+
+/// A body's vertices at a frame, in the world.
+std::vector<Vec3> vertices(const RigidMesh& body, std::size_t frame) {
+  const RigidMesh::Pose& pose = body.poses.at(std::min(frame, body.poses.size() - 1));
+  std::vector<Vec3> placed;
+  for (const Vec3& p : body.mesh.positions) placed.push_back(pose.rotation * p + pose.translation);
+  return placed;
+}
+
+TEST(Runner, ShowsEveryColliderWhereItIs) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "runner_test";
+  std::filesystem::create_directories(folder);
+  write_obj(folder / "body.obj", make_sphere_mesh({0.1, 0, 0}, 0.2, 8));
+  const std::string scene = R"([scene]
+format = 1
+[[cloth]]
+grid = { size = [1, 1], cells = [4, 4] }
+position = [0, 5, 0]
+[[collider]]
+shape = "capsule"
+a = [0, 1, 0]
+b = [1, 2, 0.5]
+radius = 0.1
+motion = [{ time = 0 }, { time = 0.05, position = [0.3, 0, 0], rotation = [0, 90, 0] }]
+[[collider]]
+shape = "box"
+center = [3, 1, 2]
+half_size = [0.1, 0.2, 0.3]
+rotation = [10, 20, 30]
+[[collider]]
+shape = "mesh"
+file = "body.obj"
+rotation = [0, 0, 90]
+position = [2, 0, 0]
+motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
+)";
+  const SceneDesc desc = parse_scene(scene, folder / "scene.toml");
+  const SceneWorld built = build_world(desc, make_serial_jobs());
+  const RunResult result = run_scene(desc, {.frames = 3});
+  ASSERT_EQ(result.animation.bodies.size(), 3u);
+  for (const int frame : {0, 3}) {
+    for (const int b : {0, 1}) {
+      const ColliderShape shape = shape_at(built.world.colliders()[b], frame / 60.0);
+      for (const Vec3& p : vertices(result.animation.bodies[b], static_cast<std::size_t>(frame))) {
+        // Rounding of turning and moving.
+        EXPECT_NEAR(signed_distance(shape, p).distance, 0, 1e-12) << "collider " << b << ", frame " << frame;
+      }
+    }
+  }
+  // The mesh's middle, (0.1, 0, 0) in the file, is first turned to y, then by its motion to z.
+  const auto middle = [&](std::size_t frame) {
+    Vec3 sum = Vec3::Zero();
+    const std::vector<Vec3> placed = vertices(result.animation.bodies[2], frame);
+    for (const Vec3& p : placed) sum += p / static_cast<double>(placed.size());
+    return sum;
+  };
+  EXPECT_LT((middle(0) - Vec3(2, 0.1, 0)).norm(), 1e-12);
+  EXPECT_LT((middle(3) - Vec3(2, 0, 0.1)).norm(), 1e-12);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Runner, KeepsWhatWasDoneWhenInterrupted) {

@@ -18,7 +18,7 @@ TEST(Manual, ItsSceneFileIsGood) {
   ASSERT_NE(end, std::string::npos);
   const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/scenes.md");
   EXPECT_EQ(scene.cloths.at(0).pins.size(), 4u);
-  EXPECT_EQ(scene.colliders.size(), 1u);
+  EXPECT_EQ(scene.colliders.size(), 4u);
 
   // The values it shows as usual are the defaults.
   const SceneDesc defaults;
@@ -28,6 +28,7 @@ TEST(Manual, ItsSceneFileIsGood) {
   EXPECT_EQ(scene.solver.integrator, defaults.solver.integrator);
   EXPECT_EQ(scene.cloths[0].material.structural, ClothMaterial{}.structural);
   EXPECT_EQ(scene.cloths[0].material.thickness, ClothMaterial{}.thickness);
+  EXPECT_EQ(scene.cloths[0].material.friction, ClothMaterial{}.friction);
 }
 
 }  // namespace

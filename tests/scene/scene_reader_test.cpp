@@ -105,6 +105,7 @@ density = 0.3
 damping = 0.01
 damping_kind = "plain"
 thickness = 0.002
+friction = 0.1
 )")
                                      .material;
   EXPECT_EQ(material.structural, 200);
@@ -114,6 +115,7 @@ thickness = 0.002
   EXPECT_EQ(material.damping, 0.01);
   EXPECT_EQ(material.damping_kind, DampingKind::plain);
   EXPECT_EQ(material.thickness, 0.002);
+  EXPECT_EQ(material.friction, 0.1);
 }
 
 TEST(SceneReader, ReadsEveryModelByName) {
@@ -191,7 +193,7 @@ motion = [{ time = 0 }, { time = 1, position = [0, 1, 0] }, { time = 1.5, rotati
 }
 
 TEST(SceneReader, ReadsColliders) {
-  const std::vector<Collider> colliders = parse(kScene + kGrid + R"([[collider]]
+  const std::vector<ColliderSceneDesc> colliders = parse(kScene + kGrid + R"([[collider]]
 shape = "sphere"
 center = [0, 0.4, 0]
 radius = 0.3
@@ -205,7 +207,7 @@ normal = [3, 4, 0]
 [[collider]]
 shape = "plane"
 )")
-                                              .colliders;
+                                                       .colliders;
   ASSERT_EQ(colliders.size(), 3u);
   EXPECT_EQ(colliders[0].name, "collider");
   EXPECT_EQ(std::get<Sphere>(colliders[0].shape).center, Vec3(0, 0.4, 0));
@@ -219,6 +221,61 @@ shape = "plane"
   EXPECT_EQ(colliders[1].friction, Collider().friction);
   EXPECT_EQ(std::get<Plane>(colliders[2].shape).normal, Vec3::UnitY());
   EXPECT_TRUE(colliders[2].motion.is_still());
+}
+
+TEST(SceneReader, ReadsEveryKeyOfCapsulesAndBoxes) {
+  const std::vector<ColliderSceneDesc> colliders = parse(kScene + kGrid + R"([[collider]]
+shape = "capsule"
+a = [0, 1, 0]
+b = [0.5, 1, 0]
+radius = 0.1
+friction = 0.5
+[[collider]]
+name = "crate"
+shape = "box"
+center = [0, 1, 2]
+half_size = [0.1, 0.2, 0.3]
+rotation = [0, 90, 0]
+motion = [{ time = 0 }, { time = 1, rotation = [0, 90, 0] }]
+[[collider]]
+shape = "box"
+half_size = [1, 1, 1]
+)")
+                                                       .colliders;
+  ASSERT_EQ(colliders.size(), 3u);
+  const Capsule& capsule = std::get<Capsule>(colliders[0].shape);
+  EXPECT_EQ(capsule.a, Vec3(0, 1, 0));
+  EXPECT_EQ(capsule.b, Vec3(0.5, 1, 0));
+  EXPECT_EQ(capsule.radius, 0.1);
+  EXPECT_EQ(colliders[0].friction, 0.5);
+  const OrientedBox& box = std::get<OrientedBox>(colliders[1].shape);
+  EXPECT_EQ(colliders[1].name, "crate");
+  EXPECT_EQ(box.center, Vec3(0, 1, 2));
+  EXPECT_EQ(box.half_size, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(box.rotation, rotation_from_angles_deg({0, 90, 0}));
+  EXPECT_FALSE(colliders[1].motion.is_still());
+  EXPECT_EQ(std::get<OrientedBox>(colliders[2].shape).rotation, Mat3(Mat3::Identity()));
+}
+
+TEST(SceneReader, FindsMeshesOfCollidersBesideTheScene) {
+  const TemporaryFile mesh("scene_reader_test_body.obj");
+  const std::string colliders = R"([[collider]]
+shape = "mesh"
+file = "scene_reader_test_body.obj"
+up = "z"
+scale = 0.01
+position = [1, 2, 3]
+rotation = [0, 0, 45]
+)";
+  const SceneDesc scene = parse_scene(kScene + kGrid + colliders, mesh.path().parent_path() / "scene.toml");
+  const PlacedMesh& placed = std::get<PlacedMesh>(scene.colliders.at(0).shape);
+  EXPECT_EQ(placed.source.file, mesh.path());
+  EXPECT_TRUE(placed.source.up_is_z);
+  EXPECT_EQ(placed.source.scale, 0.01);
+  EXPECT_TRUE(placed.source.weld) << "a collider has no seams";
+  EXPECT_EQ(placed.source.weld_distance, 0);
+  EXPECT_EQ(placed.position, Vec3(1, 2, 3));
+  EXPECT_EQ(placed.rotation_deg, Vec3(0, 0, 45));
 }
 
 TEST(SceneReader, ReadsSteadyWind) {

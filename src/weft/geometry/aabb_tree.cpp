@@ -94,7 +94,7 @@ using aabb_tree::kLanes;
 
 /// Which of the eight boxes b overlap box i of the eight boxes a and share no key with it: 1 each, else 0.
 /// The result is 0 if none does.
-template <class Leaf>
+template <bool kUsesKeys, class Leaf>
 WEFT_ALWAYS_INLINE int test_lane(const Leaf& a, int i, const Leaf& b, int* hit) {
   const float min_x = a.min[0][i], min_y = a.min[1][i], min_z = a.min[2][i];
   const float max_x = a.max[0][i], max_y = a.max[1][i], max_z = a.max[2][i];
@@ -103,46 +103,54 @@ WEFT_ALWAYS_INLINE int test_lane(const Leaf& a, int i, const Leaf& b, int* hit) 
   for (int j = 0; j < kLanes; ++j) {
     const int overlaps = (min_x <= b.max[0][j]) & (b.min[0][j] <= max_x) & (min_y <= b.max[1][j]) &
                          (b.min[1][j] <= max_y) & (min_z <= b.max[2][j]) & (b.min[2][j] <= max_z);
-    const int u = b.key[0][j], v = b.key[1][j], w = b.key[2][j];
-    const int is_joined =
-        (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
-    hit[j] = overlaps & (is_joined ^ 1);
+    hit[j] = overlaps;
+    if constexpr (kUsesKeys) {
+      const int u = b.key[0][j], v = b.key[1][j], w = b.key[2][j];
+      const int is_joined =
+          (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
+      hit[j] &= is_joined ^ 1;
+    }
     any |= hit[j];
   }
   return any;
 }
 
 /// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once.
-template <class Leaf, class LeafPair>
-WEFT_ALWAYS_INLINE void test_leaf_pairs_body(const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs,
-                                             int count, bool is_self, std::vector<ItemPair>& pairs) {
+template <bool kIsSelf, class Leaf, class LeafPair>
+WEFT_ALWAYS_INLINE void test_leaf_pairs(const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs,
+                                        int count, std::vector<ItemPair>& pairs) {
   for (int n = 0; n < count; ++n) {
     const Leaf& a = left[leaf_pairs[n].a];
     const Leaf& b = right[leaf_pairs[n].b];
-    const bool is_same = is_self && leaf_pairs[n].a == leaf_pairs[n].b;
+    const bool is_same = kIsSelf && leaf_pairs[n].a == leaf_pairs[n].b;
     alignas(64) int hits[kLanes][kLanes];
     int any = 0;
-    for (int i = 0; i < kLanes; ++i) any |= test_lane(a, i, b, hits[i]);
+    for (int i = 0; i < kLanes; ++i) any |= test_lane<kIsSelf>(a, i, b, hits[i]);
     if (any == 0) continue;
     for (int i = 0; i < kLanes; ++i) {
       for (int j = is_same ? i + 1 : 0; j < kLanes; ++j) {
         // An infinite box overlaps even the empty ones that fill the last leaf.
         if (!hits[i][j] || a.item[i] < 0 || b.item[j] < 0) continue;
-        const bool swaps = is_self && b.item[j] < a.item[i];
+        const bool swaps = kIsSelf && b.item[j] < a.item[i];
         pairs.push_back(swaps ? ItemPair{b.item[j], a.item[i]} : ItemPair{a.item[i], b.item[j]});
       }
     }
   }
 }
 
-}  // namespace
+#define WEFT_LEAF_PAIRS                                                                              \
+  (const aabb_tree::Leaf* left, const aabb_tree::Leaf* right, const aabb_tree::LeafPair* leaf_pairs, \
+   int count, std::vector<ItemPair>& pairs)
+#define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, leaf_pairs, count, pairs)
 
-using aabb_tree::Leaf;
-using aabb_tree::LeafPair;
-WEFT_MULTIVERSION(test_leaf_pairs,
-                  (const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs, int count, bool is_self,
-                   std::vector<ItemPair>& pairs),
-                  (left, right, leaf_pairs, count, is_self, pairs))
+WEFT_ALWAYS_INLINE void test_within_body WEFT_LEAF_PAIRS { test_leaf_pairs<true> WEFT_LEAF_PAIRS_ARGUMENTS; }
+WEFT_ALWAYS_INLINE void test_between_body WEFT_LEAF_PAIRS {
+  test_leaf_pairs<false> WEFT_LEAF_PAIRS_ARGUMENTS;
+}
+WEFT_MULTIVERSION(test_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
+WEFT_MULTIVERSION(test_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
+
+}  // namespace
 
 void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs) {
   num_items_ = static_cast<int>(boxes.size());
@@ -255,8 +263,9 @@ void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& fi
     chunk.pairs.clear();
     chunk.box_pairs = 0;
     find_leaf_pairs(begin, end, chunk);
-    test_leaf_pairs(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
-                    static_cast<int>(chunk.leaf_pairs.size()), is_self, chunk.pairs);
+    const auto test = is_self ? test_within : test_between;
+    test(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
+         static_cast<int>(chunk.leaf_pairs.size()), chunk.pairs);
     chunk.box_pairs += kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
   });
   search.pairs.clear();

@@ -29,7 +29,7 @@ void require_usable(const TriangleMesh& mesh) {
       }
     }
   }
-  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles, so there is no cloth in it");
+  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles");
 }
 
 /// For each vertex the lowest-numbered vertex that it is sewn to: closer than `distance`, directly or through
@@ -130,7 +130,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     }
   }
 
-  // Drop triangles that carry no cloth.
+  // Drop triangles that are none.
   const auto [flat, first_flat] = keep_triangles(mesh, [&](int t) { return has_area(mesh, t); });
   if (flat > 0) {
     warnings.push_back(number(flat) + " triangles without area were dropped (the first is triangle " +
@@ -170,7 +170,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.vertex_of_source.resize(source.positions.size());
   for (int v = 0; v < source.num_vertices(); ++v) result.vertex_of_source[v] = new_index[twin[v]];
 
-  warn_about_topology(mesh, warnings);
+  if (options.is_cloth) warn_about_topology(mesh, warnings);
   return result;
 }
 

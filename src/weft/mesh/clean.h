@@ -11,6 +11,7 @@ namespace weft {
 struct CleanOptions {
   /// Vertices closer than this are sewn into one [m]; 0 sews exact duplicates, negative sews nothing.
   double weld_distance = -1;
+  bool is_cloth = true;  // whether to warn of unsewn seams and of edges without bending springs
 };
 
 struct CleanMesh {

@@ -77,6 +77,58 @@ TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings) {
   return mesh;
 }
 
+TriangleMesh make_capsule_mesh(const Vec3& a, const Vec3& b, double radius, int rings) {
+  // A sphere with an even number of rings, so that one lies on the equator, which is cut there and pulled
+  // apart.
+  const int half = std::max(rings / 2, 1), segments = 4 * half;
+  const Vec3 axis = b - a;
+  const Mat3 rotation = axis.norm() > 0
+                            ? Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), axis).toRotationMatrix()
+                            : Mat3(Mat3::Identity());
+  const TriangleMesh sphere = make_sphere_mesh(Vec3::Zero(), radius, 2 * half);
+  TriangleMesh mesh;
+  const int first_of_equator = 1 + (half - 1) * segments;
+  const auto lower = [&](int v) { return v + segments; };
+  for (int v = 0; v < sphere.num_vertices(); ++v) {
+    if (v < first_of_equator + segments) mesh.positions.push_back(b + rotation * sphere.positions[v]);
+  }
+  for (int v = first_of_equator; v < sphere.num_vertices(); ++v) {
+    mesh.positions.push_back(a + rotation * sphere.positions[v]);
+  }
+  const auto is_upper = [&](const Triangle& tri) {
+    return std::any_of(tri.begin(), tri.end(), [&](int v) { return v < first_of_equator; });
+  };
+  for (const Triangle& tri : sphere.triangles) {
+    mesh.triangles.push_back(is_upper(tri) ? tri : Triangle{lower(tri[0]), lower(tri[1]), lower(tri[2])});
+  }
+  for (int s = 0; s < segments; ++s) {
+    const int p = first_of_equator + s, q = first_of_equator + (s + 1) % segments;
+    mesh.triangles.push_back({p, lower(p), lower(q)});
+    mesh.triangles.push_back({p, lower(q), q});
+  }
+  return mesh;
+}
+
+TriangleMesh make_box_mesh(const Vec3& center, const Vec3& half_size, const Mat3& rotation) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {1, -1}) {
+      // normal, u and w are right-handed: the corners run counter-clockwise seen from outside.
+      const Vec3 normal = side * half_size[axis] * Vec3::Unit(axis);
+      const Vec3 u = half_size[(axis + 1) % 3] * Vec3::Unit((axis + 1) % 3);
+      const Vec3 w = side * half_size[(axis + 2) % 3] * Vec3::Unit((axis + 2) % 3);
+      const int first = mesh.num_vertices();
+      for (const Vec3& corner :
+           {Vec3(normal - u - w), Vec3(normal + u - w), Vec3(normal + u + w), Vec3(normal - u + w)}) {
+        mesh.positions.push_back(center + rotation * corner);
+      }
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+  }
+  return mesh;
+}
+
 TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side) {
   const Vec3 u = normal.unitOrthogonal() * (side / 2);
   const Vec3 w = normal.cross(u);

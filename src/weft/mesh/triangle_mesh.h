@@ -43,6 +43,14 @@ std::vector<Edge> build_edges(const TriangleMesh& mesh);
 /// A sphere of about `rings` rings of triangles, for display.
 TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings);
 
+/// The capsule around the segment a–b, outward, for display: its halves of a sphere have about `rings` rings
+/// together.
+TriangleMesh make_capsule_mesh(const Vec3& a, const Vec3& b, double radius, int rings);
+
+/// A box turned by `rotation` around its centre, outward, for display: each face has corners of its own, so
+/// that edges are drawn sharp.
+TriangleMesh make_box_mesh(const Vec3& center, const Vec3& half_size, const Mat3& rotation);
+
 /// A square of the given side around `point`, perpendicular to the unit vector `normal`, for display.
 TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side);
 

@@ -38,22 +38,8 @@ void read_weld(TomlTable& cloth, MeshFile& mesh) {
   }
 }
 
-void read_up(TomlTable& cloth, bool& up_is_z) {
-  cloth.read_choice<bool>("up", up_is_z, {{"y", false}, {"z", true}});
-}
-
 MeshFile read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
-  MeshFile mesh;
-  std::string name;
-  std::error_code unreadable;
-  const TomlValue value = cloth.get("mesh");
-  if (value.read(name)) {
-    mesh.file = folder / name;
-    const bool exists = std::filesystem::is_regular_file(mesh.file, unreadable);
-    if (!exists) value.mistake("there is no file " + quote(mesh.file.generic_string(), 1000));
-  }
-  read_up(cloth, mesh.up_is_z);
-  cloth.read("scale", mesh.scale, above_zero("m per unit of the file"));
+  MeshFile mesh = read_mesh_file(cloth, "mesh", folder);
   read_weld(cloth, mesh);
   return mesh;
 }
@@ -77,7 +63,7 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
 }
 
 void refuse_si_stiffness(TomlTable& fabric) {
-  for (const char* key : {"c11", "c22", "c12", "g", "bend_warp", "bend_weft", "bend_bias", "friction"}) {
+  for (const char* key : {"c11", "c22", "c12", "g", "bend_warp", "bend_weft", "bend_bias"}) {
     fabric.refuse(
         key,
         "SI fabric values are not there yet; give spring_structural, spring_shear and spring_bend in N/m");
@@ -100,11 +86,27 @@ ClothMaterial read_fabric(TomlTable& cloth) {
   fabric.read_choice<DampingKind>("damping_kind", material.damping_kind,
                                   {{"plain", DampingKind::plain}, {"projected", DampingKind::projected}});
   fabric.read("thickness", material.thickness, not_negative("m"));
+  fabric.read("friction", material.friction, not_negative());
   refuse_si_stiffness(fabric);
   return material;
 }
 
 }  // namespace
+
+MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder) {
+  MeshFile mesh;
+  std::string name;
+  std::error_code unreadable;
+  const TomlValue value = owner.get(key);
+  if (value && value.read(name)) {
+    mesh.file = folder / name;
+    const bool exists = std::filesystem::is_regular_file(mesh.file, unreadable);
+    if (!exists) value.mistake("there is no file " + quote(mesh.file.generic_string(), 1000));
+  }
+  owner.read_choice<bool>("up", mesh.up_is_z, {{"y", false}, {"z", true}});
+  owner.read("scale", mesh.scale, above_zero("m per unit of the file"));
+  return mesh;
+}
 
 ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::path& folder) {
   ClothSceneDesc cloth;

@@ -3,15 +3,27 @@
 namespace weft {
 namespace {
 
-ColliderShape read_sphere(TomlTable& collider) {
+using Shape = decltype(ColliderSceneDesc::shape);
+
+/// Keys of a mesh, on a shape that is given by keys of its own: refused with the reason, rather than being
+/// unknown.
+void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
+  for (const std::string_view key : {"file", "up", "scale", "position", "rotation"}) {
+    const bool is_own = has_rotation && key == "rotation";
+    if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
+  }
+}
+
+Sphere read_sphere(TomlTable& collider) {
   Sphere sphere;
   collider.require({"radius"}, "a number above 0 in m");
   collider.read("center", sphere.center, any_number("m"));
   collider.read("radius", sphere.radius, above_zero("m"));
+  refuse_mesh_keys(collider, "a sphere has center and radius");
   return sphere;
 }
 
-ColliderShape read_plane(TomlTable& collider) {
+Plane read_plane(TomlTable& collider) {
   Plane plane;
   collider.read("point", plane.point, any_number("m"));
   if (collider.read("normal", plane.normal, any_number())) {
@@ -21,24 +33,66 @@ ColliderShape read_plane(TomlTable& collider) {
       plane.normal.normalize();
     }
   }
+  refuse_mesh_keys(collider, "a plane has point and normal");
   return plane;
 }
 
+Capsule read_capsule(TomlTable& collider) {
+  Capsule capsule;
+  collider.require({"a"}, "3 numbers in m, one end of the axis");
+  collider.require({"b"}, "3 numbers in m, the other end of the axis");
+  collider.require({"radius"}, "a number above 0 in m");
+  collider.read("a", capsule.a, any_number("m"));
+  collider.read("b", capsule.b, any_number("m"));
+  collider.read("radius", capsule.radius, above_zero("m"));
+  refuse_mesh_keys(collider, "a capsule has a, b and radius");
+  return capsule;
+}
+
+OrientedBox read_box(TomlTable& collider) {
+  OrientedBox box;
+  Vec3 rotation_deg = Vec3::Zero();
+  collider.require({"half_size"}, "3 numbers above 0 in m");
+  collider.read("center", box.center, any_number("m"));
+  collider.read("half_size", box.half_size, above_zero("m"), "[0.5, 0.5, 0.5]");
+  collider.read("rotation", rotation_deg, any_number("degrees"), "[0, 90, 0]");
+  box.rotation = rotation_from_angles_deg(rotation_deg);
+  refuse_mesh_keys(collider, "a box has center, half_size and rotation", true);
+  return box;
+}
+
+PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
+  PlacedMesh mesh;
+  collider.require({"file"}, "a mesh file, as in \"body.obj\"");
+  mesh.source = read_mesh_file(collider, "file", folder);
+  mesh.source.weld = true;
+  mesh.source.weld_distance = 0;
+  collider.refuse("weld", "a collider has no seams; its vertices are always sewn where they coincide");
+  collider.read("position", mesh.position, any_number("m"));
+  collider.read("rotation", mesh.rotation_deg, any_number("degrees"), "[0, 90, 0]");
+  return mesh;
+}
+
 /// Of a shape that cannot be read nothing else is judged, for what else belongs to it is not known.
-ColliderShape read_shape(TomlTable& collider) {
-  collider.require({"shape"}, "\"sphere\" or \"plane\"");
+Shape read_shape(TomlTable& collider, const std::filesystem::path& folder) {
+  const std::vector<std::string> names = {"sphere", "plane", "capsule", "box", "mesh"};
+  collider.require({"shape"}, "\"sphere\", \"plane\", \"capsule\", \"box\" or \"mesh\"");
   const TomlValue shape = collider.get("shape");
-  const auto* name = shape ? shape.node().as_string() : nullptr;
-  const bool is_planned = name && (*name == "box" || *name == "capsule" || *name == "mesh");
-  if (is_planned) {
-    shape.mistake(quote(name->get()) + " is not there yet; there are \"sphere\" and \"plane\"");
-  } else if (shape) {
-    const int choice = shape.find_choice({"sphere", "plane"});
-    if (choice == 0) return read_sphere(collider);
-    if (choice == 1) return read_plane(collider);
+  switch (shape ? shape.find_choice(names) : -1) {
+    case 0:
+      return read_sphere(collider);
+    case 1:
+      return read_plane(collider);
+    case 2:
+      return read_capsule(collider);
+    case 3:
+      return read_box(collider);
+    case 4:
+      return read_mesh(collider, folder);
+    default:
+      collider.allow_any_keys();
+      return Sphere();
   }
-  collider.allow_any_keys();
-  return Sphere();
 }
 
 }  // namespace
@@ -55,14 +109,13 @@ std::vector<KeyFrame> read_motion(TomlTable& owner) {
   return frames;
 }
 
-Collider read_collider(TomlTable table, int number) {
-  Collider collider;
+ColliderSceneDesc read_collider(TomlTable table, int number, const std::filesystem::path& folder) {
+  ColliderSceneDesc collider;
   collider.name = number == 1 ? "collider" : "collider " + std::to_string(number);
-  collider.shape = read_shape(table);
+  collider.shape = read_shape(table, folder);
   table.read("name", collider.name);
   table.read("friction", collider.friction, not_negative());
   collider.motion = RigidMotion(read_motion(table));
-  table.refuse("up", "only collider meshes can be turned, and they are not there yet");
   return collider;
 }
 

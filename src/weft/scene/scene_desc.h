@@ -37,10 +37,25 @@ struct PinDesc {
 
 struct MeshFile {
   std::filesystem::path file;   // resolved against the scene file's folder
-  bool up_is_z = false;         // turned so that its z axis becomes the world's y axis
+  bool up_is_z = false;         // turned first, so that its z axis becomes the world's y axis
   double scale = 1;             // of the file's unit, > 0 [m]
   bool weld = false;            // sew vertices that coincide
   double weld_distance = 1e-6;  // within this distance, >= 0 [m]
+};
+
+/// A collider's mesh, where it is at the start.
+struct PlacedMesh {
+  MeshFile source;
+  Vec3 position = Vec3::Zero();      // added after the rotation [m]
+  Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the mesh's own origin [degrees]
+};
+
+/// A Collider, but that a mesh is still a file.
+struct ColliderSceneDesc {
+  std::string name;  // default: "collider", "collider 2", …
+  std::variant<Sphere, Plane, Capsule, OrientedBox, PlacedMesh> shape;
+  double friction = Collider().friction;  // Coulomb's coefficient, >= 0 [1]
+  RigidMotion motion;
 };
 
 struct ClothSceneDesc {
@@ -72,11 +87,11 @@ struct SceneDesc {
   double fps = 60;               // frames per second, > 0
   double duration = 3;           // [s], > 0
   std::vector<ClothSceneDesc> cloths;  // at least one
-  std::vector<Collider> colliders;
+  std::vector<ColliderSceneDesc> colliders;
   WindDesc wind;
   IntegratorSettings solver;
   int steps_per_frame = 1;  // >= 1
-  bool contact = true;      // whether colliders hold cloth off
+  bool contact = true;      // whether colliders, cloth itself and other cloths hold cloth off
 
   int num_frames() const;  // round(duration · fps), at least 1
 };

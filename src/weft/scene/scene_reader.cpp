@@ -104,7 +104,8 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
     scene.cloths.push_back(read_cloth(cloth, static_cast<int>(scene.cloths.size()) + 1, file.parent_path()));
   }
   for (TomlTable& collider : root.tables("collider")) {
-    scene.colliders.push_back(read_collider(collider, static_cast<int>(scene.colliders.size()) + 1));
+    scene.colliders.push_back(
+        read_collider(collider, static_cast<int>(scene.colliders.size()) + 1, file.parent_path()));
   }
   scene.wind = read_wind(root.table("wind"));
   read_solver(root.table("solver"), scene);

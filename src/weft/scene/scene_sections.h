@@ -2,6 +2,7 @@
 /// Private to scene/: the sections of a scene file that are worth a file of their own.
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "weft/scene/scene_desc.h"
@@ -15,8 +16,11 @@ ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::pa
 /// A cloth's pins, in both forms; `shape` is nullptr if it could not be read.
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
 
-/// One [[collider]], the `number`-th from 1.
-Collider read_collider(TomlTable collider, int number);
+/// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
+ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
+
+/// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
+MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
 
 /// The key "motion" of a pin or collider: key frames with increasing times.
 std::vector<KeyFrame> read_motion(TomlTable& owner);

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "weft/core/error.h"
-#include "weft/io/obj_reader.h"
-#include "weft/mesh/clean.h"
+#include "weft/scene/scene_meshes.h"
 
 namespace weft {
 namespace {
@@ -16,27 +15,11 @@ struct LoadedCloth {
   std::vector<int> particle_of_vertex;
 };
 
-LoadedCloth load_mesh(const MeshFile& source, const std::string& cloth, std::vector<std::string>& warnings) {
-  const std::string who = "cloth \"" + cloth + "\" (" + source.file.filename().string() + "): ";
-  ObjMesh obj = read_obj(source.file);
-  for (Vec3& p : obj.mesh.positions) {
-    if (source.up_is_z) p = {p.x(), p.z(), -p.y()};
-    p *= source.scale;
-  }
-  try {
-    CleanMesh clean = clean_mesh(obj.mesh, {.weld_distance = source.weld ? source.weld_distance : -1});
-    for (const auto* list : {&obj.warnings, &clean.warnings}) {
-      for (const std::string& warning : *list) warnings.push_back(who + warning);
-    }
-    return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source)};
-  } catch (const InputError& error) {
-    throw InputError(who + error.what());
-  }
-}
-
 LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings) {
   if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return {build_grid_topology(*grid, desc.model), {}};
-  return load_mesh(std::get<MeshFile>(desc.shape), desc.name, warnings);
+  CleanMesh clean =
+      load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings);
+  return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source)};
 }
 
 std::vector<Vec3> place(const std::vector<Vec3>& rest, const ClothSceneDesc& desc) {
@@ -113,15 +96,14 @@ std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded
   return pins;
 }
 
-void warn_about_start(const SceneDesc& scene, const ClothSceneDesc& cloth, const std::vector<Vec3>& positions,
-                      std::vector<std::string>& warnings) {
-  for (const Collider& collider : scene.colliders) {
-    const ColliderShape shape = shape_at(collider, 0);
-    const auto inside = std::count_if(positions.begin(), positions.end(),
-                                      [&](const Vec3& p) { return signed_distance(shape, p).distance < 0; });
+void warn_about_start(const std::vector<Collider>& colliders, const std::string& cloth,
+                      const std::vector<Vec3>& positions, std::vector<std::string>& warnings) {
+  for (const Collider& collider : colliders) {
+    const int inside = count_inside(shape_at(collider, 0), positions);
     if (inside == 0) continue;
-    warnings.push_back("cloth \"" + cloth.name + "\" starts with " + std::to_string(inside) +
-                       " particles inside collider \"" + collider.name + "\"; they are pushed out");
+    warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
+                       (inside == 1 ? " particle" : " particles") + " inside collider \"" + collider.name +
+                       "\"; move them apart");
   }
 }
 
@@ -137,7 +119,8 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   world.set_wind(wind_at(scene.wind, 0));
   world.set_integrator(scene.solver);
   world.set_contact(scene.contact);
-  for (const Collider& collider : scene.colliders) world.add_collider(collider);
+  for (const ColliderSceneDesc& desc : scene.colliders)
+    world.add_collider(make_collider(desc, result.warnings));
   for (const ClothSceneDesc& desc : scene.cloths) {
     const LoadedCloth loaded = load(desc, result.warnings);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
@@ -147,7 +130,7 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
                                         .positions = positions,
                                         .velocity = desc.velocity});
     world.set_pins(id, make_pins(desc, loaded, positions));
-    warn_about_start(scene, desc, positions, result.warnings);
+    warn_about_start(world.colliders(), desc.name, positions, result.warnings);
   }
   return result;
 }

@@ -15,8 +15,8 @@ struct SceneWorld {
   std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
 };
 
-/// Loads meshes, places cloth, sets pins. Throws InputError where a mesh cannot be used or a pin selects
-/// nothing.
+/// Loads meshes, places cloth, sets pins. A collider's mesh that faces inwards is turned right side out.
+/// Throws InputError where a mesh cannot be used or a pin selects nothing.
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
 /// The wind that blows at a time.

@@ -1,0 +1,116 @@
+#include "weft/mesh/solid.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "weft/core/random.h"
+#include "weft/mesh/clean.h"
+
+namespace weft {
+namespace {
+
+TriangleMesh box(const Vec3& center, double half_size) {
+  const TriangleMesh mesh = make_box_mesh(center, Vec3::Constant(half_size), Mat3::Identity());
+  return clean_mesh(mesh, {.weld_distance = 0}).mesh;
+}
+
+TriangleMesh join(TriangleMesh mesh, const TriangleMesh& other) {
+  const int first = mesh.num_vertices();
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  return mesh;
+}
+
+TEST(SurfaceEdges, OfAClosedSurfaceAreAllGood) {
+  const SurfaceEdges edges = count_surface_edges(box(Vec3::Zero(), 1));
+  EXPECT_TRUE(is_closed(edges));
+  EXPECT_EQ(edges.non_manifold, 0);
+  EXPECT_EQ(edges.twisted, 0);
+}
+
+TEST(SurfaceEdges, CountBordersTwistedTrianglesAndFins) {
+  TriangleMesh open = box(Vec3::Zero(), 1);
+  open.triangles.pop_back();
+  EXPECT_EQ(count_surface_edges(open).border, 3);
+  EXPECT_FALSE(is_closed(count_surface_edges(open)));
+
+  TriangleMesh twisted = box(Vec3::Zero(), 1);
+  std::swap(twisted.triangles[4][0], twisted.triangles[4][1]);
+  EXPECT_EQ(count_surface_edges(twisted).twisted, 3);
+  EXPECT_TRUE(is_closed(count_surface_edges(twisted)));
+
+  TriangleMesh finned = box(Vec3::Zero(), 1);
+  finned.positions.emplace_back(0, 0, 9);
+  finned.triangles.push_back({finned.triangles[0][0], finned.triangles[0][1], 8});
+  EXPECT_EQ(count_surface_edges(finned).non_manifold, 1);
+  EXPECT_EQ(count_surface_edges(finned).border, 2);
+}
+
+TEST(SignedVolume, IsThatOfTheSolidWhereverItLies) {
+  EXPECT_NEAR(compute_signed_volume(box(Vec3(1e3, -2e3, 3e3), 0.5)), 1, 1e-9);
+  EXPECT_EQ(compute_signed_volume({}), 0);
+}
+
+TEST(SignedVolume, IsNegativeInsideOut) {
+  TriangleMesh mesh = box(Vec3(1, 2, 3), 1);
+  turn_inside_out(mesh);
+  EXPECT_NEAR(compute_signed_volume(mesh), -8, 1e-12);
+  EXPECT_EQ(count_surface_edges(mesh).twisted, 0);
+}
+
+TEST(WindingNumbers, AgreeWithTheSphere) {
+  const Vec3 center(0.3, 0.2, 0.1);
+  const TriangleMesh mesh = make_sphere_mesh(center, 0.5, 40);
+  Random random(1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 4000; ++i)
+    points.emplace_back(random.uniform(-0.5, 1), random.uniform(-0.5, 1), random.uniform(-0.5, 1));
+  const std::vector<int> winding = compute_winding_numbers(mesh, points);
+  int num_inside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double r = (points[i] - center).norm();
+    if (r > 0.498 && r < 0.5)
+      continue;  // between the sphere and its flat triangles: sagitta 0.5 (1 - cos 4.5°)
+    EXPECT_EQ(winding[i], r < 0.5 ? 1 : 0) << points[i].transpose();
+    num_inside += winding[i];
+  }
+  EXPECT_GT(num_inside, 400);
+}
+
+TEST(WindingNumbers, CountPointsBelowVerticesAndEdgesOnce) {
+  // A cloth's grid above, in and under the box, in line with its corners and diagonals; and a mesh whose
+  // pole is hit.
+  std::vector<Vec3> points;
+  for (const double y : {-2.0, -0.5, 0.0, 0.5, 2.0}) {
+    for (int i = -4; i <= 4; ++i) {
+      for (int j = -4; j <= 4; ++j) points.emplace_back(0.5 * i, y, 0.5 * j);
+    }
+  }
+  const auto is_on_surface = [](const Vec3& p) { return p.cwiseAbs().maxCoeff() == 1; };
+  for (const TriangleMesh& mesh : {box(Vec3::Zero(), 1), make_sphere_mesh(Vec3::Zero(), 1, 8)}) {
+    const bool is_box = mesh.num_vertices() == 8;
+    const std::vector<int> winding = compute_winding_numbers(mesh, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& p = points[i];
+      if (is_box && is_on_surface(p)) continue;
+      if (!is_box && p.norm() > 0.9 && p.norm() < 1.01) continue;  // sagitta of eight rings
+      const bool is_inside = is_box ? p.cwiseAbs().maxCoeff() < 1 : p.norm() < 1;
+      EXPECT_EQ(winding[i], is_inside ? 1 : 0) << p.transpose();
+    }
+  }
+}
+
+TEST(WindingNumbers, KnowOverlapsHollowsAndInsideOut) {
+  const std::vector<Vec3> points = {{0.1, 0.2, 0.3}, {0.9, 0.8, 0.7}, {1.6, 1.7, 1.8}, {3, 3, 3}};
+  const TriangleMesh overlapping = join(box(Vec3::Zero(), 1), box(Vec3::Ones(), 1));
+  EXPECT_EQ(compute_winding_numbers(overlapping, points), (std::vector<int>{2, 2, 1, 0}));
+  TriangleMesh hollow = box(Vec3::Zero(), 0.5);
+  turn_inside_out(hollow);
+  EXPECT_EQ(compute_winding_numbers(join(box(Vec3::Zero(), 1), hollow), points),
+            (std::vector<int>{0, 1, 0, 0}));
+  EXPECT_EQ(compute_winding_numbers(hollow, points), (std::vector<int>{-1, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,160 @@
+#include "weft/scene/scene_world.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "weft/core/error.h"
+#include "weft/io/obj_reader.h"
+#include "weft/mesh/solid.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft {
+namespace {
+
+/// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a folder of its own.
+class MeshCollider : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  static TriangleMesh box() { return make_box_mesh(Vec3::Zero(), Vec3::Constant(0.5), Mat3::Identity()); }
+
+  SceneWorld build(const TriangleMesh& mesh, const std::string& keys = "") {
+    write_obj(folder_ / "body.obj", mesh);
+    return build(keys);
+  }
+
+  SceneWorld build(const std::string& keys = "") {
+    const std::string text = R"([scene]
+format = 1
+[[cloth]]
+grid = { size = [1, 1], cells = [8, 8] }
+position = [-0.5, 1, -0.5]
+[[collider]]
+name = "body"
+shape = "mesh"
+file = "body.obj"
+)";
+    return build_world(parse_scene(text + keys, folder_ / "scene.toml"), make_serial_jobs());
+  }
+
+  static const MeshShape& shape(const SceneWorld& built) {
+    return std::get<MeshShape>(built.world.colliders().at(0).shape);
+  }
+
+  std::string failure(const std::string& obj) {
+    std::ofstream(folder_ / "body.obj") << obj;
+    try {
+      build();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "scene_world_test";
+};
+
+bool warns(const SceneWorld& built, const std::string& words) {
+  return std::any_of(built.warnings.begin(), built.warnings.end(),
+                     [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+TEST_F(MeshCollider, IsSewnAndPlaced) {
+  const SceneWorld built =
+      build(box(), "up = \"z\"\nscale = 0.5\nposition = [0, 0.5, 0]\nrotation = [0, 45, 0]\n");
+  EXPECT_TRUE(built.warnings.empty()) << testing::PrintToString(built.warnings);
+  EXPECT_EQ(shape(built).mesh->num_vertices(), 8) << "three corners of faces in each";
+  EXPECT_NEAR(compute_signed_volume(*shape(built).mesh), 0.125, 1e-15);
+  EXPECT_EQ(shape(built).translation, Vec3(0, 0.5, 0));
+  EXPECT_EQ(shape(built).rotation, rotation_from_angles_deg({0, 45, 0}));
+}
+
+TEST_F(MeshCollider, WithoutTrianglesIsNamed) {
+  for (const char* obj : {"", "v 0 0 0\n", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}) {
+    EXPECT_NE(failure(obj).find("collider \"body\""), std::string::npos) << failure(obj);
+    EXPECT_NE(failure(obj).find("body.obj"), std::string::npos) << failure(obj);
+  }
+}
+
+TEST_F(MeshCollider, InsideOutIsTurnedAndNamed) {
+  TriangleMesh mesh = box();
+  turn_inside_out(mesh);
+  const SceneWorld built = build(mesh);
+  EXPECT_TRUE(warns(built, "collider \"body\" (body.obj): is inside out"));
+  EXPECT_TRUE(warns(built, "turned right side out"));
+  EXPECT_NEAR(compute_signed_volume(*shape(built).mesh), 1, 1e-15);
+}
+
+TEST_F(MeshCollider, WithABorderIsNamed) {
+  TriangleMesh mesh = box();
+  mesh.triangles.resize(10);
+  EXPECT_TRUE(warns(build(mesh), "collider \"body\" (body.obj): has a border of 4 edges"));
+}
+
+TEST_F(MeshCollider, WithTwistedTrianglesOrFinsIsNamed) {
+  TriangleMesh mesh = box();
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  EXPECT_TRUE(warns(build(mesh), "3 edges between triangles that face opposite ways"));
+  mesh = box();
+  mesh.positions.emplace_back(0, 2, 0);
+  mesh.triangles.push_back({0, 1, 24});
+  EXPECT_TRUE(warns(build(mesh), "1 edge of more than two triangles"));
+}
+
+TEST_F(MeshCollider, OverTheClothIsNamed) {
+  // The inner 5 × 5 of the sheet's particles are inside the box, those on its sides at ±0.5 are not.
+  const SceneWorld built = build(box(), "scale = 0.6\nposition = [0, 0.9, 0]\n");
+  EXPECT_TRUE(warns(built, "cloth \"cloth\" starts with 25 particles inside collider \"body\""))
+      << testing::PrintToString(built.warnings);
+  EXPECT_TRUE(warns(built, "move them apart"));
+  // As its motion has it at the start.
+  const SceneWorld away =
+      build(box(), "scale = 0.6\nposition = [0, 0.9, 0]\nmotion = [{ time = 0, position = [0, -2, 0] }]\n");
+  EXPECT_TRUE(away.warnings.empty()) << testing::PrintToString(away.warnings);
+}
+
+TEST_F(MeshCollider, WithABorderHasNoInside) {
+  TriangleMesh mesh = box();
+  mesh.triangles.resize(10);
+  EXPECT_FALSE(warns(build(mesh, "position = [0, 0.9, 0]\n"), "starts with"));
+}
+
+TEST(SceneWorld, NamesAnalyticCollidersOverTheCloth) {
+  const std::string text = R"([scene]
+format = 1
+[[cloth]]
+name = "sheet"
+grid = { size = [1, 1], cells = [8, 8] }
+[[collider]]
+name = "pole"
+shape = "capsule"
+a = [0.5, -1, 0.5]
+b = [0.5, 1, 0.5]
+radius = 0.1
+[[collider]]
+name = "crate"
+shape = "box"
+center = [0, 0, 0]
+half_size = [0.2, 0.2, 0.2]
+)";
+  const SceneWorld built = build_world(parse_scene(text, "scene.toml"), make_serial_jobs());
+  ASSERT_EQ(built.warnings.size(), 2u);
+  EXPECT_TRUE(warns(built, "cloth \"sheet\" starts with 1 particle inside collider \"pole\""));
+  EXPECT_TRUE(warns(built, "cloth \"sheet\" starts with 4 particles inside collider \"crate\""));
+}
+
+TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const SceneWorld built = build_world(read_scene(entry.path()), make_serial_jobs());
+    EXPECT_TRUE(built.warnings.empty()) << entry.path() << testing::PrintToString(built.warnings);
+  }
+}
+
+}  // namespace
+}  // namespace weft
