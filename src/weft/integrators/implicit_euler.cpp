@@ -251,6 +251,8 @@ class ImplicitEulerIntegrator final : public Integrator {
       const bool pinned = is_pinned_[s.i] || is_pinned_[s.j];
       matrix_.off_diagonal[p] = pinned ? Mat3::Zero() : Mat3(-block);
     }
+    std::fill(matrix_.off_diagonal.begin() + static_cast<std::ptrdiff_t>(springs.size()),
+              matrix_.off_diagonal.end(), Mat3::Zero());
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       add_contact_blocks(environment_->contacts[c], contact_hessian(c));
     }
