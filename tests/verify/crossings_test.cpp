@@ -194,7 +194,7 @@ TEST(FindCrossings, AreThoseOfAllPairs) {
       }
     }
     std::sort(expected.begin(), expected.end());
-    EXPECT_GT(expected.size(), 1000u);
+    EXPECT_GT(expected.size(), 500u);
     EXPECT_EQ(find_crossings(views), expected);
   }
 }
@@ -263,13 +263,26 @@ TEST(FindCrossings, OnSheetsThatTouchAndTurnBackAreNone) {
   }
 }
 
-TEST(FindCrossings, StayUnderEverySmallMovementOfTheVertices) {
+/// Two triangles, one of each, lie in one plane, or one has no area.
+bool have_triangles_in_one_plane(const TriangleMesh& a, const TriangleMesh& b) {
+  const auto is_on = [](const Corners& plane, const Corners& t) {
+    const Vec3 n = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
+    return std::ranges::all_of(t, [&](const Vec3& p) { return n.dot(p - plane[0]) == 0; });
+  };
+  for (int t = 0; t < a.num_triangles(); ++t) {
+    for (int u = 0; u < b.num_triangles(); ++u) {
+      if (is_on(corners(a, t), corners(b, u)) || is_on(corners(b, u), corners(a, t))) return true;
+    }
+  }
+  return false;
+}
+
+TEST(FindCrossings, AreWhatNoSmallMovementOfTheVerticesUndoes) {
   // Two strips with small integer corners, so that every degeneracy occurs. Where they are said to cross,
   // moving the corners a little cannot part them: and then no corner lies in another's plane, and only
-  // insides count. Where they are said to touch, some small movement parts them; rarely only one that a few
-  // hundred tries do not find.
+  // insides count. Where they are said to touch, one of some hundred small movements parts them.
   Random random(4);
-  int num_crossing = 0, num_touching = 0, num_never_parted = 0;
+  int num_crossing = 0, num_touching = 0;
   for (int i = 0; i < 20000; ++i) {
     TriangleMesh a{{}, {{0, 1, 2}, {2, 1, 3}}}, b = a;
     for (int k = 0; k < 4; ++k) {
@@ -282,18 +295,18 @@ TEST(FindCrossings, StayUnderEverySmallMovementOfTheVertices) {
     if (!crossings(a, b).empty()) {
       ++num_crossing;
       for (int k = 0; k < 10; ++k) ASSERT_FALSE(crossings(shaken(a, 1e-4), shaken(b, 1e-4)).empty()) << i;
-    } else {
+    } else if (!have_triangles_in_one_plane(a, b)) {
       ++num_touching;
       bool is_parted = false;
-      for (int k = 0; k < 300 && !is_parted; ++k) {
-        const Vec3 by = random_vector(random, 1e-4);
-        is_parted = crossings(shaken(a, k % 3 * 1e-4), moved(shaken(b, 1e-4), by)).empty();
+      for (int k = 0; k < 500 && !is_parted; ++k) {
+        const TriangleMesh other = moved(shaken(b, 1e-4), random_vector(random, 1e-4));
+        is_parted = crossings(shaken(a, k % 3 * 1e-4), other).empty();
       }
-      num_never_parted += !is_parted;
+      ASSERT_TRUE(is_parted) << i;
     }
   }
   EXPECT_GT(num_crossing, 2000);
-  EXPECT_LT(num_never_parted, num_touching / 500);
+  EXPECT_GT(num_touching, 2000);
 }
 
 TEST(FindCrossings, CountPairsAlongACut) {

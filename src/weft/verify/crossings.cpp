@@ -1,7 +1,8 @@
 #include "weft/verify/crossings.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "weft/verify/predicates.h"
@@ -168,28 +169,63 @@ struct Around {
 
 // ---- All pairs ----
 
-/// Pairs of triangles whose boxes overlap, by sort and sweep. Boxes are kept in floats: rounding never
-/// changes the order of two numbers, so it hides no overlap.
+/// Pairs of triangles whose boxes overlap: a sweep along one axis in each of many strips along a second.
+/// Boxes are kept in floats: rounding never changes the order of two numbers, so it hides no overlap.
 class Sweep {
  public:
   explicit Sweep(std::span<const SurfaceView> surfaces) {
     for (std::size_t s = 0; s < surfaces.size(); ++s) add(static_cast<int>(s), surfaces[s]);
-    sort_along(widest_axis());
+    choose_axes();
+    std::sort(boxes_.begin(), boxes_.end(), [this](const Box& p, const Box& q) {
+      return std::pair(p.low[sweep_axis_], p.id) < std::pair(q.low[sweep_axis_], q.id);
+    });
+    fill_strips();
   }
 
-  /// Calls visit(p, q) for every two triangles whose boxes overlap.
+  /// Calls visit(p, q) once for every two triangles whose boxes overlap.
   template <class Visit>
   void for_each_pair(Visit visit) const {
     std::vector<int> hits(boxes_.size());
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const int num_hits = collect_overlaps(i, hits.data());
-      for (int h = 0; h < num_hits; ++h) visit(ids_[i], ids_[hits[h]]);
+    for (int s = 0; s < static_cast<int>(strips_.size()); ++s) {
+      const Strip& strip = strips_[s];
+      for (std::size_t i = 0; i < strip.boxes.size(); ++i) {
+        const int num_hits = strip.collect_overlaps(i, hits.data());
+        const Box& box = boxes_[strip.boxes[i]];
+        for (int h = 0; h < num_hits; ++h) {
+          const Box& other = boxes_[strip.boxes[hits[h]]];
+          const bool is_first_in_common = std::max(box.first_strip, other.first_strip) == s;
+          if (is_first_in_common) visit(box.id, other.id);
+        }
+      }
     }
   }
 
  private:
+  static constexpr int kMostStrips = 1024;
+  static constexpr float kBoxesPerStrip = 3;  // width of a strip, in mean widths of boxes
+
   struct Box {
     std::array<float, 3> low, high;
+    TriangleId id;
+    int first_strip = 0;
+  };
+
+  /// The boxes that reach into a strip in the order of the sweep, as columns.
+  struct Strip {
+    std::vector<int> boxes;
+    std::vector<float> start, end, low_y, high_y, low_z, high_z;
+
+    /// Places of boxes after place i that overlap box i; how many.
+    int collect_overlaps(std::size_t i, int* hits) const {
+      const int num_boxes = static_cast<int>(boxes.size());
+      const float to = end[i], ly = low_y[i], hy = high_y[i], lz = low_z[i], hz = high_z[i];
+      int count = 0;
+      for (int j = static_cast<int>(i) + 1; j < num_boxes && start[j] <= to; ++j) {
+        hits[count] = j;
+        count += (low_y[j] <= hy) & (high_y[j] >= ly) & (low_z[j] <= hz) & (high_z[j] >= lz);
+      }
+      return count;
+    }
   };
 
   void add(int surface, const SurfaceView& view) {
@@ -198,67 +234,65 @@ class Sweep {
       const Vec3 &x = view.positions[a], &y = view.positions[b], &z = view.positions[c];
       const Eigen::Vector3f low = x.cwiseMin(y).cwiseMin(z).cast<float>();
       const Eigen::Vector3f high = x.cwiseMax(y).cwiseMax(z).cast<float>();
-      boxes_.push_back({{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
-      ids_.push_back({surface, static_cast<int>(t)});
+      boxes_.push_back(
+          {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, {surface, static_cast<int>(t)}});
     }
   }
 
-  /// The axis along which the boxes' lower ends vary most.
-  int widest_axis() const {
+  /// The sweep goes where the boxes vary most, the strips lie where they vary second most.
+  void choose_axes() {
     Vec3 sum = Vec3::Zero(), sum_sq = Vec3::Zero();
     for (const Box& box : boxes_) {
-      const Vec3 low = Eigen::Map<const Eigen::Vector3f>(box.low.data()).cast<double>();
+      const Vec3 low(box.low[0], box.low[1], box.low[2]);
       sum += low;
       sum_sq += low.cwiseAbs2();
     }
     const double count = std::max<double>(1, static_cast<double>(boxes_.size()));
     const Vec3 variance = sum_sq / count - (sum / count).cwiseAbs2();
-    return static_cast<int>(std::max_element(variance.begin(), variance.end()) - variance.begin());
+    std::array<int, 3> axes = {0, 1, 2};
+    std::sort(axes.begin(), axes.end(), [&](int i, int j) { return variance[i] > variance[j]; });
+    std::tie(sweep_axis_, strip_axis_, third_axis_) = std::tie(axes[0], axes[1], axes[2]);
   }
 
-  void sort_along(int axis) {
-    std::vector<int> order(boxes_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
-      return std::pair(boxes_[i].low[axis], i) < std::pair(boxes_[j].low[axis], j);
-    });
-    std::vector<Box> boxes;
-    std::vector<TriangleId> ids;
-    for (const int i : order) {
-      boxes.push_back(boxes_[i]);
-      ids.push_back(ids_[i]);
-    }
-    boxes_ = std::move(boxes);
-    ids_ = std::move(ids);
+  void fill_strips() {
+    float low = std::numeric_limits<float>::max(), high = -low;
+    double widths = 0;
     for (const Box& box : boxes_) {
-      start_.push_back(box.low[axis]);
-      end_.push_back(box.high[axis]);
-      low_y_.push_back(box.low[(axis + 1) % 3]);
-      high_y_.push_back(box.high[(axis + 1) % 3]);
-      low_z_.push_back(box.low[(axis + 2) % 3]);
-      high_z_.push_back(box.high[(axis + 2) % 3]);
+      low = std::min(low, box.low[strip_axis_]);
+      high = std::max(high, box.high[strip_axis_]);
+      widths += box.high[strip_axis_] - box.low[strip_axis_];
+    }
+    const double width = kBoxesPerStrip * widths / std::max<double>(1, static_cast<double>(boxes_.size()));
+    const double wanted = width > 0 ? (static_cast<double>(high) - low) / width : 1;
+    strips_.resize(static_cast<std::size_t>(std::clamp(wanted, 1.0, double{kMostStrips})));
+    const auto strip_at = [&](float x) {
+      const double place =
+          high > low ? (static_cast<double>(x) - low) / (static_cast<double>(high) - low) : 0;
+      return std::min(static_cast<int>(place * static_cast<double>(strips_.size())),
+                      static_cast<int>(strips_.size()) - 1);
+    };
+    for (int k = 0; k < static_cast<int>(boxes_.size()); ++k) {
+      Box& box = boxes_[k];
+      box.first_strip = strip_at(box.low[strip_axis_]);
+      const int last = strip_at(box.high[strip_axis_]);
+      for (int s = box.first_strip; s <= last; ++s) add_to_strip(k, strips_[s]);
     }
   }
 
-  /// The boxes after i that overlap box i; how many.
-  int collect_overlaps(std::size_t i, int* hits) const {
-    const auto last =
-        std::upper_bound(start_.begin() + static_cast<std::ptrdiff_t>(i), start_.end(), end_[i]);
-    const int end = static_cast<int>(last - start_.begin());
-    const float low_y = low_y_[i], high_y = high_y_[i], low_z = low_z_[i], high_z = high_z_[i];
-    int count = 0;
-    for (int j = static_cast<int>(i) + 1; j < end; ++j) {
-      const bool overlaps = static_cast<bool>((low_y_[j] <= high_y) & (high_y_[j] >= low_y) &
-                                              (low_z_[j] <= high_z) & (high_z_[j] >= low_z));
-      hits[count] = j;
-      count += overlaps;
-    }
-    return count;
+  void add_to_strip(int k, Strip& strip) const {
+    const Box& box = boxes_[k];
+    strip.boxes.push_back(k);
+    strip.start.push_back(box.low[sweep_axis_]);
+    strip.end.push_back(box.high[sweep_axis_]);
+    strip.low_y.push_back(box.low[strip_axis_]);
+    strip.high_y.push_back(box.high[strip_axis_]);
+    strip.low_z.push_back(box.low[third_axis_]);
+    strip.high_z.push_back(box.high[third_axis_]);
   }
 
-  std::vector<Box> boxes_;
-  std::vector<TriangleId> ids_;
-  std::vector<float> start_, end_, low_y_, high_y_, low_z_, high_z_;  // of the sorted boxes
+  std::vector<Box> boxes_;  // in the order of the sweep
+  int sweep_axis_ = 0, strip_axis_ = 1, third_axis_ = 2;
+  std::vector<Strip> strips_;
 };
 
 class Finder {

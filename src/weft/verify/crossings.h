@@ -61,8 +61,8 @@ struct Crossing {
 /// second and third way the first pair that meets there. A long cut counts once for every two triangles along
 /// it.
 ///
-/// Pairs whose boxes overlap are found by sorting along the direction in which the surfaces spread most: n
-/// log n and, for evenly shaped triangles, n^1.5 cheap comparisons.
+/// Pairs whose boxes overlap are found by sweeping along the direction in which the surfaces spread most, in
+/// strips along the second: for cloth about n log n.
 std::vector<Crossing> find_crossings(std::span<const SurfaceView> surfaces);
 
 }  // namespace weft::verify
