@@ -145,15 +145,4 @@ void ContactResponse::hold_off(const std::vector<char>& is_pinned, JobSystem& jo
   });
 }
 
-double compute_penetration(const std::vector<Collider>& colliders, double time, const ClothState& state) {
-  double deepest = 0;
-  for (const Collider& collider : colliders) {
-    const ColliderShape shape = shape_at(collider, time);
-    for (std::size_t i = 0; i < state.x.size(); ++i) {
-      deepest = std::max(deepest, -signed_distance(shape, state.position(i)).distance);
-    }
-  }
-  return deepest;
-}
-
 }  // namespace weft

@@ -73,7 +73,4 @@ class ContactResponse {
   std::vector<char> is_near_;  // (num_particles) work space of hold_off
 };
 
-/// How deep the deepest particle is inside a collider, 0 if none is [m].
-double compute_penetration(const std::vector<Collider>& colliders, double time, const ClothState& state);
-
 }  // namespace weft

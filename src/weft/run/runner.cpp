@@ -5,9 +5,9 @@
 #include <limits>
 #include <map>
 
-#include "weft/contact/response.h"
 #include "weft/core/error.h"
 #include "weft/core/version.h"
+#include "weft/run/frame_checks.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_world.h"
 #include "weft/world/measures.h"
@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
 constexpr int kSphereRings = 32;
+constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
 
 std::string hex(std::uint64_t value) {
   char digits[17];
@@ -27,7 +28,8 @@ std::string hex(std::uint64_t value) {
 /// Gathers the figures of a run, frame by frame.
 class Recorder {
  public:
-  Recorder(const SceneDesc& scene, const World& world, RunReport& report) : world_(world), report_(report) {
+  Recorder(const SceneDesc& scene, const World& world, RunReport& report)
+      : world_(world), frames_(world), report_(report) {
     report.scene = scene.name;
     report.integrator = scene.solver.integrator;
     report.version = kVersion;
@@ -37,7 +39,20 @@ class Recorder {
       report.triangles += topology.mesh.num_triangles();
       report.springs += static_cast<int>(topology.springs.size());
     }
-    if (!world.colliders().empty()) report.penetration_max = 0;
+  }
+
+  /// Warns of cloth that crosses something before anything has moved.
+  void judge_start() {
+    const FrameToCheck start = frames_.now();
+    const verify::FrameCheck check = verify::check_frame(start.frame, 1);
+    if (check.intersections > 0) {
+      report_.warnings.push_back("at the start " + verify::describe(start.frame, check.first[0]) +
+                                 ", the first of " + std::to_string(check.intersections) + " crossing pairs");
+    }
+    if (check.penetration() > kInsideAtStart) {
+      report_.warnings.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " +
+                                 std::to_string(1000 * check.penetration()) + " mm deep");
+    }
   }
 
   void add_frame() {
@@ -50,19 +65,23 @@ class Recorder {
           compute_elastic_energy(model, state) + compute_gravity_energy(model, state, world_.gravity());
       lowest = std::min(lowest, compute_lowest_y(state));
       mean_strain += add_strain(compute_strain(model, state)) / world_.num_cloths();
-      if (report_.penetration_max) {
-        *report_.penetration_max =
-            std::max(*report_.penetration_max, compute_penetration(world_.colliders(), world_.time(), state));
-      }
     }
     report_.kinetic_energy.push_back(kinetic);
     report_.potential_energy.push_back(potential);
     report_.lowest_y.push_back(lowest);
     ++report_.frames;
     report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
+    judge_frame();
   }
 
  private:
+  void judge_frame() {
+    const verify::FrameCheck check = verify::check_frame(frames_.now().frame, 0);
+    report_.intersections = std::max(report_.intersections.value_or(0), check.intersections);
+    if (!check.deepest) return;
+    report_.penetration_max = std::max(report_.penetration_max.value_or(0), check.penetration());
+  }
+
   double add_strain(const Strain& strain) {
     report_.max_strain = std::max(report_.max_strain, strain.max);
     report_.min_strain = std::min(report_.min_strain, strain.min);
@@ -70,6 +89,7 @@ class Recorder {
   }
 
   const World& world_;
+  WorldFrames frames_;
   RunReport& report_;
 };
 
@@ -103,13 +123,15 @@ class Filmer {
   }
 
  private:
-  /// The collider's shape around its own pivot.
+  /// The collider's shape around its own pivot, exact and as a mesh to look at.
   static RigidMesh show(const Collider& collider) {
     RigidMesh body;
     body.name = collider.name;
     if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
+      body.shape = Sphere{Vec3::Zero(), sphere->radius};
       body.mesh = make_sphere_mesh(Vec3::Zero(), sphere->radius, kSphereRings);
     } else if (const Plane* plane = std::get_if<Plane>(&collider.shape)) {
+      body.shape = Plane{Vec3::Zero(), plane->normal};
       body.mesh = make_square_mesh(Vec3::Zero(), plane->normal, kPlaneSide);
     }
     return body;
@@ -177,6 +199,7 @@ class Run {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
+    recorder_.judge_start();
     if (options.record_animation) filmer_.add_frame();
   }
 
