@@ -9,6 +9,10 @@ std::string format_depth(const RunReport& r) {
   return r.penetration_max ? fmt::format("{:.3g} mm", 1000 * *r.penetration_max) : "–";
 }
 
+std::string format_crossings(const RunReport& r) {
+  return r.intersections ? fmt::format("{}", *r.intersections) : "–";
+}
+
 double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
 
 }  // namespace
@@ -44,7 +48,7 @@ std::string table_line(const RunReport& r) {
   const std::string strain = fmt::format("{:+.1f} … {:+.1f} %", 100 * r.min_strain, 100 * r.max_strain);
   // fmt counts the dots as one column, as a terminal does.
   return fmt::format("{:<26} {:>9} {:>7} {:>9.2f} {:>16} {:>8.3f} m {:>9} {:>12}\n", r.scene, r.particles,
-                     r.frames, r.ms_per_frame_median, strain, last(r.lowest_y), r.intersections.value_or(0),
+                     r.frames, r.ms_per_frame_median, strain, last(r.lowest_y), format_crossings(r),
                      format_depth(r));
 }
 
