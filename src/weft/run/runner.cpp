@@ -50,8 +50,10 @@ class Recorder {
                                  ", the first of " + std::to_string(check.intersections) + " crossing pairs");
     }
     if (check.penetration() > kInsideAtStart) {
+      char depth[32];
+      std::snprintf(depth, sizeof depth, "%.3g", 1000 * check.penetration());
       report_.warnings.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " +
-                                 std::to_string(1000 * check.penetration()) + " mm deep");
+                                 depth + " mm deep");
     }
   }
 
