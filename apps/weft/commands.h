@@ -6,12 +6,13 @@
 namespace weft::app {
 
 /// What the program tells the shell.
-enum ExitCode { kDone = 0, kSimulationFailed = 1, kBadInput = 2, kInterrupted = 130 };
+enum ExitCode { kDone = 0, kSimulationFailed = 1, kNotClean = 1, kBadInput = 2, kInterrupted = 130 };
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
 void add_scenes_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
+void add_verify_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace weft::app

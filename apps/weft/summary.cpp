@@ -9,6 +9,10 @@ std::string format_depth(const RunReport& r) {
   return r.penetration_max ? fmt::format("{:.3g} mm", 1000 * *r.penetration_max) : "–";
 }
 
+std::string format_crossings(const RunReport& r) {
+  return r.intersections ? fmt::format("{}", *r.intersections) : "–";
+}
+
 double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
 
 }  // namespace
@@ -27,6 +31,7 @@ std::string summarise(const RunReport& r) {
   text += fmt::format("  energy       {:.3g} J kinetic, {:.3g} J potential at the end\n",
                       last(r.kinetic_energy), last(r.potential_energy));
   text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
+  if (r.intersections) text += fmt::format("  crossings    {} at worst\n", *r.intersections);
   if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));
   text += fmt::format("  state hash   {}\n", r.state_hash);
   for (const std::string& warning : r.warnings) text += "  warning: " + warning + "\n";
@@ -35,15 +40,16 @@ std::string summarise(const RunReport& r) {
 }
 
 std::string table_head() {
-  return fmt::format("{:<26} {:>9} {:>7} {:>9} {:>16} {:>10} {:>12}\n", "scene", "particles", "frames",
-                     "ms/frame", "strain", "lowest", "penetration");
+  return fmt::format("{:<26} {:>9} {:>7} {:>9} {:>16} {:>10} {:>9} {:>12}\n", "scene", "particles", "frames",
+                     "ms/frame", "strain", "lowest", "crossings", "penetration");
 }
 
 std::string table_line(const RunReport& r) {
   const std::string strain = fmt::format("{:+.1f} … {:+.1f} %", 100 * r.min_strain, 100 * r.max_strain);
   // fmt counts the dots as one column, as a terminal does.
-  return fmt::format("{:<26} {:>9} {:>7} {:>9.2f} {:>16} {:>8.3f} m {:>12}\n", r.scene, r.particles, r.frames,
-                     r.ms_per_frame_median, strain, last(r.lowest_y), format_depth(r));
+  return fmt::format("{:<26} {:>9} {:>7} {:>9.2f} {:>16} {:>8.3f} m {:>9} {:>12}\n", r.scene, r.particles,
+                     r.frames, r.ms_per_frame_median, strain, last(r.lowest_y), format_crossings(r),
+                     format_depth(r));
 }
 
 }  // namespace weft::app

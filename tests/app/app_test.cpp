@@ -14,6 +14,8 @@
 #include <sstream>
 #include <string>
 
+#include "weft/io/glb_writer.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -247,11 +249,54 @@ TEST_F(App, CheckListsEveryMistakeWithItsPlace) {
 
 TEST_F(App, TellsItsVersionAndHowToUseIt) {
   EXPECT_EQ(shell("weft --version").out, WEFT_VERSION "\n");
-  for (const char* command : {"", "run", "demo", "scenes", "check", "bench", "bench integrators"}) {
+  for (const char* command : {"", "run", "demo", "scenes", "check", "verify", "bench", "bench integrators"}) {
     const Finished done = shell(std::string("weft ") + command + " --help");
     EXPECT_EQ(done.exit_code, 0) << command;
     EXPECT_TRUE(contains(done.out, "Usage: weft")) << command << done.out;
   }
+}
+
+TEST_F(App, VerifyFindsACleanRunClean) {
+  EXPECT_EQ(shell("weft run paper/fig3_horizontal --frames 5 --out results").exit_code, 0);
+  const Finished done = shell("weft verify results");
+  EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
+  EXPECT_TRUE(contains(done.out, "6 frames; nothing crosses")) << done.out;
+  EXPECT_EQ(shell("weft verify results/animation.glb").out, done.out);
+}
+
+TEST_F(App, VerifyAgreesWithTheReport) {
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 20 --out results").exit_code, 0);
+  EXPECT_EQ(shell("weft verify results --tolerance 0.01").exit_code, 0);
+  const Finished done = shell("weft verify results --tolerance 0.01 --json");
+  EXPECT_EQ(done.exit_code, 0);
+  const auto found = nlohmann::json::parse(done.out), report = read_json("results/report.json");
+  EXPECT_EQ(found["frames"], 21) << "the start and twenty more";
+  EXPECT_EQ(found["intersections"], report["intersections"]);
+  // The file holds floats, and differences of floats: below a millionth of a metre.
+  EXPECT_NEAR(found["penetration_max"], report["penetration_max"], 1e-6);
+}
+
+TEST_F(App, VerifyFindsPlantedCrossings) {
+  weft::Animation animation;
+  weft::AnimatedMesh sheet{.name = "sheet", .triangles = {{0, 1, 2}}, .frames = {}};
+  sheet.frames.assign(3, {-1, 0, -1, 1, 0, -1, 0, 0, 2});
+  weft::AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  for (const float tip : {0.1f, 0.1f, -0.1f}) blade.frames.push_back({0, 1, 0, 0.1f, 1, 0, 0, tip, 0.1f});
+  animation.cloths = {sheet, blade};
+  weft::write_glb("planted.glb", animation);
+  const Finished done = shell("weft verify planted.glb");
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  EXPECT_TRUE(contains(done.out, "3 frames; 1 frame with crossings, at worst 1 pair of triangles in frame 2")) << done.out;
+  EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 crosses cloth \"blade\" triangle 0")) << done.out;
+  EXPECT_EQ(shell("weft verify planted.glb --json | grep -c '\"clean\": false'").out, "1\n");
+}
+
+TEST_F(App, VerifyRefusesWhatIsNoRun) {
+  expect_bad_input("weft verify no/such/folder", "no/such/folder");
+  fs::create_directories("empty");
+  expect_bad_input("weft verify empty", "empty/animation.glb");
+  std::ofstream("words.glb") << "words";
+  expect_bad_input("weft verify words.glb", "words.glb: is no complete .glb file");
 }
 
 TEST_F(App, BenchMeasures) {

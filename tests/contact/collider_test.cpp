@@ -68,7 +68,9 @@ TEST(Contact, MovingColliderTakesClothAlong) {
   for (int s = 1; s <= 60; ++s) {
     integrator->advance(*model, {}, 1.0 / 60, *jobs, state);
     hold_off(colliders, {.gap = 0.001, .time = s / 60.0, .step = 1.0 / 60}, {0, 0}, state);
-    EXPECT_EQ(compute_penetration(colliders, s / 60.0, state), 0) << s;
+    for (const std::size_t i : {0, 1}) {
+      EXPECT_GE(signed_distance(shape_at(colliders[0], s / 60.0), state.position(i)).distance, 0) << s;
+    }
   }
   EXPECT_NEAR(state.position(0).y(), 1.001, 0.002);
   EXPECT_NEAR(state.v.get(0).y(), 0.5, 0.01);

@@ -65,15 +65,19 @@ TEST(PaperScenes, KeepTheStiffnessNumberAtOneOrBelow) {
 }
 
 TEST(PaperScenes, BallKeepsEveryParticleOutside) {
+  // Particles are held off by half the cloth's thickness, 0.5 mm; the triangles between them are flat. Over a
+  // chord of a cell's diagonal, stretched by a tenth at most, the ball of radius 0.3 m rises by c²/8r.
+  const double chord = 1.1 * std::sqrt(2.0) / 32, rise = chord * chord / (8 * 0.3), most = rise - 0.0005;
   const RunResult paper = run_scene(shipped("paper/fig6_ball"), {.record_animation = false});
   ASSERT_TRUE(paper.report.penetration_max.has_value());
-  EXPECT_EQ(*paper.report.penetration_max, 0);
+  EXPECT_LT(*paper.report.penetration_max, most);
+  EXPECT_EQ(paper.report.intersections, 0);
   EXPECT_EQ(paper.report.outcome, RunOutcome::done);
   EXPECT_EQ(paper.report.frames, 180);
 
   const RunResult twin = run_scene(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[31, 31]"}),
                                    {.frames = 90, .record_animation = false});
-  EXPECT_EQ(*twin.report.penetration_max, 0);
+  EXPECT_LT(*twin.report.penetration_max, most);
 }
 
 TEST(PaperScenes, FallFreelyForTheFirstSixtyCentimetres) {
@@ -198,13 +202,41 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   }
   EXPECT_GT(json["ms_per_frame"]["median"], 0);
   EXPECT_GE(json["ms_per_frame"]["p95"], json["ms_per_frame"]["median"]);
-  for (const char* key : {"intersections", "infeasible", "guard_events"})
-    EXPECT_TRUE(json[key].is_null()) << key;
+  for (const char* key : {"infeasible", "guard_events"}) EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_EQ(json["intersections"], 0);
   EXPECT_TRUE(json["penetration_max"].is_null()) << "there is no collider in this scene";
   EXPECT_EQ(json["particles"], 33 * 33);
   EXPECT_EQ(json["triangles"], 2 * 32 * 32);
   EXPECT_EQ(json["springs"], 2 * 33 * 32 + 32 * 32 + 2 * 33 * 31);
   EXPECT_NEAR(json["seconds_simulated"], 0.05, 1e-12);
+}
+
+TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
+  // A second sheet stands upright through the falling one, and both fall with it.
+  SceneDesc scene = shipped("paper/fig5_falling", {"cloth[0].name=sheet"});
+  scene.colliders.clear();
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].name = "blade";
+  scene.cloths[1].rotation_deg.x() += 90;
+  scene.cloths[1].position = {-0.5, 2.1, 0};
+  const RunReport report = run_scene(scene, {.frames = 2, .record_animation = false}).report;
+  ASSERT_TRUE(report.intersections.has_value());
+  EXPECT_GT(*report.intersections, 20);
+  EXPECT_TRUE(warns(report, "at the start cloth \"sheet\" triangle "));
+  EXPECT_TRUE(warns(report, " crosses cloth \"blade\" triangle "));
+  EXPECT_FALSE(report.penetration_max.has_value());
+}
+
+TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {
+  // Particles stand around a ball that pokes through the one triangle between them.
+  const SceneDesc scene =
+      shipped("paper/fig6_ball", {"cloth[0].grid.cells=[1, 1]", "cloth[0].position=[-0.5, 0.6, -0.5]",
+                                  "scene.gravity=[0, 0, 0]", "solver.steps_per_frame=1"});
+  const RunReport report = run_scene(scene, {.frames = 1, .record_animation = false}).report;
+  ASSERT_TRUE(report.penetration_max.has_value());
+  EXPECT_NEAR(*report.penetration_max, 0.1, 1e-6) << "the ball's top is at 0.7 m";
+  EXPECT_TRUE(warns(report, "at the start cloth \"cloth\" triangle "));
+  EXPECT_TRUE(warns(report, "in collider \"ball\" is 100 mm deep"));
 }
 
 TEST(Report, EnergyOfFallingClothIsThatOfItsWeight) {

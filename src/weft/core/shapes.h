@@ -1,6 +1,8 @@
 #pragma once
 /// Plain shapes: what colliders and regions of space are made of.
 
+#include <variant>
+
 #include "weft/core/vec.h"
 
 namespace weft {
@@ -29,6 +31,9 @@ struct OrientedBox {
   Vec3 half_size = Vec3::Constant(0.5);  // along its own axes, > 0 [m]
   Mat3 rotation = Mat3::Identity();      // from the box's own axes (its columns) to the world's [1]
 };
+
+/// A solid that is given by a formula.
+using SolidShape = std::variant<Sphere, Plane, Capsule, OrientedBox>;
 
 /// Axis-aligned box.
 struct Box {

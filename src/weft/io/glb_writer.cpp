@@ -137,6 +137,57 @@ std::vector<float> flatten(const std::vector<Vec3>& positions) {
   return result;
 }
 
+// ---- Extras ----
+
+using Extras = tinygltf::Value::Object;
+
+tinygltf::Value numbers(std::span<const double> values) {
+  tinygltf::Value::Array array;
+  for (const double value : values) array.emplace_back(value);
+  return tinygltf::Value(std::move(array));
+}
+
+tinygltf::Value numbers(const Vec3& v) { return numbers(std::span<const double>(v.data(), 3)); }
+
+Extras shape_extras(const Sphere& s) {
+  return {{"shape", tinygltf::Value(std::string("sphere"))},
+          {"center", numbers(s.center)},
+          {"radius", tinygltf::Value(s.radius)}};
+}
+
+Extras shape_extras(const Plane& p) {
+  return {{"shape", tinygltf::Value(std::string("plane"))},
+          {"point", numbers(p.point)},
+          {"normal", numbers(p.normal)}};
+}
+
+Extras shape_extras(const Capsule& c) {
+  return {{"shape", tinygltf::Value(std::string("capsule"))},
+          {"a", numbers(c.a)},
+          {"b", numbers(c.b)},
+          {"radius", tinygltf::Value(c.radius)}};
+}
+
+Extras shape_extras(const OrientedBox& b) {
+  const Mat3 rows = b.rotation.transpose();  // Eigen stores columns
+  return {{"shape", tinygltf::Value(std::string("box"))},
+          {"center", numbers(b.center)},
+          {"half_size", numbers(b.half_size)},
+          {"rotation", numbers(std::span<const double>(rows.data(), 9))}};
+}
+
+tinygltf::Value extras_of(const AnimatedMesh&) {
+  return tinygltf::Value(
+      Extras{{"weft", tinygltf::Value(Extras{{"role", tinygltf::Value(std::string("cloth"))}})}});
+}
+
+tinygltf::Value extras_of(const RigidMesh& body) {
+  Extras weft = {{"shape", tinygltf::Value(std::string("mesh"))}};
+  if (body.shape) weft = std::visit([](const auto& shape) { return shape_extras(shape); }, *body.shape);
+  weft["role"] = tinygltf::Value(std::string("collider"));
+  return tinygltf::Value(Extras{{"weft", tinygltf::Value(std::move(weft))}});
+}
+
 // ---- The glTF document ----
 
 class GlbBuilder {
@@ -208,6 +259,7 @@ class GlbBuilder {
     mesh.weights.assign(num_frames_ - 1, 0.0);
     mesh.primitives.push_back(std::move(primitive));
     const int node = add_node(cloth.name, std::move(mesh));
+    model_.nodes[node].extras = extras_of(cloth);
     if (is_moving()) add_channel(node, "weights", weights_sampler_);
   }
 
@@ -218,6 +270,7 @@ class GlbBuilder {
     require_finite(body.name, 0, positions);
     mesh.primitives[0].attributes = add_vertices(positions, compute_normals(body.mesh.triangles, positions));
     const int node = add_node(body.name, std::move(mesh));
+    model_.nodes[node].extras = extras_of(body);
     const auto& [translation, rotation] = body.poses[0];
     const Eigen::Vector4d xyzw = rotation.normalized().coeffs();
     model_.nodes[node].translation.assign(translation.begin(), translation.end());

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "weft/core/shapes.h"
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
@@ -29,7 +31,8 @@ struct RigidMesh {
   std::string name;
   TriangleMesh mesh;
   std::array<double, 3> color = {0.5, 0.5, 0.5};
-  std::vector<Pose> poses;  // (1 or num_frames)
+  std::vector<Pose> poses;          // (1 or num_frames)
+  std::optional<SolidShape> shape;  // what `mesh` shows, exactly, in its coordinates; empty: just the mesh
 };
 
 struct Animation {
@@ -39,11 +42,13 @@ struct Animation {
   std::vector<RigidMesh> bodies;
 };
 
-/// Writes the animation; materials are double-sided. All meshes have the same number of frames (>= 1).
-/// Writes to FILE.part first, so that an earlier result is replaced whole or not at all.
-/// Throws InputError if the file cannot be written, with the system's reason, and for an animation that no
-/// viewer could show: without meshes, with unequal numbers of frames, or with coordinates that are not
-/// finite.
+/// Writes the animation; materials are double-sided. What glTF has no words for goes to the nodes' extras, as
+/// `"weft": {"role": "cloth"}` or `{"role": "collider", "shape": "sphere", "center": [0, 0, 0], "radius":
+/// 0.3}`; other shapes are `plane` (point, normal), `capsule` (a, b, radius), `box` (center, half_size,
+/// rotation: nine numbers row by row) and `mesh`. All meshes have the same number of frames (>= 1). Writes to
+/// FILE.part first, so that an earlier result is replaced whole or not at all. Throws InputError if the file
+/// cannot be written, with the system's reason, and for an animation that no viewer could show: without
+/// meshes, with unequal numbers of frames, or with coordinates that are not finite.
 void write_glb(const std::filesystem::path& file, const Animation& animation);
 
 }  // namespace weft

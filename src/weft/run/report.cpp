@@ -44,7 +44,7 @@ std::string to_json(const RunReport& r) {
       {"min_strain", r.min_strain},
       {"mean_strain", r.mean_strain},
       {"penetration_max", r.penetration_max ? nlohmann::ordered_json(*r.penetration_max) : null},
-      {"intersections", null},
+      {"intersections", r.intersections ? nlohmann::ordered_json(*r.intersections) : null},
       {"infeasible", null},
       {"guard_events", null},
       {"state_hash", r.state_hash},

@@ -26,12 +26,16 @@ struct RunReport {
   std::vector<double> kinetic_energy;     // (frames) [J]
   std::vector<double> potential_energy;   // (frames) elastic plus gravity, zero at the world's origin [J]
   std::vector<double> lowest_y;           // (frames) the first one after the first frame [m]
-  std::optional<double> penetration_max;  // deepest particle inside a collider; empty without colliders [m]
-  std::string state_hash;                 // sixteen hexadecimal digits
+  // What the independent checker (verify/checker.h) found in the frames, the start not counted:
+  std::optional<int>
+      intersections;  // crossing pairs of triangles in the worst frame; empty without frames [1]
+  std::optional<double>
+      penetration_max;     // deepest point of cloth inside a collider; empty without colliders [m]
+  std::string state_hash;  // sixteen hexadecimal digits
   std::vector<std::string> warnings;
 };
 
-/// The report as JSON text. What this version does not measure (intersections, infeasible, guard_events) is
+/// The report as JSON text. What this version does not measure (infeasible, guard_events) is
 /// null.
 std::string to_json(const RunReport& report);
 

@@ -7,6 +7,7 @@
 
 #include "weft/core/error.h"
 #include "weft/core/version.h"
+#include "weft/run/frame_checks.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_world.h"
 #include "weft/world/measures.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
 constexpr int kSphereRings = 32;
+constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
 
 std::string hex(std::uint64_t value) {
   char digits[17];
@@ -26,7 +28,8 @@ std::string hex(std::uint64_t value) {
 /// Gathers the figures of a run, frame by frame.
 class Recorder {
  public:
-  Recorder(const SceneDesc& scene, const World& world, RunReport& report) : world_(world), report_(report) {
+  Recorder(const SceneDesc& scene, const World& world, RunReport& report)
+      : world_(world), frames_(world), report_(report) {
     report.scene = scene.name;
     report.integrator = scene.solver.integrator;
     report.version = kVersion;
@@ -36,7 +39,22 @@ class Recorder {
       report.triangles += topology.mesh.num_triangles();
       report.springs += static_cast<int>(topology.springs.size());
     }
-    if (!world.colliders().empty()) report.penetration_max = 0;
+  }
+
+  /// Warns of cloth that crosses something before anything has moved.
+  void judge_start() {
+    const FrameToCheck start = frames_.now();
+    const verify::FrameCheck check = verify::check_frame(start.frame, 1);
+    if (check.intersections > 0) {
+      report_.warnings.push_back("at the start " + verify::describe(start.frame, check.first[0]) +
+                                 ", the first of " + std::to_string(check.intersections) + " crossing pairs");
+    }
+    if (check.penetration() > kInsideAtStart) {
+      char depth[32];
+      std::snprintf(depth, sizeof depth, "%.3g", 1000 * check.penetration());
+      report_.warnings.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " +
+                                 depth + " mm deep");
+    }
   }
 
   void add_frame() {
@@ -55,9 +73,17 @@ class Recorder {
     report_.lowest_y.push_back(lowest);
     ++report_.frames;
     report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
+    judge_frame();
   }
 
  private:
+  void judge_frame() {
+    const verify::FrameCheck check = verify::check_frame(frames_.now().frame, 0);
+    report_.intersections = std::max(report_.intersections.value_or(0), check.intersections);
+    if (!check.deepest) return;
+    report_.penetration_max = std::max(report_.penetration_max.value_or(0), check.penetration());
+  }
+
   double add_strain(const Strain& strain) {
     report_.max_strain = std::max(report_.max_strain, strain.max);
     report_.min_strain = std::min(report_.min_strain, strain.min);
@@ -65,6 +91,7 @@ class Recorder {
   }
 
   const World& world_;
+  WorldFrames frames_;
   RunReport& report_;
 };
 
@@ -98,13 +125,15 @@ class Filmer {
   }
 
  private:
-  /// The collider's shape around its own pivot.
+  /// The collider's shape around its own pivot, exact and as a mesh to look at.
   static RigidMesh show(const Collider& collider) {
     RigidMesh body;
     body.name = collider.name;
     if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
+      body.shape = Sphere{Vec3::Zero(), sphere->radius};
       body.mesh = make_sphere_mesh(Vec3::Zero(), sphere->radius, kSphereRings);
     } else if (const Plane* plane = std::get_if<Plane>(&collider.shape)) {
+      body.shape = Plane{Vec3::Zero(), plane->normal};
       body.mesh = make_square_mesh(Vec3::Zero(), plane->normal, kPlaneSide);
     } else if (const Capsule* capsule = std::get_if<Capsule>(&collider.shape)) {
       const Vec3 half = 0.5 * (capsule->b - capsule->a);
@@ -180,6 +209,7 @@ class Run {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
+    recorder_.judge_start();
     if (options.record_animation) filmer_.add_frame();
   }
 

@@ -1,0 +1,91 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "weft/io/glb_reader.h"
+#include "weft/run/frame_checks.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct VerifyRequest {
+  fs::path path;            // a folder with animation.glb, or a .glb file
+  double tolerance = 1e-4;  // [m]
+  bool json = false;
+};
+
+std::string count(int number, const char* one, const char* many) {
+  return fmt::format("{} {}", number, number == 1 ? one : many);
+}
+
+std::string crossings_in_words(const AnimationCheck& check) {
+  if (check.intersections == 0) return "nothing crosses";
+  return fmt::format(
+      "{} with crossings, at worst {} in frame {}", count(check.frames_with_crossings, "frame", "frames"),
+      count(check.intersections, "pair of triangles", "pairs of triangles"), check.worst_frame);
+}
+
+std::string depth_in_words(const AnimationCheck& check) {
+  if (!check.penetration_max) return "no colliders to be inside of";
+  if (check.deepest_frame < 0) return "no cloth inside a collider";
+  return fmt::format("deepest {:.3g} mm in frame {}: {}", 1000 * *check.penetration_max, check.deepest_frame,
+                     check.deepest_place);
+}
+
+void print(const fs::path& file, const AnimationCheck& check) {
+  fmt::print("{}: {}; {}; {}\n", file.string(), count(check.frames, "frame", "frames"),
+             crossings_in_words(check), depth_in_words(check));
+  for (const auto& [frame, what] : check.offences) fmt::print("  frame {}: {}\n", frame, what);
+}
+
+nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check) {
+  const nlohmann::ordered_json null = nullptr;
+  nlohmann::ordered_json offences = nlohmann::ordered_json::array();
+  for (const auto& [frame, what] : check.offences) offences.push_back({{"frame", frame}, {"what", what}});
+  const auto frame_or_null = [&](int frame) { return frame < 0 ? null : nlohmann::ordered_json(frame); };
+  return {{"file", file.string()},
+          {"clean", check.is_clean},
+          {"frames", check.frames},
+          {"frames_with_crossings", check.frames_with_crossings},
+          {"intersections", check.intersections},
+          {"worst_frame", frame_or_null(check.worst_frame)},
+          {"penetration_max", check.penetration_max ? nlohmann::ordered_json(*check.penetration_max) : null},
+          {"deepest_frame", frame_or_null(check.deepest_frame)},
+          {"deepest_place", check.deepest_frame < 0 ? null : nlohmann::ordered_json(check.deepest_place)},
+          {"offences", offences}};
+}
+
+int verify(const VerifyRequest& request) {
+  const fs::path file = fs::is_directory(request.path) ? request.path / "animation.glb" : request.path;
+  const AnimationCheck check = check_animation(read_glb(file), {.tolerance = request.tolerance});
+  if (request.json) {
+    const auto keep_going = nlohmann::ordered_json::error_handler_t::replace;
+    fmt::print("{}\n", to_json(file, check).dump(2, ' ', false, keep_going));
+  } else {
+    print(file, check);
+  }
+  return check.is_clean ? kDone : kNotClean;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  auto request = std::make_shared<VerifyRequest>();
+  CLI::App* command = app.add_subcommand("verify", "Check the frames of a run: does cloth cross anything?");
+  command->add_option("DIR", request->path, "The folder of a run, or a .glb file that a run wrote")
+      ->required();
+  command->add_option("--tolerance", request->tolerance, "How deep cloth may be inside a collider [m]")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("M")
+      ->capture_default_str();
+  command->add_flag("--json", request->json, "Print the result as JSON");
+  command->footer(
+      "Exit code 0: clean. 1: cloth crosses something or is too deep in a collider. 2: bad input.");
+  command->callback([request, &exit_code] { exit_code = verify(*request); });
+}
+
+}  // namespace weft::app

@@ -1,0 +1,286 @@
+#include "weft/io/glb_reader.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+using Pose = RigidMesh::Pose;
+using Value = tinygltf::Value;
+
+/// What is wrong with the file; read_glb adds its name.
+[[noreturn]] void fail(const std::string& what) { throw InputError(what); }
+
+template <class T>
+const T& at(const std::vector<T>& items, int index, const char* what) {
+  if (index < 0 || static_cast<size_t>(index) >= items.size()) {
+    fail("it refers to " + std::string(what) + " " + std::to_string(index) + " of " +
+         std::to_string(items.size()));
+  }
+  return items[index];
+}
+
+// ---- The file ----
+
+std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in || std::filesystem::is_directory(file)) {
+    fail("cannot be read: " + (errno != 0 ? std::generic_category().message(errno) : "it is a folder"));
+  }
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+tinygltf::Model parse(const std::vector<unsigned char>& bytes) {
+  tinygltf::Model model;
+  std::string error, warning;
+  const bool is_good = bytes.size() >= 12 && bytes.size() <= UINT32_MAX &&
+                       tinygltf::TinyGLTF().LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
+                                                                 static_cast<unsigned>(bytes.size()));
+  if (is_good) return model;
+  const auto reason = error.substr(0, error.find('\n'));
+  fail("is no complete .glb file" + (reason.empty() ? "" : " (" + reason + ")") +
+       "; expected one that weft run wrote");
+}
+
+// ---- Accessors ----
+
+/// Copies all numbers of an accessor whose elements lie side by side, as write_glb leaves them.
+template <class Number>
+std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int component_type, int type) {
+  const tinygltf::Accessor& accessor = at(model.accessors, index, "accessor");
+  if (accessor.componentType != component_type || accessor.type != type || accessor.sparse.isSparse) {
+    fail("accessor " + std::to_string(index) + " holds another kind of number than Weft writes");
+  }
+  const tinygltf::BufferView& view = at(model.bufferViews, accessor.bufferView, "buffer view");
+  const auto& bytes = at(model.buffers, view.buffer, "buffer").data;
+  const size_t num_components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
+  const size_t element = num_components * sizeof(Number);
+  const bool is_packed = view.byteStride == 0 || view.byteStride == element;
+  if (!is_packed || view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset ||
+      accessor.byteOffset > view.byteLength ||
+      accessor.count > (view.byteLength - accessor.byteOffset) / element) {
+    fail("accessor " + std::to_string(index) + " reaches beyond its data");
+  }
+  std::vector<Number> numbers(accessor.count * num_components);
+  std::memcpy(numbers.data(), bytes.data() + view.byteOffset + accessor.byteOffset,
+              numbers.size() * sizeof(Number));
+  return numbers;
+}
+
+std::vector<float> read_floats(const tinygltf::Model& model, int index, int type) {
+  auto numbers = read_numbers<float>(model, index, TINYGLTF_COMPONENT_TYPE_FLOAT, type);
+  if (std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); })) return numbers;
+  fail("accessor " + std::to_string(index) + " has a number that is not finite");
+}
+
+// ---- Meshes ----
+
+const tinygltf::Primitive& primitive_of(const tinygltf::Model& model, const tinygltf::Node& node) {
+  return at(at(model.meshes, node.mesh, "mesh").primitives, 0, "primitive");
+}
+
+std::vector<float> read_positions(const tinygltf::Model& model,
+                                  const std::map<std::string, int>& attributes) {
+  const auto found = attributes.find("POSITION");
+  if (found == attributes.end()) fail("a mesh has no positions");
+  return read_floats(model, found->second, TINYGLTF_TYPE_VEC3);
+}
+
+std::vector<Triangle> read_triangles(const tinygltf::Model& model, int index, size_t num_vertices) {
+  const auto indices =
+      read_numbers<uint32_t>(model, index, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
+  std::vector<Triangle> triangles(indices.size() / 3);
+  for (size_t k = 0; k < 3 * triangles.size(); ++k) {
+    if (indices[k] >= num_vertices) {
+      fail("a triangle uses vertex " + std::to_string(indices[k]) + " of " + std::to_string(num_vertices));
+    }
+    triangles[k / 3][k % 3] = static_cast<int>(indices[k]);
+  }
+  return triangles;
+}
+
+AnimatedMesh read_cloth(const tinygltf::Model& model, const tinygltf::Node& node) {
+  const tinygltf::Primitive& primitive = primitive_of(model, node);
+  AnimatedMesh cloth;
+  cloth.name = node.name;
+  const auto base = read_positions(model, primitive.attributes);
+  cloth.triangles = read_triangles(model, primitive.indices, base.size() / 3);
+  cloth.frames.push_back(base);
+  for (const auto& target : primitive.targets) {
+    auto frame = read_positions(model, target);
+    if (frame.size() != base.size())
+      fail("the frames of cloth '" + node.name + "' have unequal numbers of vertices");
+    for (size_t k = 0; k < base.size(); ++k) frame[k] += base[k];
+    cloth.frames.push_back(std::move(frame));
+  }
+  return cloth;
+}
+
+// ---- Bodies ----
+
+std::vector<double> read_array(const Value& weft, const char* key, size_t count) {
+  const Value& value = weft.Get(key);
+  std::vector<double> numbers;
+  for (size_t k = 0; k < value.ArrayLen(); ++k)
+    numbers.push_back(value.Get(static_cast<int>(k)).GetNumberAsDouble());
+  const bool is_good = numbers.size() == count &&
+                       std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+  if (!is_good)
+    fail("a collider's \"" + std::string(key) + "\" must be " + std::to_string(count) + " numbers");
+  return numbers;
+}
+
+Vec3 read_vec(const Value& weft, const char* key) {
+  return Eigen::Map<const Vec3>(read_array(weft, key, 3).data());
+}
+
+double read_length(const Value& weft, const char* key) {
+  const double length = weft.Get(key).GetNumberAsDouble();
+  if (!(length > 0 && std::isfinite(length)))
+    fail("a collider's \"" + std::string(key) + "\" must be positive");
+  return length;
+}
+
+OrientedBox read_box(const Value& weft) {
+  const auto rows = read_array(weft, "rotation", 9);
+  return {read_vec(weft, "center"), read_vec(weft, "half_size"),
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data())};
+}
+
+std::optional<SolidShape> read_shape(const Value& weft) {
+  const Value& name = weft.Get("shape");
+  const std::string shape = name.IsString() ? name.Get<std::string>() : "";
+  if (shape == "sphere") return Sphere{read_vec(weft, "center"), read_length(weft, "radius")};
+  if (shape == "plane") return Plane{read_vec(weft, "point"), read_vec(weft, "normal")};
+  if (shape == "capsule")
+    return Capsule{read_vec(weft, "a"), read_vec(weft, "b"), read_length(weft, "radius")};
+  if (shape == "box") return read_box(weft);
+  if (shape == "mesh") return std::nullopt;
+  fail("a collider's shape is \"" + shape + "\"; expected sphere, plane, capsule, box or mesh");
+}
+
+Pose resting_pose(const tinygltf::Node& node) {
+  Pose pose;
+  if (node.translation.size() == 3) pose.translation = Eigen::Map<const Vec3>(node.translation.data());
+  if (node.rotation.size() == 4)
+    pose.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(node.rotation.data());
+  return pose;
+}
+
+class Reader {
+ public:
+  explicit Reader(const tinygltf::Model& model) : model_(model) {}
+
+  Animation read() {
+    Animation animation;
+    if (model_.asset.extras.Has("title"))
+      animation.title = model_.asset.extras.Get("title").Get<std::string>();
+    animation.frames_per_second = read_frames_per_second();
+    for (size_t n = 0; n < model_.nodes.size(); ++n) add_node(static_cast<int>(n), animation);
+    if (animation.cloths.empty() && animation.bodies.empty()) {
+      fail(
+          "has no cloth: none of its nodes has Weft's mark, \"extras\": {\"weft\": {\"role\": \"cloth\"}}; "
+          "expected a "
+          "file that weft run wrote");
+    }
+    require_equal_frames(animation);
+    return animation;
+  }
+
+ private:
+  void add_node(int index, Animation& animation) const {
+    const tinygltf::Node& node = model_.nodes[index];
+    if (!node.extras.Has("weft") || !node.extras.Get("weft").IsObject()) return;
+    const Value& weft = node.extras.Get("weft");
+    const std::string role = weft.Get("role").IsString() ? weft.Get("role").Get<std::string>() : "";
+    if (role == "cloth") animation.cloths.push_back(read_cloth(model_, node));
+    if (role == "collider") animation.bodies.push_back(read_body(index));
+  }
+
+  RigidMesh read_body(int index) const {
+    const tinygltf::Node& node = model_.nodes[index];
+    const tinygltf::Primitive& primitive = primitive_of(model_, node);
+    RigidMesh body;
+    body.name = node.name;
+    const auto positions = read_positions(model_, primitive.attributes);
+    for (size_t k = 0; k + 2 < positions.size(); k += 3) {
+      body.mesh.positions.emplace_back(positions[k], positions[k + 1], positions[k + 2]);
+    }
+    body.mesh.triangles = read_triangles(model_, primitive.indices, body.mesh.positions.size());
+    body.shape = read_shape(node.extras.Get("weft"));
+    body.poses = read_poses(index);
+    return body;
+  }
+
+  std::vector<Pose> read_poses(int node) const {
+    const auto translations = read_channel(node, "translation", TINYGLTF_TYPE_VEC3);
+    const auto rotations = read_channel(node, "rotation", TINYGLTF_TYPE_VEC4);
+    std::vector<Pose> poses(std::max<size_t>(1, std::max(translations.size() / 3, rotations.size() / 4)),
+                            resting_pose(model_.nodes[node]));
+    for (size_t k = 0; k < translations.size() / 3; ++k) {
+      poses[k].translation = Eigen::Map<const Eigen::Vector3f>(&translations[3 * k]).cast<double>();
+    }
+    for (size_t k = 0; k < rotations.size() / 4; ++k) {
+      poses[k].rotation.coeffs() = Eigen::Map<const Eigen::Vector4f>(&rotations[4 * k]).cast<double>();
+    }
+    for (Pose& pose : poses) pose.rotation.normalize();
+    return poses;
+  }
+
+  /// The values of what moves a node; empty if it stands still.
+  std::vector<float> read_channel(int node, const char* path, int type) const {
+    if (model_.animations.empty()) return {};
+    const tinygltf::Animation& motion = model_.animations[0];
+    for (const tinygltf::AnimationChannel& channel : motion.channels) {
+      if (channel.target_node != node || channel.target_path != path) continue;
+      return read_floats(model_, at(motion.samplers, channel.sampler, "sampler").output, type);
+    }
+    return {};
+  }
+
+  double read_frames_per_second() const {
+    if (model_.animations.empty() || model_.animations[0].samplers.empty())
+      return Animation{}.frames_per_second;
+    const auto times = read_floats(model_, model_.animations[0].samplers[0].input, TINYGLTF_TYPE_SCALAR);
+    if (times.size() < 2 || !(times.back() > 0)) fail("the animation has no key times");
+    return static_cast<double>(times.size() - 1) / static_cast<double>(times.back());
+  }
+
+  static void require_equal_frames(const Animation& animation) {
+    size_t count = 1;
+    for (const auto& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
+    for (const auto& body : animation.bodies) count = std::max(count, body.poses.size());
+    for (const auto& cloth : animation.cloths) {
+      if (cloth.frames.size() != count) fail("cloth '" + cloth.name + "' lacks frames");
+    }
+    for (const auto& body : animation.bodies) {
+      if (body.poses.size() != 1 && body.poses.size() != count) fail("body '" + body.name + "' lacks poses");
+    }
+  }
+
+  const tinygltf::Model& model_;
+};
+
+}  // namespace
+
+Animation read_glb(const std::filesystem::path& file) {
+  try {
+    const tinygltf::Model model = parse(read_bytes(file));
+    return Reader(model).read();
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
+
+}  // namespace weft

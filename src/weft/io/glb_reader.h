@@ -1,0 +1,18 @@
+#pragma once
+/// Animations back in: reads the .glb files that write_glb writes.
+
+#include <filesystem>
+
+#include "weft/io/glb_writer.h"
+
+namespace weft {
+
+/// The animation in the file: cloths with a position per frame, bodies with their poses and exact shapes.
+/// Numbers come back as they were written: positions and moving poses as floats, shapes and resting poses as
+/// doubles. A cloth's later frames are stored as differences from the first, so that their last bits may be
+/// lost: a coordinate that moved by d is off by at most half the last place of d (3e-8 m for a metre).
+///
+/// Throws InputError, naming the file, if it cannot be read, is damaged, or was not written by Weft.
+Animation read_glb(const std::filesystem::path& file);
+
+}  // namespace weft

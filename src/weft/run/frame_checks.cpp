@@ -1,0 +1,161 @@
+#include "weft/run/frame_checks.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace weft {
+namespace {
+
+using verify::MeshView;
+using verify::Solid;
+
+/// p ↦ rotation p + translation.
+struct Placement {
+  Mat3 rotation;
+  Vec3 translation;
+
+  Vec3 point(const Vec3& p) const { return rotation * p + translation; }
+
+  Solid operator()(const Sphere& s) const { return Sphere{point(s.center), s.radius}; }
+  Solid operator()(const Plane& p) const { return Plane{point(p.point), rotation * p.normal}; }
+  Solid operator()(const Capsule& c) const { return Capsule{point(c.a), point(c.b), c.radius}; }
+  Solid operator()(const OrientedBox& b) const {
+    return OrientedBox{point(b.center), b.half_size, rotation * b.rotation};
+  }
+};
+
+/// The mesh where it is placed; its positions are kept in `result`.
+MeshView place_mesh(const TriangleMesh& mesh, const Placement& placement, bool is_closed,
+                    FrameToCheck& result) {
+  auto& positions = result.positions.emplace_back();
+  positions.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) positions.push_back(placement.point(p));
+  return {positions, mesh.triangles, is_closed};
+}
+
+Solid place(const ColliderShape& shape, bool is_closed, FrameToCheck& result) {
+  if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
+    return place_mesh(*mesh->mesh, {mesh->rotation, mesh->translation}, is_closed, result);
+  }
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
+  if (const auto* plane = std::get_if<Plane>(&shape)) return *plane;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return *capsule;
+  return std::get<OrientedBox>(shape);
+}
+
+std::vector<Vec3> positions_of(const ClothState& state) {
+  std::vector<Vec3> positions(state.x.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = state.position(i);
+  return positions;
+}
+
+std::vector<Vec3> to_positions(const std::vector<float>& coordinates) {
+  std::vector<Vec3> positions(coordinates.size() / 3);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    positions[i] = Eigen::Map<const Eigen::Vector3f>(&coordinates[3 * i]).cast<double>();
+  }
+  return positions;
+}
+
+void add_cloth(const std::string& name, const std::vector<Triangle>& triangles, std::vector<Vec3> positions,
+               FrameToCheck& result) {
+  result.positions.push_back(std::move(positions));
+  result.frame.cloths.push_back({name, result.positions.back(), triangles});
+}
+
+std::string millimetres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1000 * length);
+  return text;
+}
+
+/// Adds frame by frame to what is known of an animation.
+void add_frame(const verify::Frame& frame, int index, const AnimationCheckOptions& options,
+               AnimationCheck& sum) {
+  const verify::FrameCheck check = verify::check_frame(frame, 1);
+  const auto add_offence = [&](const std::string& what) {
+    sum.is_clean = false;
+    if (static_cast<int>(sum.offences.size()) < options.num_offences) sum.offences.push_back({index, what});
+  };
+  ++sum.frames;
+  if (check.intersections > 0) {
+    ++sum.frames_with_crossings;
+    const int more = check.intersections - 1;
+    const std::string others = more > 0 ? " (and " + std::to_string(more) + " more)" : "";
+    add_offence(verify::describe(frame, check.first[0]) + others);
+  }
+  if (check.intersections > sum.intersections) {
+    sum.intersections = check.intersections;
+    sum.worst_frame = index;
+  }
+  if (!check.deepest) return;
+  const std::string place = verify::describe(frame, *check.deepest);
+  if (check.penetration() > options.tolerance)
+    add_offence(place + ", " + millimetres(check.penetration()) + " deep");
+  if (check.penetration() > sum.penetration_max.value_or(0)) {
+    sum.deepest_frame = index;
+    sum.deepest_place = place;
+  }
+  sum.penetration_max = std::max(sum.penetration_max.value_or(0), check.penetration());
+}
+
+}  // namespace
+
+WorldFrames::WorldFrames(const World& world) : world_(world) {
+  for (const Collider& collider : world.colliders()) {
+    const auto* mesh = std::get_if<MeshShape>(&collider.shape);
+    is_closed_.push_back(mesh && verify::is_closed(mesh->mesh->triangles));
+  }
+}
+
+FrameToCheck WorldFrames::now() const {
+  FrameToCheck result;
+  for (int c = 0; c < world_.num_cloths(); ++c) {
+    add_cloth(world_.name({c}), world_.model({c}).topology->mesh.triangles, positions_of(world_.state({c})),
+              result);
+  }
+  for (std::size_t k = 0; k < world_.colliders().size(); ++k) {
+    const Collider& collider = world_.colliders()[k];
+    const Solid shape = place(shape_at(collider, world_.time()), is_closed_[k], result);
+    result.frame.colliders.push_back({collider.name, shape});
+  }
+  return result;
+}
+
+AnimationFrames::AnimationFrames(const Animation& animation) : animation_(animation) {
+  for (const RigidMesh& body : animation.bodies) {
+    is_closed_.push_back(!body.shape && verify::is_closed(body.mesh.triangles));
+  }
+}
+
+int AnimationFrames::num_frames() const {
+  std::size_t count = 0;
+  for (const AnimatedMesh& cloth : animation_.cloths) count = std::max(count, cloth.frames.size());
+  for (const RigidMesh& body : animation_.bodies) count = std::max(count, body.poses.size());
+  return static_cast<int>(count);
+}
+
+FrameToCheck AnimationFrames::at(int frame) const {
+  FrameToCheck result;
+  for (const AnimatedMesh& cloth : animation_.cloths) {
+    add_cloth(cloth.name, cloth.triangles, to_positions(cloth.frames[frame]), result);
+  }
+  for (std::size_t k = 0; k < animation_.bodies.size(); ++k) {
+    const RigidMesh& body = animation_.bodies[k];
+    const auto& [translation, rotation] = body.poses[body.poses.size() > 1 ? frame : 0];
+    const Placement placement{rotation.toRotationMatrix(), translation};
+    const Solid shape = body.shape ? std::visit(placement, *body.shape)
+                                   : Solid(place_mesh(body.mesh, placement, is_closed_[k], result));
+    result.frame.colliders.push_back({body.name, shape});
+  }
+  return result;
+}
+
+AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options) {
+  const AnimationFrames frames(animation);
+  AnimationCheck sum;
+  for (int k = 0; k < frames.num_frames(); ++k) add_frame(frames.at(k).frame, k, options, sum);
+  return sum;
+}
+
+}  // namespace weft

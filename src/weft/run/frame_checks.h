@@ -1,0 +1,76 @@
+#pragma once
+/// Frames of worlds and of animation files, laid before the independent checker.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "weft/io/glb_writer.h"
+#include "weft/verify/checker.h"
+#include "weft/world/world.h"
+
+namespace weft {
+
+/// A frame for the checker, with the positions that it looks at. Moves, but does not copy.
+struct FrameToCheck {
+  FrameToCheck() = default;
+  FrameToCheck(FrameToCheck&&) = default;
+  FrameToCheck& operator=(FrameToCheck&&) = default;
+
+  verify::Frame frame;
+  std::vector<std::vector<Vec3>> positions;  // of cloths, then of meshes among the colliders
+};
+
+/// Shows the checker a world as it is now.
+class WorldFrames {
+ public:
+  explicit WorldFrames(const World& world);
+
+  /// Valid as long as the world's cloths and colliders stay the same ones.
+  FrameToCheck now() const;
+
+ private:
+  const World& world_;
+  std::vector<char> is_closed_;  // (colliders) meshes with an inside
+};
+
+/// Shows the checker the frames of an animation, which must outlive this.
+class AnimationFrames {
+ public:
+  explicit AnimationFrames(const Animation& animation);
+
+  int num_frames() const;
+  FrameToCheck at(int frame) const;
+
+ private:
+  const Animation& animation_;
+  std::vector<char> is_closed_;  // (bodies) meshes with an inside
+};
+
+/// What the checker found in an animation. Frame 0 is the start.
+struct AnimationCheck {
+  struct Offence {
+    int frame = 0;
+    std::string what;  // `cloth "sheet" triangle 7 crosses its triangle 120`
+  };
+
+  int frames = 0;  // checked
+  int frames_with_crossings = 0;
+  int intersections = 0;                  // crossing pairs of triangles in the worst frame
+  int worst_frame = -1;                   // -1: none
+  std::optional<double> penetration_max;  // empty: no collider has an inside [m]
+  int deepest_frame = -1;                 // -1: cloth is never inside
+  std::string deepest_place;
+  std::vector<Offence> offences;  // the first few
+  bool is_clean = true;
+};
+
+struct AnimationCheckOptions {
+  double tolerance = 1e-4;  // cloth no deeper than this is no offence [m]
+  int num_offences = 10;    // listed at most [1]
+};
+
+/// Checks every frame.
+AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options = {});
+
+}  // namespace weft

@@ -1,0 +1,63 @@
+#include "weft/verify/checker.h"
+
+#include <algorithm>
+
+namespace weft::verify {
+namespace {
+
+std::vector<SurfaceView> cloth_surfaces(const Frame& frame) {
+  std::vector<SurfaceView> surfaces;
+  for (const NamedCloth& cloth : frame.cloths) surfaces.push_back({cloth.positions, cloth.triangles, true});
+  return surfaces;
+}
+
+/// Colliders that are no meshes have no triangles.
+void add_collider_surfaces(const Frame& frame, std::vector<SurfaceView>& surfaces) {
+  for (const NamedCollider& collider : frame.colliders) {
+    const auto* mesh = std::get_if<MeshView>(&collider.shape);
+    surfaces.push_back(mesh ? SurfaceView{mesh->positions, mesh->triangles, false}
+                            : SurfaceView{.positions = {}, .triangles = {}, .is_cloth = false});
+  }
+}
+
+std::string quoted(const std::string& kind, const std::string& name) { return kind + " \"" + name + "\""; }
+
+std::string name_of(const Frame& frame, int surface) {
+  const auto num_cloths = static_cast<int>(frame.cloths.size());
+  if (surface < num_cloths) return quoted("cloth", frame.cloths[surface].name);
+  return quoted("collider", frame.colliders[surface - num_cloths].name);
+}
+
+}  // namespace
+
+FrameCheck check_frame(const Frame& frame, int num_listed) {
+  FrameCheck check;
+  std::vector<SurfaceView> surfaces = cloth_surfaces(frame);
+  std::vector<Solid> solids;
+  for (const NamedCollider& collider : frame.colliders) solids.push_back(collider.shape);
+  check.deepest = find_deepest(surfaces, solids);
+
+  add_collider_surfaces(frame, surfaces);
+  const std::vector<Crossing> crossings = find_crossings(surfaces);
+  check.intersections = static_cast<int>(crossings.size());
+  const std::size_t listed = std::min(crossings.size(), static_cast<std::size_t>(num_listed));
+  check.first.assign(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(listed));
+  return check;
+}
+
+std::string describe(const Frame& frame, const Crossing& crossing) {
+  const auto& [a, b] = crossing;
+  const std::string other = a.surface == b.surface ? "its" : name_of(frame, b.surface);
+  return name_of(frame, a.surface) + " triangle " + std::to_string(a.triangle) + " crosses " + other +
+         " triangle " + std::to_string(b.triangle);
+}
+
+std::string describe(const Frame& frame, const Penetration& deepest) {
+  if (deepest.solid < 0) return "nowhere";
+  const std::string place = deepest.triangle >= 0 ? " triangle " + std::to_string(deepest.triangle)
+                                                  : " particle " + std::to_string(deepest.particle);
+  return quoted("cloth", frame.cloths[deepest.cloth].name) + place + " in " +
+         quoted("collider", frame.colliders[deepest.solid].name);
+}
+
+}  // namespace weft::verify

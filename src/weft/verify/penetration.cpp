@@ -1,0 +1,243 @@
+#include "weft/verify/penetration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "weft/verify/distance.h"
+#include "weft/verify/inside.h"
+
+namespace weft::verify {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// ---- Boxes ----
+
+/// A face of a box in its own coordinates: depth below it is half_size − sign · x[axis].
+struct Face {
+  int axis;
+  double sign, half_size;
+
+  double depth(const Vec3& p) const { return half_size - sign * p[axis]; }
+};
+
+using Faces = std::array<Face, 6>;
+
+Faces faces_of(const Vec3& half_size) {
+  Faces faces;
+  for (int k = 0; k < 6; ++k) faces[k] = {k / 2, k % 2 == 0 ? 1.0 : -1.0, half_size[k / 2]};
+  return faces;
+}
+
+double depth_in(const Faces& faces, const Vec3& p) {
+  double least = kInfinity;
+  for (const Face& face : faces) least = std::min(least, face.depth(p));
+  return least;
+}
+
+/// No point of the triangle is deeper than this.
+double bound_depth(const Faces& faces, const Corners& triangle) {
+  double bound = kInfinity;
+  for (const Face& face : faces) {
+    bound = std::min(bound,
+                     std::max({face.depth(triangle[0]), face.depth(triangle[1]), face.depth(triangle[2])}));
+  }
+  return bound;
+}
+
+/// A triangle and what clipping by five half spaces leaves of it: each adds at most one corner.
+struct Polygon {
+  std::array<Vec3, 8> corners;
+  int size = 0;
+
+  void add(const Vec3& p) { corners[size++] = p; }
+};
+
+/// The part where `value`, a linear function, is not negative.
+template <class Value>
+Polygon clip(const Polygon& polygon, Value value) {
+  Polygon kept;
+  for (int i = 0; i < polygon.size; ++i) {
+    const Vec3 &p = polygon.corners[i], &q = polygon.corners[(i + 1) % polygon.size];
+    const double at_p = value(p), at_q = value(q);
+    if (at_p >= 0) kept.add(p);
+    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.add(p + at_p / (at_p - at_q) * (q - p));
+  }
+  return kept;
+}
+
+/// The part of the triangle that is nearer to this face's plane than to the other five.
+Polygon part_nearest_to(const Face& nearest, const Faces& faces, const Corners& triangle) {
+  Polygon part;
+  for (const Vec3& p : triangle) part.add(p);
+  for (const Face& other : faces) {
+    if (other.axis == nearest.axis && other.sign == nearest.sign) continue;
+    part = clip(part, [&](const Vec3& p) { return other.depth(p) - nearest.depth(p); });
+  }
+  return part;
+}
+
+/// Over each face's part depth is linear, so the greatest is at a corner of a part. Every corner is a point
+/// of the triangle: rounding may miss the deepest point by a hair, never invent one.
+double greatest_depth(const Faces& faces, const Corners& triangle) {
+  double deepest = -kInfinity;
+  for (const Vec3& p : triangle) deepest = std::max(deepest, depth_in(faces, p));
+  for (const Face& face : faces) {
+    const Polygon part = part_nearest_to(face, faces, triangle);
+    for (int i = 0; i < part.size; ++i) deepest = std::max(deepest, depth_in(faces, part.corners[i]));
+  }
+  return deepest;
+}
+
+// ---- Bounds ----
+
+using Bounds = Eigen::AlignedBox3d;
+
+Bounds bounds_of(const Sphere& s) {
+  return {s.center - Vec3::Constant(s.radius), s.center + Vec3::Constant(s.radius)};
+}
+
+Bounds bounds_of(const Plane&) { return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}; }
+
+Bounds bounds_of(const Capsule& c) {
+  return {c.a.cwiseMin(c.b) - Vec3::Constant(c.radius), c.a.cwiseMax(c.b) + Vec3::Constant(c.radius)};
+}
+
+Bounds bounds_of(const OrientedBox& box) {
+  const Vec3 reach = box.rotation.cwiseAbs() * box.half_size;
+  return {box.center - reach, box.center + reach};
+}
+
+bool overlaps(const Bounds& bounds, const Corners& t) {
+  const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+  return (low.array() <= bounds.max().array()).all() && (high.array() >= bounds.min().array()).all();
+}
+
+// ---- All cloths, all solids ----
+
+/// Keeps the deepest place.
+class Search {
+ public:
+  explicit Search(std::span<const SurfaceView> cloths) : cloths_(cloths) {}
+
+  template <class Shape>
+  void operator()(int solid, const Shape& shape) {
+    const Bounds bounds = bounds_of(shape);
+    for (std::size_t c = 0; c < cloths_.size(); ++c) {
+      const SurfaceView& cloth = cloths_[c];
+      for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+        const auto& [i, j, k] = cloth.triangles[t];
+        const Corners corners = {cloth.positions[i], cloth.positions[j], cloth.positions[k]};
+        if (!overlaps(bounds, corners)) continue;
+        const double depth = verify::depth_in(shape, corners);
+        if (depth > deepest_.depth) deepest_ = {depth, static_cast<int>(c), static_cast<int>(t), -1, solid};
+      }
+    }
+    is_measured_ = true;
+  }
+
+  void operator()(int solid, const MeshView& mesh) {
+    if (!mesh.is_closed) return;
+    const InsideOfMesh inside(mesh.positions, mesh.triangles);
+    DepthInMesh depth(mesh);
+    for (std::size_t c = 0; c < cloths_.size(); ++c) {
+      for (std::size_t i = 0; i < cloths_[c].positions.size(); ++i) {
+        const Vec3& p = cloths_[c].positions[i];
+        if (!inside.contains(p)) continue;
+        const double d = depth.at(p, deepest_.depth);
+        if (d > deepest_.depth) deepest_ = {d, static_cast<int>(c), -1, static_cast<int>(i), solid};
+      }
+    }
+    is_measured_ = true;
+  }
+
+  std::optional<Penetration> result() const { return is_measured_ ? std::optional(deepest_) : std::nullopt; }
+
+ private:
+  /// Distance from inner points to a mesh's surface.
+  class DepthInMesh {
+   public:
+    explicit DepthInMesh(const MeshView& mesh) : mesh_(mesh) {}
+
+    /// The depth at p, or some number <= `known` if it is not greater than that. Neighbours tend to be near
+    /// the same triangle, so the one that was nearest last time is asked first.
+    double at(const Vec3& p, double known) {
+      double least = distance_sq(p, corners(nearest_));
+      for (std::size_t t = 0; t < mesh_.triangles.size() && least > known * known; ++t) {
+        const double d = distance_sq(p, corners(t));
+        if (d < least) std::tie(least, nearest_) = std::pair(d, t);
+      }
+      return std::sqrt(least);
+    }
+
+   private:
+    Corners corners(std::size_t t) const {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      return {mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]};
+    }
+
+    const MeshView& mesh_;
+    std::size_t nearest_ = 0;
+  };
+
+  std::span<const SurfaceView> cloths_;
+  Penetration deepest_;
+  bool is_measured_ = false;
+};
+
+}  // namespace
+
+double depth_in(const Sphere& sphere, const Corners& triangle) {
+  return sphere.radius - std::sqrt(distance_sq(sphere.center, triangle));
+}
+
+double depth_in(const Plane& plane, const Corners& triangle) {
+  double deepest = -kInfinity;
+  for (const Vec3& p : triangle) deepest = std::max(deepest, (plane.point - p).dot(plane.normal));
+  return deepest;
+}
+
+double depth_in(const Capsule& capsule, const Corners& triangle) {
+  return capsule.radius - std::sqrt(distance_sq(Segment{capsule.a, capsule.b}, triangle));
+}
+
+double depth_in(const OrientedBox& box, const Corners& triangle) {
+  Corners local;
+  for (int k = 0; k < 3; ++k) local[k] = box.rotation.transpose() * (triangle[k] - box.center);
+  const Faces faces = faces_of(box.half_size);
+  const double bound = bound_depth(faces, local);
+  return bound <= 0 ? bound : greatest_depth(faces, local);
+}
+
+bool is_closed(std::span<const Triangle> triangles) {
+  std::vector<std::tuple<int, int, int>> edges;  // low, high, ±1 for the direction
+  for (const Triangle& t : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      edges.emplace_back(low, high, t[k] < t[(k + 1) % 3] ? 1 : -1);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  int balance = 0;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto& [low, high, direction] = edges[e];
+    const bool is_new =
+        e == 0 || std::tie(low, high) != std::tie(std::get<0>(edges[e - 1]), std::get<1>(edges[e - 1]));
+    if (is_new && balance != 0) return false;
+    balance += direction;
+  }
+  return balance == 0 && !edges.empty();
+}
+
+std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std::span<const Solid> solids) {
+  Search search(cloths);
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    std::visit([&](const auto& shape) { search(static_cast<int>(s), shape); }, solids[s]);
+  }
+  return search.result();
+}
+
+}  // namespace weft::verify
