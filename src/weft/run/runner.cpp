@@ -137,8 +137,10 @@ class Filmer {
       body.mesh = make_square_mesh(Vec3::Zero(), plane->normal, kPlaneSide);
     } else if (const Capsule* capsule = std::get_if<Capsule>(&collider.shape)) {
       const Vec3 half = 0.5 * (capsule->b - capsule->a);
+      body.shape = Capsule{-half, half, capsule->radius};
       body.mesh = make_capsule_mesh(-half, half, capsule->radius, kSphereRings);
     } else if (const OrientedBox* box = std::get_if<OrientedBox>(&collider.shape)) {
+      body.shape = OrientedBox{Vec3::Zero(), box->half_size, box->rotation};
       body.mesh = make_box_mesh(Vec3::Zero(), box->half_size, box->rotation);
     } else if (const MeshShape* shape = std::get_if<MeshShape>(&collider.shape)) {
       body.mesh = *shape->mesh;
