@@ -373,7 +373,9 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
     if (nearest > reach + triangle_reach) continue;
     const std::vector<Vec3>& x = motion_.end;
     const double distance = triangle_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
-    if (distance < reach && distance < nearest - kNearerThanCorners) add_shape_constraint(shape, 3, t);
+    if (distance < reach &&
+        distance < nearest - std::max(kNearerThanCorners, share_of_travel * motion_.half_thickness[t[0]]))
+      add_shape_constraint(shape, 3, t);
   }
 }
 
