@@ -7,7 +7,7 @@ namespace weft {
 namespace {
 
 constexpr double kPositionTolerance = 1e-6;  // corrections below need no further pass [m]
-constexpr double kVelocityTolerance = 1e-5;  // [m/s]
+constexpr double kVelocityTolerance = 1e-4;  // [m/s]
 constexpr int kVelocityPasses = 12;
 
 /// Makes v_n >= 0; returns the change [m/s].
@@ -25,10 +25,12 @@ double stop_approach(Constraint& c, const std::vector<double>& inverse_masses,
 /// Friction against the slide; returns the change [m/s].
 double slow_slide(Constraint& c, const std::vector<double>& inverse_masses, std::vector<Vec3>& velocities,
                   std::vector<Vec3>& slowed) {
+  const double most = c.friction * c.impulse;
+  if (most == 0 && c.friction_impulse.isZero(0)) return 0;
   const Vec3 relative = c.sum(velocities) - c.surface_velocity;
   const Vec3 slide = relative - relative.dot(c.normal) * c.normal;
   Vec3 impulse = c.friction_impulse - slide / c.inverse_mass;
-  const double most = c.friction * c.impulse, length = impulse.norm();
+  const double length = impulse.norm();
   if (length > most) impulse *= most / length;
   const Vec3 change = impulse - c.friction_impulse;
   c.friction_impulse = impulse;

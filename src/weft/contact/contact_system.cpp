@@ -389,38 +389,42 @@ void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Tria
   if (c.inverse_mass > 0) constraints_.push_back(c);
 }
 
+ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, const Constraint& c,
+                                                   const std::vector<Vec3>& x) {
+  const Vec3& a = x[c.vertex[0]];
+  if (c.num_vertices == 1) {
+    const SignedDistance d = signed_distance(shape, a);
+    return {d.distance, d.normal, a - d.distance * d.normal, {1, 0, 0, 0}};
+  }
+  const Vec3 &b = x[c.vertex[1]], &e = x[c.vertex[2]];
+  const TriangleSignedDistance d = triangle_distance(shape, a, b, e);
+  return {d.distance,
+          d.normal,
+          point_at(d.weights, a, b, e) - d.distance * d.normal,
+          {d.weights[0], d.weights[1], d.weights[2], 0}};
+}
+
 /// The plane that touches the shape where the particle or triangle is nearest at the end of the step; unless
 /// that lies beyond the shape's middle: then where it was nearest at the start.
 void ContactSystem::take_plane(Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
-  struct Nearest {
-    double distance;
-    Vec3 normal;
-  };
-  const auto find_nearest = [&](const ColliderShape& shape, const std::vector<Vec3>& x) -> Nearest {
-    if (c.num_vertices == 1) {
-      const SignedDistance d = signed_distance(shape, x[c.vertex[0]]);
-      return {d.distance, d.normal};
+  Nearest nearest = find_nearest(moving.after, c, motion_.end);
+  if (nearest.distance < 0) {
+    const Mat3 turn = moving.pose_after.rotation * moving.pose_before.rotation.transpose();
+    const Nearest before = find_nearest(moving.before, c, motion_.start);
+    const Vec3 normal_before = turn * before.normal;
+    if (before.distance > 0 && nearest.normal.dot(normal_before) <= 0) {
+      c.is_fixed = true;
+      nearest = before;
+      nearest.normal = normal_before;
+      nearest.foot = apply(moving.pose_after, moving.pivot,
+                           apply_inverse(moving.pose_before, moving.pivot, before.foot));
     }
-    const TriangleSignedDistance d = triangle_distance(shape, x[c.vertex[0]], x[c.vertex[1]], x[c.vertex[2]]);
-    c.weight = {d.weights[0], d.weights[1], d.weights[2], 0};
-    return {d.distance, d.normal};
-  };
-  const Nearest before = find_nearest(moving.before, motion_.start);
-  const Vec3 old_foot = c.sum(motion_.start) - before.distance * before.normal;
-  const std::array<double, 4> old_weight = c.weight;
-  const Nearest after = find_nearest(moving.after, motion_.end);
-  Vec3 foot = c.sum(motion_.end) - after.distance * after.normal;
-  c.normal = after.normal;
-  const Mat3 turn = moving.pose_after.rotation * moving.pose_before.rotation.transpose();
-  if (before.distance > 0 && after.distance < 0 && c.normal.dot(turn * before.normal) <= 0) {
-    c.is_fixed = true;
-    c.weight = old_weight;
-    c.normal = turn * before.normal;
-    foot = apply(moving.pose_after, moving.pivot, apply_inverse(moving.pose_before, moving.pivot, old_foot));
   }
-  c.target = c.normal.dot(foot) + motion_.half_thickness[c.vertex[0]];
-  c.surface_velocity = moving.velocity_at(foot, step_.step);
+  c.normal = nearest.normal;
+  c.weight = nearest.weight;
+  c.target = c.normal.dot(nearest.foot) + motion_.half_thickness[c.vertex[0]];
+  c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
   c.inverse_mass = 0;
   for (int k = 0; k < c.num_vertices; ++k)
     c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];

@@ -76,6 +76,14 @@ class ContactSystem {
     bool is_closed = false;
   };
 
+  /// Where a particle or triangle is nearest to a plain shape.
+  struct Nearest {
+    double distance;
+    Vec3 normal, foot;  // outwards; on the surface
+    std::array<double, 4> weight;
+  };
+  static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
+
   void renumber(const std::vector<Collider>& colliders);
   void place_bodies();
   void collect_pairs(JobSystem& jobs);
