@@ -31,6 +31,7 @@ constexpr double kNearerThanCorners = 1e-6;
 
 constexpr int kRounds = 6;         // planes of round shapes are taken anew this often
 constexpr int kPasses = 8;         // over all constraints between
+constexpr int kSearches = 3;       // after friction, shapes are looked for anew this often
 constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
 
 double slack_of(const ClothTopology& topology, double thickness) {
@@ -432,16 +433,20 @@ void ContactSystem::take_plane(Constraint& c) const {
 
 // ---- Setting apart ----
 
-void ContactSystem::settle_positions() {
+/// Returns the largest correction of the first round [m].
+double ContactSystem::settle_positions() {
+  double first = 0;
   for (int round = 0; round < kRounds; ++round) {
     const double moved = project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
-    if (moved < kSettled) return;
+    if (round == 0) first = moved;
+    if (moved < kSettled) break;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
       take_plane(c);
       c.push = 0;
     }
   }
+  return first;
 }
 
 void ContactSystem::project() {
@@ -457,8 +462,14 @@ void ContactSystem::project() {
   }
   project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
   take_back_slides();
-  settle_positions();
-  mark_touched();
+  // What has been moved may have met shapes that were out of its reach.
+  for (int search = 0; search < kSearches; ++search) {
+    std::erase_if(constraints_, [](const Constraint& c) { return c.shape >= 0; });
+    collect_shapes(0.0);
+    const double moved = settle_positions();
+    mark_touched();
+    if (moved < kSettled) break;
+  }
 }
 
 /// Friction also takes back the slide of this step, so that what sticks does not creep.

@@ -98,7 +98,7 @@ class ContactSystem {
   void collect_shape(int shape, double share_of_travel);
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
-  void settle_positions();
+  double settle_positions();
   void project();
   void take_back_slides();
   void mark_touched();
