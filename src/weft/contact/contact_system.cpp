@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/geometry/coplanar_time.h"
 #include "weft/geometry/distance.h"
 
 namespace weft {
@@ -23,6 +24,9 @@ constexpr double kRecovery = 0.2;
 /// Almost parallel edges have no reliable direction between them: sin² of the angle.
 constexpr double kParallelSq = 0.03;
 
+/// Edges that pass each other at this share of their length when they are in one plane do meet.
+constexpr double kMeeting = 1e-3;
+
 /// Features this near have no direction between them at all [m].
 constexpr double kTouching = 1e-9;
 
@@ -31,7 +35,7 @@ constexpr double kNearerThanCorners = 1e-6;
 
 constexpr int kRounds = 6;         // planes of round shapes are taken anew this often
 constexpr int kPasses = 8;         // over all constraints between
-constexpr int kSearches = 3;       // after friction, shapes are looked for anew this often
+constexpr int kSearches = 3;       // after friction, contacts are looked for anew this often
 constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
 
 double slack_of(const ClothTopology& topology, double thickness) {
@@ -192,9 +196,13 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   }
   proximity_.update(motion_, jobs);
   constraints_.clear();
-  collect_pairs(jobs);
   collect_shapes(1.0);
-  if (cloths_.size() > 1) project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+  collect_pairs(jobs);
+  // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
+  project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+  std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
+  proximity_.update(motion_, jobs);
+  collect_pairs(jobs);
 }
 
 void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) const {
@@ -235,7 +243,7 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   collect_pairs(jobs);
   collect_shapes(0.0);
   if (constraints_.empty()) return;
-  project();
+  project(jobs);
   store_touched();
 }
 
@@ -263,16 +271,25 @@ void ContactSystem::collect_pairs(JobSystem& jobs) {
   collect(proximity_.edge_edge(), [&](const auto& p, Constraint& c) { return make_edge_edge(p, c); });
 }
 
-/// Only with the foot inside the triangle: towards its border the direction would lie sideways and make cloth
-/// sticky. What is beyond is the neighbouring triangles' or the edges' matter.
+/// At the start only with the foot inside the triangle: towards its border the direction would lie sideways
+/// and make cloth sticky. What is beyond is the neighbouring triangles' or the edges' matter.
 bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c) const {
   const auto [i, j, k] = proximity_.surface().triangles[pair.b];
   const std::vector<Vec3>& x = motion_.start;
+  c.num_vertices = 4;
+  c.vertex = {i, j, k, pair.a};
+  if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
+    const std::array<Vec3, 4> p = places_at(c, *time);
+    const PointTriangleDistance d = point_triangle_distance(p[3], p[0], p[1], p[2]);
+    if (d.region == TriangleRegion::face) {
+      c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
+      c.normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
+      return finish_crossing(pair, c);
+    }
+  }
   const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
   if (d.region != TriangleRegion::face) return false;
-  c.num_vertices = 4;
-  c.vertex = {pair.a, i, j, k};
-  c.weight = {1, -d.weights[0], -d.weights[1], -d.weights[2]};
+  c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
   double distance = d.distance();
   if (is_on_closed_body(i)) {
     // The outside is known, so that what is inside by a little is pushed out.
@@ -289,17 +306,48 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   const auto [i, j] = proximity_.surface().edges[pair.a];
   const auto [k, l] = proximity_.surface().edges[pair.b];
   const std::vector<Vec3>& x = motion_.start;
-  const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
-  if (d.region_a != EdgeRegion::interior || d.region_b != EdgeRegion::interior) return false;
-  const Vec3 u = x[j] - x[i], v = x[l] - x[k];
-  if (u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm()) return false;
-  const double distance = d.distance();
-  if (distance < kTouching) return false;
   c.num_vertices = 4;
   c.vertex = {i, j, k, l};
+  const auto is_inside = [](const EdgeEdgeDistance& d) {
+    return d.region_a == EdgeRegion::interior && d.region_b == EdgeRegion::interior;
+  };
+  const auto are_parallel = [](const Vec3& u, const Vec3& v) {
+    return u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm();
+  };
+  if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
+    const std::array<Vec3, 4> p = places_at(c, *time);
+    const EdgeEdgeDistance d = edge_edge_distance(p[0], p[1], p[2], p[3]);
+    const double meeting = kMeeting * (p[1] - p[0]).norm();
+    if (is_inside(d) && d.distance_sq < meeting * meeting && !are_parallel(p[1] - p[0], p[3] - p[2])) {
+      c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
+      c.normal = (p[1] - p[0]).cross(p[3] - p[2]).stableNormalized();
+      return finish_crossing(pair, c);
+    }
+  }
+  const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
+  if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
+  const double distance = d.distance();
+  if (distance < kTouching) return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
   return finish_pair(pair, distance, c);
+}
+
+std::array<Vec3, 4> ContactSystem::places(const Constraint& c, const std::vector<Vec3>& x) {
+  return {x[c.vertex[0]], x[c.vertex[1]], x[c.vertex[2]], x[c.vertex[3]]};
+}
+
+std::array<Vec3, 4> ContactSystem::places_at(const Constraint& c, double time) const {
+  std::array<Vec3, 4> p = places(c, motion_.start);
+  for (int k = 0; k < 4; ++k) p[k] += time * (motion_.end[c.vertex[k]] - p[k]);
+  return p;
+}
+
+/// The features go through each other during the step: they are to stay on the side where they come from.
+bool ContactSystem::finish_crossing(const FeaturePair& pair, Constraint& c) const {
+  const Vec3 approach = c.sum(motion_.end) - c.sum(motion_.start);
+  if (c.normal.dot(approach) > 0) c.normal = -c.normal;
+  return finish_pair(pair, std::max(c.normal.dot(c.sum(motion_.start)), kTouching), c);
 }
 
 /// False if the pair cannot meet during the step.
@@ -449,7 +497,7 @@ double ContactSystem::settle_positions() {
   return first;
 }
 
-void ContactSystem::project() {
+void ContactSystem::project(JobSystem& jobs) {
   settle_positions();
   for (const Constraint& c : constraints_) {
     for (int k = 0; k < c.num_vertices; ++k) {
@@ -462,9 +510,11 @@ void ContactSystem::project() {
   }
   project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
   take_back_slides();
-  // What has been moved may have met shapes that were out of its reach.
+  // What has been moved may have met what was out of its reach.
   for (int search = 0; search < kSearches; ++search) {
-    std::erase_if(constraints_, [](const Constraint& c) { return c.shape >= 0; });
+    proximity_.update(motion_, jobs);
+    constraints_.clear();
+    collect_pairs(jobs);
     collect_shapes(0.0);
     const double moved = settle_positions();
     mark_touched();

@@ -89,6 +89,9 @@ class ContactSystem {
   void collect_pairs(JobSystem& jobs);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
+  static std::array<Vec3, 4> places(const Constraint& c, const std::vector<Vec3>& x);
+  std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
+  bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
   bool finish_pair(const FeaturePair& pair, double distance, Constraint& c) const;
   int cloth_of(int vertex) const;
   double friction_of(int vertex) const;
@@ -99,7 +102,7 @@ class ContactSystem {
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
   double settle_positions();
-  void project();
+  void project(JobSystem& jobs);
   void take_back_slides();
   void mark_touched();
   void store_touched();
