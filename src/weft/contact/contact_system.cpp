@@ -196,6 +196,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   }
   proximity_.update(motion_, jobs);
   constraints_.clear();
+  if (proximity_.wildest() >= 0) return;
   collect_shapes(1.0);
   collect_pairs(jobs);
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
@@ -237,9 +238,14 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
   }
 }
 
+int ContactSystem::wild_cloth() const {
+  return proximity_.wildest() < 0 ? -1 : cloth_of(proximity_.wildest());
+}
+
 void ContactSystem::hold_off(JobSystem& jobs) {
   proximity_.update(motion_, jobs);
   constraints_.clear();
+  if (proximity_.wildest() >= 0) return;
   collect_pairs(jobs);
   collect_shapes(0.0);
   if (constraints_.empty()) return;

@@ -58,6 +58,9 @@ class ContactSystem {
   /// constraint.h). To be called when every cloth is at its end.
   void hold_off(JobSystem& jobs);
 
+  /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
+  int wild_cloth() const;
+
  private:
   struct MovingShape {
     const Collider* collider = nullptr;

@@ -83,10 +83,27 @@ void Proximity::fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
   tree.build(boxes, {surface_.triangles.begin() + begin, surface_.triangles.begin() + end}, jobs);
 }
 
+/// -1 if cloth moves against itself by less than its own size on the average.
+int Proximity::find_wildest(const SurfaceMotion& motion) const {
+  if (num_cloth_vertices_ == 0) return -1;
+  Vec3 low = motion.start[0], high = low;
+  double sum = 0;
+  int wildest = 0;
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    low = low.cwiseMin(motion.start[v]);
+    high = high.cwiseMax(motion.start[v]);
+    sum += travel_[v];
+    if (!(travel_[v] <= travel_[wildest])) wildest = v;
+  }
+  return sum <= num_cloth_vertices_ * (high - low).norm() ? -1 : wildest;
+}
+
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   box_vertices(motion);
   vertex_triangle_.clear();
   edge_edge_.clear();
+  wildest_ = find_wildest(motion);
+  if (wildest_ >= 0) return reference_.clear();
   const int num_triangles = static_cast<int>(surface_.triangles.size());
   fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
   cloth_tree_.find_self_pairs(jobs, search_);

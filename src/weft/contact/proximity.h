@@ -34,8 +34,12 @@ class Proximity {
   void reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices, int num_cloth_triangles,
              double slack);
 
-  /// Makes the lists hold for this motion.
+  /// Makes the lists hold for this motion. If cloth moves against itself by more than its own size, then all
+  /// is near to all: the lists are left empty, and wildest() tells a vertex.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
+
+  /// The vertex that moved farthest when the last update gave up, -1 if it did not.
+  int wildest() const { return wildest_; }
 
   const Surface& surface() const { return surface_; }
   const std::vector<FeaturePair>& vertex_triangle() const { return vertex_triangle_; }
@@ -49,6 +53,7 @@ class Proximity {
   void measure_edges(const SurfaceMotion& motion);
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
   void box_vertices(const SurfaceMotion& motion);
+  int find_wildest(const SurfaceMotion& motion) const;
   void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
   void add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan);
   void add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan);
@@ -65,6 +70,7 @@ class Proximity {
   std::vector<Vec3> reference_;  // (num_vertices) where the lists were made, empty if there are none
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   double longest_edge_ = 0;  // [m]
+  int wildest_ = -1;
 
   // Work space of rebuild().
   Vec3 drift_ = Vec3::Zero();

@@ -177,7 +177,10 @@ void World::advance(double time, double dt, StepReport& report) {
     if (contact_) contact_system_.end_of(c);
   }
   // What has come too close all the same.
-  if (contact_) contact_system_.hold_off(*jobs_);
+  if (!contact_) return;
+  contact_system_.hold_off(*jobs_);
+  const int wild = contact_system_.wild_cloth();
+  if (wild >= 0) is_wild_[wild] = 1;
 }
 
 StepReport World::step(double dt) {
@@ -186,11 +189,13 @@ StepReport World::step(double dt) {
   StepReport report;
   save(before_);
   has_converged_.assign(cloths_.size(), 1);
+  is_wild_.assign(cloths_.size(), 0);
   report.substeps = num_substeps(dt);
   for (int s = 1; s <= report.substeps; ++s) {
     advance(time_ + dt * s / report.substeps, dt / report.substeps, report);
   }
-  for (Cloth& cloth : cloths_) {
+  for (int c = 0; c < num_cloths(); ++c) {
+    Cloth& cloth = cloths_[c];
     const int broken = find_non_finite(cloth.state);
     if (broken >= 0) {
       report.ok = false;
@@ -201,7 +206,14 @@ StepReport World::step(double dt) {
       return report;
     }
     follow_cloth(cloth.state);
-    if (has_converged_[&cloth - cloths_.data()]) continue;
+    if (is_wild_[c]) {
+      report.troubles.push_back(
+          {cloth.name, -1,
+           "the cloth moved by more than its own size within a step, and contact was left "
+           "out; " +
+               advice(integrator_settings_.integrator)});
+    }
+    if (has_converged_[c]) continue;
     report.troubles.push_back({cloth.name, -1,
                                "the solver ran out of iterations before it reached its tolerance; raise "
                                "solver.iterations or solver.steps_per_frame"});

@@ -126,8 +126,8 @@ class World {
   // Work space of step(), kept so that it allocates nothing.
   ContactSystem contact_system_;
   std::vector<ContactCloth> contact_cloths_;
-  std::vector<Vec3> pin_positions_;  // of all cloths
-  std::vector<char> has_converged_;  // (cloths)
+  std::vector<Vec3> pin_positions_;            // of all cloths
+  std::vector<char> has_converged_, is_wild_;  // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_;
 };
