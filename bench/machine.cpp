@@ -10,10 +10,6 @@
 namespace weft::bench {
 namespace {
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 WEFT_ALWAYS_INLINE void stream_body(float* x, int count) {
   WEFT_IVDEP
   for (int i = 0; i < count; ++i) x[i] = 0.5f * x[i] + 1.0f;
@@ -22,6 +18,10 @@ WEFT_ALWAYS_INLINE void stream_body(float* x, int count) {
 WEFT_MULTIVERSION(stream, (float* x, int count), (x, count))
 
 }  // namespace
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 double measure_bandwidth(std::size_t bytes, int num_threads) {
   const int count = static_cast<int>(std::max<std::size_t>(bytes / sizeof(float), 1024));

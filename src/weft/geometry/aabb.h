@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "weft/core/vec.h"
@@ -21,6 +22,18 @@ struct Aabb {
   bool overlaps(const Aabb& other) const {
     return min[0] <= other.max[0] && other.min[0] <= max[0] && min[1] <= other.max[1] &&
            other.min[1] <= max[1] && min[2] <= other.max[2] && other.min[2] <= max[2];
+  }
+
+  /// The same, and counts the comparisons of numbers that it takes.
+  bool overlaps(const Aabb& other, std::int64_t& num_comparisons) const {
+    const auto is_below = [&](float a, float b) {
+      ++num_comparisons;
+      return a <= b;
+    };
+    for (int k = 0; k < 3; ++k) {
+      if (!is_below(min[k], other.max[k]) || !is_below(other.min[k], max[k])) return false;
+    }
+    return true;
   }
 
   void merge(const Aabb& other) {

@@ -227,18 +227,18 @@ bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direct
 }
 
 /// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
-void AabbTree::collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
-                       std::int64_t& box_pairs) const {
+template <bool kCounts>
+void AabbTree::collect(const AabbTree& other, LeafPair start, aabb_tree::Chunk& chunk) const {
   LeafPair stack[2 * kMaxDepth];
   int depth = 0;
   stack[depth++] = start;
   while (depth > 0) {
     const auto [n, m] = stack[--depth];
     const Node &a = nodes_[n], &b = other.nodes_[m];
-    ++box_pairs;
-    if (!a.box.overlaps(b.box)) continue;
+    ++chunk.box_pairs;
+    if (!(kCounts ? a.box.overlaps(b.box, chunk.comparisons) : a.box.overlaps(b.box))) continue;
     if (a.right == 0 && b.right == 0) {
-      out.push_back({a.leaf, b.leaf});
+      chunk.leaf_pairs.push_back({a.leaf, b.leaf});
     } else if (b.right == 0 || (a.right != 0 && a.right - n >= b.right - m)) {
       stack[depth++] = {a.right, m};
       stack[depth++] = {n + 1, m};
@@ -261,19 +261,22 @@ void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& fi
     aabb_tree::Chunk& chunk = search.chunks[begin / grain];
     chunk.leaf_pairs.clear();
     chunk.pairs.clear();
-    chunk.box_pairs = 0;
+    chunk.box_pairs = chunk.comparisons = 0;
     find_leaf_pairs(begin, end, chunk);
     const auto test = is_self ? test_within : test_between;
     test(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
          static_cast<int>(chunk.leaf_pairs.size()), chunk.pairs);
-    chunk.box_pairs += kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
+    const std::int64_t lane_pairs = kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
+    chunk.box_pairs += lane_pairs;
+    chunk.comparisons += 6 * lane_pairs;  // side by side: none is left out
   });
   search.pairs.clear();
-  search.num_box_pairs = 0;
+  search.num_box_pairs = search.num_comparisons = 0;
   for (std::size_t c = 0; c < num_chunks; ++c) {
     const aabb_tree::Chunk& chunk = search.chunks[c];
     search.pairs.insert(search.pairs.end(), chunk.pairs.begin(), chunk.pairs.end());
     search.num_box_pairs += chunk.box_pairs;
+    if (search.counts_comparisons) search.num_comparisons += chunk.comparisons;
   }
 }
 
@@ -283,7 +286,8 @@ void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
     for (int n = begin; n < end; ++n) {
       const Node& node = nodes_[n];
       if (node.right != 0) {
-        collect(*this, {n + 1, node.right}, chunk.leaf_pairs, chunk.box_pairs);
+        const LeafPair halves = {n + 1, node.right};
+        search.counts_comparisons ? collect<true>(*this, halves, chunk) : collect<false>(*this, halves, chunk);
       } else {
         chunk.leaf_pairs.push_back({node.leaf, node.leaf});
       }
@@ -294,10 +298,13 @@ void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
 
 void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const {
   search.pairs.clear();
-  search.num_box_pairs = 0;
+  search.num_box_pairs = search.num_comparisons = 0;
   if (nodes_.empty() || other.nodes_.empty()) return;
   const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
-    for (int s = begin; s < end; ++s) collect(other, {starts_[s], 0}, chunk.leaf_pairs, chunk.box_pairs);
+    for (int s = begin; s < end; ++s) {
+      const LeafPair start = {starts_[s], 0};
+      search.counts_comparisons ? collect<true>(other, start, chunk) : collect<false>(other, start, chunk);
+    }
   };
   find_in_chunks(static_cast<int>(starts_.size()), 1, find_leaf_pairs, other, false, jobs, search);
 }

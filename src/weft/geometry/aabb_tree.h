@@ -40,7 +40,7 @@ struct LeafPair {
 struct Chunk {
   std::vector<LeafPair> leaf_pairs;
   std::vector<ItemPair> pairs;
-  std::int64_t box_pairs;
+  std::int64_t box_pairs, comparisons;
 };
 
 }  // namespace aabb_tree
@@ -49,6 +49,9 @@ struct Chunk {
 struct PairSearch {
   std::vector<ItemPair> pairs;
   std::int64_t num_box_pairs = 0;  // boxes compared with boxes, by six comparisons at most [1]
+
+  bool counts_comparisons = false;   // set it to have them counted, which is slower
+  std::int64_t num_comparisons = 0;  // of numbers, for the boxes compared [1]
 
   std::vector<aabb_tree::Chunk> chunks;  // private to the tree
 };
@@ -202,8 +205,8 @@ class AabbTree {
   void choose_starts();
   void refit_nodes();
   float total_area() const;
-  void collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
-               std::int64_t& box_pairs) const;
+  template <bool kCounts>
+  void collect(const AabbTree& other, LeafPair start, aabb_tree::Chunk& chunk) const;
   template <class FindLeafPairs>
   void find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs, const AabbTree& other,
                       bool is_self, JobSystem& jobs, PairSearch& search) const;
