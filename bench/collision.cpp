@@ -34,9 +34,7 @@ struct Shape {
 double wave(double place, double length) { return std::sin(kTurn * place / length); }
 
 /// A gently wavy sheet: waves of 60 cm, 2 cm high.
-Vec3 rest_place(double x, double z, int pose) {
-  return {x, 0.02 * wave(x + 0.3 * z + 0.01 * pose, 0.6), z};
-}
+Vec3 rest_place(double x, double z, int pose) { return {x, 0.02 * wave(x + 0.3 * z + 0.01 * pose, 0.6), z}; }
 
 /// The same in eight layers, a zigzag along x.
 Vec3 folded_place(double x, double z, double width, int pose) {
@@ -83,9 +81,8 @@ class Crumple {
 Shape make_shape(const std::string& name, int num_triangles) {
   const int cells = std::max(1, static_cast<int>(std::lround(std::sqrt(num_triangles / 2.0))));
   const double width = cells * kSpacing;
-  const TriangleMesh mesh =
-      build_grid_mesh({.size_x = width, .size_z = width, .cells_x = cells, .cells_z = cells},
-                      GridDiagonals::alternating);
+  const TriangleMesh mesh = build_grid_mesh(
+      {.size_x = width, .size_z = width, .cells_x = cells, .cells_z = cells}, GridDiagonals::alternating);
   const Crumple crumple(width);
   Shape shape{name, mesh.triangles, {}};
   for (const int pose : {0, 1}) {
@@ -147,8 +144,7 @@ void refit(const Shape& shape, int pose, JobSystem& jobs, std::vector<Aabb>& ver
 }
 
 /// Leaves the tree in pose 0, and its pairs in `search`.
-TreeTimes time_tree(const Shape& shape, JobSystem& jobs, double seconds, AabbTree& tree,
-                    PairSearch& search) {
+TreeTimes time_tree(const Shape& shape, JobSystem& jobs, double seconds, AabbTree& tree, PairSearch& search) {
   TreeTimes times;
   std::vector<Aabb> vertex_boxes = triangle_boxes(shape, 0);
   times.build = median_time(seconds / 4, [&] { tree.build(vertex_boxes, shape.triangles, jobs); });
@@ -241,8 +237,8 @@ bool bench_shape(const std::string& name, int size, const CollisionBenchOptions&
     is_right &= search.pairs == first;  // in the same order too
     const double found = static_cast<double>(search.pairs.size());
     const double tested = static_cast<double>(search.num_box_pairs);
-    fmt::print("{:<7} {:>8} {:>2} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.1f} {:>8.1f} {:>5.2f} {:>7.1f}", name,
-               shape.triangles.size(), threads, 1e3 * times.build, 1e3 * times.refit, 1e3 * times.query,
+    fmt::print("{:<7} {:>8} {:>2} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.1f} {:>8.1f} {:>5.2f} {:>7.1f}",
+               name, shape.triangles.size(), threads, 1e3 * times.build, 1e3 * times.refit, 1e3 * times.query,
                1e3 * times.both, 1e-3 * found, 1e-3 * tested, comparisons_per_box_pair(tree, *jobs),
                1e-6 * tested / times.query);
     if (threads == 1) {
@@ -254,15 +250,17 @@ bool bench_shape(const std::string& name, int size, const CollisionBenchOptions&
   }
   std::sort(first.begin(), first.end());
   is_right &= first == peers.pairs;
-  if (!is_right) fmt::print("ERROR: tree, grid and brute force, or numbers of threads, find different pairs\n");
+  if (!is_right)
+    fmt::print("ERROR: tree, grid and brute force, or numbers of threads, find different pairs\n");
   return is_right;
 }
 
 }  // namespace
 
 bool bench_collision(const CollisionBenchOptions& options) {
-  fmt::print("SIMD {}, clock {:.2f} GHz. Sheets of cells of {:.0f} mm, boxes {:.0f} mm beyond each triangle.\n",
-             to_string(simd_level()), 1e-9 * measure_clock(), 1e3 * kSpacing, 1e3 * kMargin);
+  fmt::print(
+      "SIMD {}, clock {:.2f} GHz. Sheets of cells of {:.0f} mm, boxes {:.0f} mm beyond each triangle.\n",
+      to_string(simd_level()), 1e-9 * measure_clock(), 1e3 * kSpacing, 1e3 * kMargin);
   fmt::print(
       "Times are medians in ms; both: refit and query of all pairs without a common vertex. cmp: numbers\n"
       "compared per pair of boxes compared. Grid, brute: their time over the tree's, on one thread.\n\n");

@@ -64,9 +64,8 @@ void UniformGrid::find_self_pairs(const std::vector<Aabb>& boxes, const std::vec
         const Aabb& box_b = boxes[b.item];
         ++search.num_box_pairs;
         if (!box_a.overlaps(box_b) || share_key(a.item, b.item)) continue;
-        const Cell first =
-            cell_at(std::max(box_a.min[0], box_b.min[0]), std::max(box_a.min[1], box_b.min[1]),
-                    std::max(box_a.min[2], box_b.min[2]));
+        const Cell first = cell_at(std::max(box_a.min[0], box_b.min[0]), std::max(box_a.min[1], box_b.min[1]),
+                                   std::max(box_a.min[2], box_b.min[2]));
         if (first == a.cell) search.pairs.push_back({a.item, b.item});
       }
     }
