@@ -237,10 +237,11 @@ bool bench_shape(const std::string& name, int size, const CollisionBenchOptions&
     is_right &= search.pairs == first;  // in the same order too
     const double found = static_cast<double>(search.pairs.size());
     const double tested = static_cast<double>(search.num_box_pairs);
-    fmt::print("{:<7} {:>8} {:>2} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.1f} {:>8.1f} {:>5.2f} {:>7.1f}",
-               name, shape.triangles.size(), threads, 1e3 * times.build, 1e3 * times.refit, 1e3 * times.query,
-               1e3 * times.both, 1e-3 * found, 1e-3 * tested, comparisons_per_box_pair(tree, *jobs),
-               1e-6 * tested / times.query);
+    fmt::print(
+        "{:<7} {:>8} {:>2} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.1f} {:>8.1f} {:>5.2f} {:>7.0f} {:>7.1f}",
+        name, shape.triangles.size(), threads, 1e3 * times.build, 1e3 * times.refit, 1e3 * times.query,
+        1e3 * times.both, 1e-3 * found, 1e-3 * tested, comparisons_per_box_pair(tree, *jobs),
+        1e-6 * tested / times.query, 1e-6 * found / times.both);
     if (threads == 1) {
       fmt::print(" {:>7.1f}", peers.grid / times.both);
       if (peers.brute) fmt::print(" {:>7.0f}", *peers.brute / times.both);
@@ -263,16 +264,17 @@ bool bench_collision(const CollisionBenchOptions& options) {
       to_string(simd_level()), 1e-9 * measure_clock(), 1e3 * kSpacing, 1e3 * kMargin);
   fmt::print(
       "Times are medians in ms; both: refit and query of all pairs without a common vertex. cmp: numbers\n"
-      "compared per pair of boxes compared. Grid, brute: their time over the tree's, on one thread.\n\n");
-  fmt::print("{:<7} {:>8} {:>2} {:>8} {:>7} {:>7} {:>8} {:>7} {:>8} {:>5} {:>7} {:>7} {:>7}\n", "shape",
-             "size", "T", "build", "refit", "query", "both", "found k", "boxes k", "cmp", "M box/s", "grid ×",
-             "brute ×");
+      "compared per pair of boxes compared; Mbox/s: such pairs per second of a query; M/s: pairs found per "
+      "second\n"
+      "of both. Grid, brute: their time over the tree's, on one thread.\n\n");
+  fmt::print("{:<7} {:>8} {:>2} {:>8} {:>7} {:>7} {:>8} {:>7} {:>8} {:>5} {:>7} {:>7} {:>7} {:>7}\n", "shape",
+             "size", "T", "build", "refit", "query", "both", "k found", "k boxes", "cmp", "Mbox/s", "M/s",
+             "grid ×", "brute ×");
   bool is_right = true;
   for (const std::string name : {"rest", "folded", "heap"}) {
     for (const int size : options.sizes) is_right &= bench_shape(name, size, options);
   }
-  constexpr int kResponseCells = 48;
-  bench_response(kResponseCells, options.seconds);
+  bench_response(options.cells, options.seconds);
   return is_right;
 }
 

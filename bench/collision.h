@@ -8,6 +8,7 @@ namespace weft::bench {
 struct CollisionBenchOptions {
   std::vector<int> sizes = {1000, 8192, 32768, 131072, 1000000};  // triangles, about
   std::vector<int> threads = {1, 2};
+  int cells = 48;        // per side of the sheets that are held apart
   double seconds = 0.5;  // per measurement, at least [s]
 };
 

@@ -59,6 +59,9 @@ void add_collision(CLI::App& bench, int& exit_code) {
       ->delimiter(',')
       ->check(CLI::Range(2, 10'000'000))
       ->capture_default_str();
+  command->add_option("--cells", options->cells, "Per side of the sheets that are held apart")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   add_common_options(*command, *options, *simd);
   command->callback([options, simd, &exit_code] {
     if (!simd->empty()) limit_simd(*simd);
