@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "bench/machine.h"
@@ -57,10 +56,6 @@ int largest_size(const std::string& integrator) {
   if (integrator == "implicit_euler") return 64;
   if (integrator == "desbrun") return 256;
   return 1 << 20;
-}
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 /// Median over batches of the seconds per step.

@@ -10,10 +10,6 @@
 namespace weft::bench {
 namespace {
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 WEFT_ALWAYS_INLINE void stream_body(float* x, int count) {
   WEFT_IVDEP
   for (int i = 0; i < count; ++i) x[i] = 0.5f * x[i] + 1.0f;
@@ -22,6 +18,10 @@ WEFT_ALWAYS_INLINE void stream_body(float* x, int count) {
 WEFT_MULTIVERSION(stream, (float* x, int count), (x, count))
 
 }  // namespace
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 double measure_bandwidth(std::size_t bytes, int num_threads) {
   const int count = static_cast<int>(std::max<std::size_t>(bytes / sizeof(float), 1024));
@@ -49,9 +49,10 @@ double measure_clock() {
     unsigned long x = 0;
     for (long i = 0; i < kAdditions / 8; ++i) {
       asm volatile(
-          "add $1, %0\n add $1, %0\n add $1, %0\n add $1, %0\n"
-          "add $1, %0\n add $1, %0\n add $1, %0\n add $1, %0\n"
-          : "+r"(x));
+          "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
+          "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
+          : "+r"(x)
+          : "r"(1ul));  // from a register: some processors add constants for nothing
     }
     best = std::max(best, static_cast<double>(x) / (seconds_now() - begin));
   }

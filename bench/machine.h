@@ -12,4 +12,7 @@ double measure_bandwidth(std::size_t bytes, int num_threads);
 /// Clock frequency under load [Hz], from a chain of dependent additions; 0 where it cannot be measured.
 double measure_clock();
 
+/// A clock that never goes back [s].
+double seconds_now();
+
 }  // namespace weft::bench

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "bench/collision.h"
 #include "bench/integrators.h"
 #include "commands.h"
 #include "weft/core/error.h"
@@ -19,36 +20,62 @@ void limit_simd(const std::string& name) {
   throw InputError("--simd must be baseline, avx2 or avx512, not " + name);
 }
 
-}  // namespace
-
-void add_bench_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("bench", "Measure speed");
-  command->require_subcommand(1);
-
-  auto options = std::make_shared<bench::IntegratorBenchOptions>();
-  auto simd = std::make_shared<std::string>();
-  CLI::App* integrators =
-      command->add_subcommand("integrators", "Cost of a step for each integrator and size");
-  integrators->add_option("--integrators", options->integrators, "Which (default: all)")->delimiter(',');
-  integrators->add_option("--sizes", options->sizes, "Particles per side")
-      ->delimiter(',')
-      ->check(CLI::Range(2, 4096))
-      ->capture_default_str();
-  integrators->add_option("--threads", options->threads, "Numbers of threads")
+template <class Options>
+void add_common_options(CLI::App& command, Options& options, std::string& simd) {
+  command.add_option("--threads", options.threads, "Numbers of threads")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  integrators->add_option("--model", options->model, "Springs: basic, simplified, alternating, or mesh")
-      ->capture_default_str();
-  integrators->add_option("--seconds", options->seconds, "Per measurement")
+  command.add_option("--seconds", options.seconds, "Per measurement")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  integrators->add_option("--simd", *simd,
-                          "Use at most baseline, avx2 or avx512 (default: the best there is)");
-  integrators->callback([options, simd] {
+  command.add_option("--simd", simd, "Use at most baseline, avx2 or avx512 (default: the best there is)");
+}
+
+void add_integrators(CLI::App& bench) {
+  auto options = std::make_shared<bench::IntegratorBenchOptions>();
+  auto simd = std::make_shared<std::string>();
+  CLI::App* command = bench.add_subcommand("integrators", "Cost of a step for each integrator and size");
+  command->add_option("--integrators", options->integrators, "Which (default: all)")->delimiter(',');
+  command->add_option("--sizes", options->sizes, "Particles per side")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 4096))
+      ->capture_default_str();
+  command->add_option("--model", options->model, "Springs: basic, simplified, alternating, or mesh")
+      ->capture_default_str();
+  add_common_options(*command, *options, *simd);
+  command->callback([options, simd] {
     if (!simd->empty()) limit_simd(*simd);
     bench::bench_integrators(*options);
   });
+}
+
+void add_collision(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<bench::CollisionBenchOptions>();
+  auto simd = std::make_shared<std::string>();
+  CLI::App* command =
+      bench.add_subcommand("collision", "Cost of finding close pairs, and of holding them apart");
+  command->add_option("--sizes", options->sizes, "Triangles")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--cells", options->cells, "Per side of the sheets that are held apart")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_common_options(*command, *options, *simd);
+  command->callback([options, simd, &exit_code] {
+    if (!simd->empty()) limit_simd(*simd);
+    if (!bench::bench_collision(*options)) exit_code = 1;
+  });
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("bench", "Measure speed");
+  command->require_subcommand(1);
+  add_integrators(*command);
+  add_collision(*command, exit_code);
 }
 
 }  // namespace weft::app

@@ -305,4 +305,12 @@ TEST_F(App, BenchMeasures) {
   EXPECT_TRUE(contains(done.out, "paper")) << done.out;
 }
 
+TEST_F(App, BenchComparesWaysToFindPairs) {
+  const Finished done =
+      shell("weft bench collision --sizes 200,1000 --cells 4 --threads 1,2 --seconds 0.001");
+  EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
+  for (const char* word : {"rest", "folded", "heap", "sheets"}) EXPECT_TRUE(contains(done.out, word)) << done.out;
+  EXPECT_FALSE(contains(done.out, "ERROR")) << done.out;
+}
+
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "weft/core/vec.h"
@@ -21,6 +23,18 @@ struct Aabb {
   bool overlaps(const Aabb& other) const {
     return min[0] <= other.max[0] && other.min[0] <= max[0] && min[1] <= other.max[1] &&
            other.min[1] <= max[1] && min[2] <= other.max[2] && other.min[2] <= max[2];
+  }
+
+  /// The same, and counts the comparisons of numbers that it takes.
+  bool overlaps(const Aabb& other, std::int64_t& num_comparisons) const {
+    const auto is_below = [&](float a, float b) {
+      ++num_comparisons;
+      return a <= b;
+    };
+    for (int k = 0; k < 3; ++k) {
+      if (!is_below(min[k], other.max[k]) || !is_below(other.min[k], max[k])) return false;
+    }
+    return true;
   }
 
   void merge(const Aabb& other) {
@@ -48,6 +62,13 @@ struct Aabb {
   }
 };
 
+/// The next larger float: what std::nextafter(x, infinity) gives for any x below infinity, and faster.
+inline float next_above(float x) {
+  if (x == 0) return std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return std::bit_cast<float>(x > 0 ? bits + 1 : bits - 1);
+}
+
 /// The smallest box in floats that holds everything from min to max and `margin` around it.
 inline Aabb make_aabb(const Vec3& min, const Vec3& max, double margin = 0) {
   Aabb box;
@@ -55,8 +76,8 @@ inline Aabb make_aabb(const Vec3& min, const Vec3& max, double margin = 0) {
     const double low = min[k] - margin, high = max[k] + margin;
     box.min[k] = static_cast<float>(low);
     box.max[k] = static_cast<float>(high);
-    if (box.min[k] > low) box.min[k] = std::nextafter(box.min[k], -Aabb::kInfinity);
-    if (box.max[k] < high) box.max[k] = std::nextafter(box.max[k], Aabb::kInfinity);
+    if (box.min[k] > low) box.min[k] = -next_above(-box.min[k]);
+    if (box.max[k] < high) box.max[k] = next_above(box.max[k]);
   }
   return box;
 }

@@ -1,5 +1,6 @@
 #include "weft/geometry/aabb_tree.h"
 
+#include <bit>
 #include <numeric>
 
 #include "weft/core/simd.h"
@@ -8,7 +9,8 @@ namespace weft {
 namespace {
 
 constexpr int kNodeGrain = 256;         // nodes per chunk of a query
-constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are held against another tree side by side
+constexpr int kCopyGrain = 16;          // chunks whose results are copied by one job
+constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are dealt with side by side
 constexpr std::size_t kNumRanges = 32;  // parts of a tree that are built side by side
 
 /// Sorts items into leaves: halves a range of whole leaves by the median of its longest side, again and
@@ -92,60 +94,97 @@ class Splitter {
 
 using aabb_tree::kLanes;
 
-/// Which of the eight boxes b overlap box i of the eight boxes a and share no key with it: 1 each, else 0.
-/// The result is 0 if none does.
-template <bool kUsesKeys, class Leaf>
-WEFT_ALWAYS_INLINE int test_lane(const Leaf& a, int i, const Leaf& b, int* hit) {
-  const float min_x = a.min[0][i], min_y = a.min[1][i], min_z = a.min[2][i];
-  const float max_x = a.max[0][i], max_y = a.max[1][i], max_z = a.max[2][i];
-  const int p = a.key[0][i], q = a.key[1][i], r = a.key[2][i];
-  int any = 0;
+// Before a loop over a leaf's items: unrolled first, it is not turned into vector instructions.
+#if defined(__GNUC__) && !defined(__clang__)
+#define WEFT_ROLLED _Pragma("GCC unroll 1")
+#else
+#define WEFT_ROLLED
+#endif
+
+struct TreeView {
+  const aabb_tree::Node* nodes;
+  const aabb_tree::Leaf* leaves;
+};
+
+/// Bit j: the leaf's box j overlaps the box from min to max.
+template <class Leaf>
+WEFT_ALWAYS_INLINE unsigned find_overlapping(const Leaf& leaf, const float* min, const float* max) {
+  const float min_x = min[0], min_y = min[1], min_z = min[2], max_x = max[0], max_y = max[1], max_z = max[2];
+  unsigned bits = 0;
+  WEFT_ROLLED
   for (int j = 0; j < kLanes; ++j) {
-    const int overlaps = (min_x <= b.max[0][j]) & (b.min[0][j] <= max_x) & (min_y <= b.max[1][j]) &
-                         (b.min[1][j] <= max_y) & (min_z <= b.max[2][j]) & (b.min[2][j] <= max_z);
-    hit[j] = overlaps;
-    if constexpr (kUsesKeys) {
-      const int u = b.key[0][j], v = b.key[1][j], w = b.key[2][j];
-      const int is_joined =
-          (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
-      hit[j] &= is_joined ^ 1;
-    }
-    any |= hit[j];
+    const unsigned overlaps = (min_x <= leaf.max[0][j]) & (leaf.min[0][j] <= max_x) &
+                              (min_y <= leaf.max[1][j]) & (leaf.min[1][j] <= max_y) &
+                              (min_z <= leaf.max[2][j]) & (leaf.min[2][j] <= max_z);
+    bits |= overlaps << j;
   }
-  return any;
+  return bits;
 }
 
-/// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once.
-template <bool kIsSelf, class Leaf, class LeafPair>
-WEFT_ALWAYS_INLINE void test_leaf_pairs(const Leaf* left, const Leaf* right, const LeafPair* leaf_pairs,
-                                        int count, std::vector<ItemPair>& pairs) {
-  for (int n = 0; n < count; ++n) {
-    const Leaf& a = left[leaf_pairs[n].a];
-    const Leaf& b = right[leaf_pairs[n].b];
-    const bool is_same = kIsSelf && leaf_pairs[n].a == leaf_pairs[n].b;
-    alignas(64) int hits[kLanes][kLanes];
-    int any = 0;
-    for (int i = 0; i < kLanes; ++i) any |= test_lane<kIsSelf>(a, i, b, hits[i]);
-    if (any == 0) continue;
-    for (int i = 0; i < kLanes; ++i) {
-      for (int j = is_same ? i + 1 : 0; j < kLanes; ++j) {
-        // An infinite box overlaps even the empty ones that fill the last leaf.
-        if (!hits[i][j] || a.item[i] < 0 || b.item[j] < 0) continue;
-        const bool swaps = kIsSelf && b.item[j] < a.item[i];
-        pairs.push_back(swaps ? ItemPair{b.item[j], a.item[i]} : ItemPair{a.item[i], b.item[j]});
-      }
-    }
+/// Bit j: the leaf's item j has one of the keys.
+template <class Leaf>
+WEFT_ALWAYS_INLINE unsigned find_joined(const Leaf& leaf, int p, int q, int r) {
+  unsigned bits = 0;
+  WEFT_ROLLED
+  for (int j = 0; j < kLanes; ++j) {
+    const int u = leaf.key[0][j], v = leaf.key[1][j], w = leaf.key[2][j];
+    const unsigned is_joined =
+        (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
+    bits |= is_joined << j;
   }
+  return bits;
 }
 
-#define WEFT_LEAF_PAIRS                                                                              \
-  (const aabb_tree::Leaf* left, const aabb_tree::Leaf* right, const aabb_tree::LeafPair* leaf_pairs, \
-   int count, std::vector<ItemPair>& pairs)
-#define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, leaf_pairs, count, pairs)
+/// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once. First the items
+/// of one leaf are held against the whole other one, then those that overlap it against its items. Returns
+/// how many boxes were compared with boxes.
+template <bool kIsSelf>
+WEFT_ALWAYS_INLINE std::int64_t test_leaf_pairs(const TreeView& left, const TreeView& right,
+                                                const std::vector<aabb_tree::NodePair>& leaf_pairs,
+                                                std::vector<ItemPair>& pairs) {
+  std::int64_t box_pairs = 0;
+  for (const auto& [n, m] : leaf_pairs) {
+    const aabb_tree::Leaf& a = left.leaves[left.nodes[n].leaf];
+    const aabb_tree::Leaf& b = right.leaves[right.nodes[m].leaf];
+    const Aabb& whole = right.nodes[m].box;
+    const bool is_same = kIsSelf && n == m;
+    unsigned rows = is_same ? 0xff : find_overlapping(a, whole.min.data(), whole.max.data());
+    box_pairs += (is_same ? 0 : kLanes) + kLanes * std::popcount(rows);
+    std::uint64_t hits = 0;  // bit 8 i + j
+    for (; rows != 0; rows &= rows - 1) {
+      const int i = std::countr_zero(rows);
+      const float min[3] = {a.min[0][i], a.min[1][i], a.min[2][i]};
+      const float max[3] = {a.max[0][i], a.max[1][i], a.max[2][i]};
+      unsigned row = find_overlapping(b, min, max);
+      if constexpr (kIsSelf) row &= ~find_joined(b, a.key[0][i], a.key[1][i], a.key[2][i]);
+      if (is_same) row &= 0xfeu << i;
+      hits |= std::uint64_t{row & 0xff} << (kLanes * i);
+    }
+    if (hits == 0) continue;
+    ItemPair found[kLanes * kLanes];
+    int num_found = 0;
+    for (; hits != 0; hits &= hits - 1) {
+      const int bit = std::countr_zero(hits);
+      const int item_a = a.item[bit / kLanes], item_b = b.item[bit % kLanes];
+      // An infinite box overlaps even the empty ones that fill the last leaf.
+      if (item_a < 0 || item_b < 0) continue;
+      found[num_found++] =
+          kIsSelf ? ItemPair{std::min(item_a, item_b), std::max(item_a, item_b)} : ItemPair{item_a, item_b};
+    }
+    pairs.insert(pairs.end(), found, found + num_found);
+  }
+  return box_pairs;
+}
 
-WEFT_ALWAYS_INLINE void test_within_body WEFT_LEAF_PAIRS { test_leaf_pairs<true> WEFT_LEAF_PAIRS_ARGUMENTS; }
+#define WEFT_LEAF_PAIRS \
+  (const TreeView& left, const TreeView& right, aabb_tree::Chunk& chunk, std::int64_t& box_pairs)
+#define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, chunk, box_pairs)
+
+WEFT_ALWAYS_INLINE void test_within_body WEFT_LEAF_PAIRS {
+  box_pairs = test_leaf_pairs<true>(left, right, chunk.leaf_pairs, chunk.pairs);
+}
 WEFT_ALWAYS_INLINE void test_between_body WEFT_LEAF_PAIRS {
-  test_leaf_pairs<false> WEFT_LEAF_PAIRS_ARGUMENTS;
+  box_pairs = test_leaf_pairs<false>(left, right, chunk.leaf_pairs, chunk.pairs);
 }
 WEFT_MULTIVERSION(test_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
@@ -157,6 +196,9 @@ void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& ke
   const int num_leaves = (num_items_ + kLanes - 1) / kLanes;
   leaves_.assign(num_leaves, Leaf());
   nodes_.clear();
+  starts_.clear();
+  start_ends_.clear();
+  above_starts_.clear();
   const std::vector<int> items = Splitter(boxes, kLanes).split(jobs);
   for (int slot = 0; slot < num_leaves * kLanes; ++slot) {
     Leaf& leaf = leaves_[slot / kLanes];
@@ -173,7 +215,7 @@ void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& ke
   nodes_.reserve(2 * num_leaves - 1);
   build_nodes(0, num_leaves);
   choose_starts();
-  refit_nodes();
+  refit([&](int item) { return boxes[item]; }, jobs);
   built_area_ = total_area();
 }
 
@@ -184,23 +226,6 @@ void AabbTree::build_nodes(int first_leaf, int num_leaves) {
   build_nodes(first_leaf, num_leaves / 2);
   nodes_[n].right = static_cast<int>(nodes_.size());
   build_nodes(first_leaf + num_leaves / 2, num_leaves - num_leaves / 2);
-}
-
-void AabbTree::refit_nodes() {
-  for (int n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
-    Node& node = nodes_[n];
-    node.box = Aabb();
-    if (node.right != 0) {
-      node.box.merge(nodes_[n + 1].box);
-      node.box.merge(nodes_[node.right].box);
-    } else {
-      const Leaf& leaf = leaves_[node.leaf];
-      for (int k = 0; k < 3; ++k) {
-        node.box.min[k] = *std::min_element(leaf.min[k], leaf.min[k] + kLanes);
-        node.box.max[k] = *std::max_element(leaf.max[k], leaf.max[k] + kLanes);
-      }
-    }
-  }
 }
 
 float AabbTree::total_area() const {
@@ -227,18 +252,18 @@ bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direct
 }
 
 /// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
-void AabbTree::collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
-                       std::int64_t& box_pairs) const {
-  LeafPair stack[2 * kMaxDepth];
+template <bool kCounts>
+void AabbTree::collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& chunk) const {
+  NodePair stack[2 * kMaxDepth];
   int depth = 0;
   stack[depth++] = start;
   while (depth > 0) {
     const auto [n, m] = stack[--depth];
     const Node &a = nodes_[n], &b = other.nodes_[m];
-    ++box_pairs;
-    if (!a.box.overlaps(b.box)) continue;
+    ++chunk.box_pairs;
+    if (!(kCounts ? a.box.overlaps(b.box, chunk.comparisons) : a.box.overlaps(b.box))) continue;
     if (a.right == 0 && b.right == 0) {
-      out.push_back({a.leaf, b.leaf});
+      chunk.leaf_pairs.push_back({n, m});
     } else if (b.right == 0 || (a.right != 0 && a.right - n >= b.right - m)) {
       stack[depth++] = {a.right, m};
       stack[depth++] = {n + 1, m};
@@ -261,20 +286,34 @@ void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& fi
     aabb_tree::Chunk& chunk = search.chunks[begin / grain];
     chunk.leaf_pairs.clear();
     chunk.pairs.clear();
-    chunk.box_pairs = 0;
+    chunk.box_pairs = chunk.comparisons = 0;
     find_leaf_pairs(begin, end, chunk);
-    const auto test = is_self ? test_within : test_between;
-    test(leaves_.data(), other.leaves_.data(), chunk.leaf_pairs.data(),
-         static_cast<int>(chunk.leaf_pairs.size()), chunk.pairs);
-    chunk.box_pairs += kLanes * kLanes * static_cast<std::int64_t>(chunk.leaf_pairs.size());
+    std::int64_t box_pairs = 0;
+    (is_self ? test_within : test_between)({nodes_.data(), leaves_.data()},
+                                           {other.nodes_.data(), other.leaves_.data()}, chunk, box_pairs);
+    chunk.box_pairs += box_pairs;
+    chunk.comparisons += 6 * box_pairs;  // side by side: none is left out
   });
-  search.pairs.clear();
-  search.num_box_pairs = 0;
+  string_together(num_chunks, jobs, search);
+}
+
+void AabbTree::string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search) {
+  search.num_box_pairs = search.num_comparisons = 0;
+  std::size_t num_pairs = 0;
   for (std::size_t c = 0; c < num_chunks; ++c) {
-    const aabb_tree::Chunk& chunk = search.chunks[c];
-    search.pairs.insert(search.pairs.end(), chunk.pairs.begin(), chunk.pairs.end());
+    aabb_tree::Chunk& chunk = search.chunks[c];
+    chunk.first = num_pairs;
+    num_pairs += chunk.pairs.size();
     search.num_box_pairs += chunk.box_pairs;
+    if (search.counts_comparisons) search.num_comparisons += chunk.comparisons;
   }
+  search.pairs.resize(num_pairs);
+  parallel_for(jobs, static_cast<int>(num_chunks), kCopyGrain, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const aabb_tree::Chunk& chunk = search.chunks[c];
+      std::copy(chunk.pairs.begin(), chunk.pairs.end(), search.pairs.begin() + chunk.first);
+    }
+  });
 }
 
 void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
@@ -283,9 +322,11 @@ void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
     for (int n = begin; n < end; ++n) {
       const Node& node = nodes_[n];
       if (node.right != 0) {
-        collect(*this, {n + 1, node.right}, chunk.leaf_pairs, chunk.box_pairs);
+        const NodePair halves = {n + 1, node.right};
+        search.counts_comparisons ? collect<true>(*this, halves, chunk)
+                                  : collect<false>(*this, halves, chunk);
       } else {
-        chunk.leaf_pairs.push_back({node.leaf, node.leaf});
+        chunk.leaf_pairs.push_back({n, n});
       }
     }
   };
@@ -294,15 +335,18 @@ void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
 
 void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const {
   search.pairs.clear();
-  search.num_box_pairs = 0;
+  search.num_box_pairs = search.num_comparisons = 0;
   if (nodes_.empty() || other.nodes_.empty()) return;
   const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
-    for (int s = begin; s < end; ++s) collect(other, {starts_[s], 0}, chunk.leaf_pairs, chunk.box_pairs);
+    for (int s = begin; s < end; ++s) {
+      const NodePair start = {starts_[s], 0};
+      search.counts_comparisons ? collect<true>(other, start, chunk) : collect<false>(other, start, chunk);
+    }
   };
   find_in_chunks(static_cast<int>(starts_.size()), 1, find_leaf_pairs, other, false, jobs, search);
 }
 
-/// Nodes that together hold everything, a few dozen: parts that can be searched side by side.
+/// Halves the tree, and its halves, into a few dozen parts.
 void AabbTree::choose_starts() {
   starts_ = {0};
   while (starts_.size() < kMaxStarts) {
@@ -311,11 +355,18 @@ void AabbTree::choose_starts() {
       if (nodes_[n].right == 0) {
         below.push_back(n);
       } else {
+        above_starts_.push_back(n);
         below.insert(below.end(), {n + 1, nodes_[n].right});
       }
     }
-    if (below.size() == starts_.size()) return;
+    if (below.size() == starts_.size()) break;
     starts_ = std::move(below);
+  }
+  std::sort(above_starts_.begin(), above_starts_.end());
+  const int num_leaves = static_cast<int>(leaves_.size());
+  for (std::size_t s = 0; s < starts_.size(); ++s) {
+    const int end_leaf = s + 1 < starts_.size() ? nodes_[starts_[s + 1]].leaf : num_leaves;
+    start_ends_.push_back(starts_[s] + 2 * (end_leaf - nodes_[starts_[s]].leaf) - 1);
   }
 }
 

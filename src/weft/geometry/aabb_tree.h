@@ -33,14 +33,22 @@ struct Leaf {
   int item[kLanes];
 };
 
-struct LeafPair {
+/// In preorder: the left child follows its parent.
+struct Node {
+  Aabb box;
+  int right = 0;  // the right child's index, 0 at a leaf
+  int leaf = 0;   // the first leaf below
+};
+
+struct NodePair {
   int a, b;
 };
 
 struct Chunk {
-  std::vector<LeafPair> leaf_pairs;
+  std::vector<NodePair> leaf_pairs;  // nodes that are leaves
   std::vector<ItemPair> pairs;
-  std::int64_t box_pairs;
+  std::int64_t box_pairs, comparisons;
+  std::size_t first;  // where its pairs go
 };
 
 }  // namespace aabb_tree
@@ -49,6 +57,9 @@ struct Chunk {
 struct PairSearch {
   std::vector<ItemPair> pairs;
   std::int64_t num_box_pairs = 0;  // boxes compared with boxes, by six comparisons at most [1]
+
+  bool counts_comparisons = false;   // set it to have them counted, which is slower
+  std::int64_t num_comparisons = 0;  // of numbers, for the boxes compared [1]
 
   std::vector<aabb_tree::Chunk> chunks;  // private to the tree
 };
@@ -66,14 +77,22 @@ class AabbTree {
   /// Fits the tree to boxes that have moved: box_of(item) gives an item's box.
   template <class BoxOf>
   void refit(const BoxOf& box_of, JobSystem& jobs) {
-    parallel_for(jobs, static_cast<int>(leaves_.size()), kLeafGrain, [&](int begin, int end) {
-      for (int leaf = begin; leaf < end; ++leaf) {
-        for (int lane = 0; lane < num_items_in(leaf); ++lane) {
-          set_box(leaf, lane, box_of(leaves_[leaf].item[lane]));
+    parallel_for(jobs, static_cast<int>(starts_.size()), 1, [&](int s, int) {
+      for (int n = start_ends_[s] - 1; n >= starts_[s]; --n) {
+        Node& node = nodes_[n];
+        if (node.right != 0) {
+          refit_node(n);
+          continue;
+        }
+        node.box = Aabb();
+        for (int lane = 0; lane < num_items_in(node.leaf); ++lane) {
+          const Aabb box = box_of(leaves_[node.leaf].item[lane]);
+          set_box(node.leaf, lane, box);
+          node.box.merge(box);
         }
       }
     });
-    refit_nodes();
+    for (auto n = above_starts_.rbegin(); n != above_starts_.rend(); ++n) refit_node(*n);
   }
 
   int num_items() const { return num_items_; }
@@ -121,19 +140,12 @@ class AabbTree {
   }
 
  private:
-  static constexpr int kLeafGrain = 256;
   static constexpr int kMaxDepth = 64;
 
   using Leaf = aabb_tree::Leaf;
-  using LeafPair = aabb_tree::LeafPair;
+  using Node = aabb_tree::Node;
+  using NodePair = aabb_tree::NodePair;
   static constexpr int kLanes = aabb_tree::kLanes;
-
-  /// In preorder: the left child follows its parent.
-  struct Node {
-    Aabb box;
-    int right = 0;  // the right child's index, 0 at a leaf
-    int leaf = 0;   // the first leaf below
-  };
 
   int num_items_in(int leaf) const { return std::min(kLanes, num_items_ - leaf * kLanes); }
 
@@ -200,10 +212,15 @@ class AabbTree {
 
   void build_nodes(int first_leaf, int num_leaves);
   void choose_starts();
-  void refit_nodes();
+  void refit_node(int n) {
+    Aabb box = nodes_[n + 1].box;
+    box.merge(nodes_[nodes_[n].right].box);
+    nodes_[n].box = box;
+  }
   float total_area() const;
-  void collect(const AabbTree& other, LeafPair start, std::vector<LeafPair>& out,
-               std::int64_t& box_pairs) const;
+  template <bool kCounts>
+  void collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& chunk) const;
+  static void string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search);
   template <class FindLeafPairs>
   void find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs, const AabbTree& other,
                       bool is_self, JobSystem& jobs, PairSearch& search) const;
@@ -212,7 +229,9 @@ class AabbTree {
   float built_area_ = 0;
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
-  std::vector<int> starts_;  // nodes
+  std::vector<int> starts_;  // nodes side by side that hold everything: parts that can be dealt with at once
+  std::vector<int> start_ends_;    // one past the last node below each
+  std::vector<int> above_starts_;  // all nodes above them, ascending
 };
 
 }  // namespace weft
