@@ -94,8 +94,6 @@ TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
     deepest = std::max(deepest, deepest_sample(world, cloth, c.collider));
   }
   RecordProperty("deepest_um", std::to_string(deepest * 1e6));
-  std::printf("%s %s: deepest %.3g m, lowest y %.3g\n", c.collider.name.c_str(), c.integrator, deepest,
-              compute_lowest_y(world.state(cloth)));
   EXPECT_LT(deepest, 1e-4) << "half the thickness is 0.5 mm";
   EXPECT_GT(deepest, -0.01) << "and it did land";
 }
@@ -117,8 +115,7 @@ int num_inside(const World& world, ClothId cloth, const TriangleMesh& mesh) {
 }
 
 TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
-  const bool is_implicit = std::string(GetParam()) == "implicit_euler";
-  const int steps_per_second = is_implicit ? 60 : 600;
+  const int steps_per_second = GetParam() == std::string("implicit_euler") ? 60 : 300;
   for (const double offset : {0.013, 0.0}) {  // 0: vertices and edges lie exactly above each other
     World world;
     world.set_integrator(settings(GetParam()));
@@ -126,9 +123,9 @@ TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
     MeshShape shape;
     shape.mesh = mesh;
     world.add_collider({"ball", shape, 0.3, {}});
-    const ClothId cloth = add_sheet(world, {offset, 0.02, offset}, 14, 0.7);
+    const ClothId cloth = add_sheet(world, {offset, 0.02, offset}, 12, 0.6);
     int most = 0;
-    for (int s = 0; s < 4 * steps_per_second; ++s) {
+    for (int s = 0; s < 2 * steps_per_second; ++s) {
       ASSERT_TRUE(world.step(1.0 / steps_per_second).ok);
       most = std::max(most, num_inside(world, cloth, *mesh));
     }
@@ -139,7 +136,7 @@ TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
-                         testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler"),
+                         testing::Values("explicit", "paper_fixed", "implicit_euler"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
@@ -207,8 +204,6 @@ TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
     EXPECT_LT((now.momentum - before.momentum).norm(), 2e-6 * size) << s;
     highest = std::max(highest, now.energy);
   }
-  std::printf("friction %g: energy %.6g -> %.6g highest %.6g\n", GetParam(), before.energy,
-              measure(world).energy, highest);
   EXPECT_LE(highest, before.energy * (1 + 1e-3)) << "semi-implicit Euler's energy swings by the share of h ω";
   EXPECT_LT(measure(world).energy, 0.95 * before.energy) << "the blow has no bounce, and so takes energy";
 }
