@@ -1,0 +1,214 @@
+/// Nothing gets inside of anything, and what contact does to motion is what it may do.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support.h"
+#include "weft/geometry/distance.h"
+#include "weft/mesh/solid.h"
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+const ClothMaterial kCotton{.structural = 60, .shear = 20, .bend = 0.3, .damping = 2e-3, .friction = 0.3};
+
+IntegratorSettings settings(const std::string& integrator) {
+  return {.integrator = integrator, .explicit_euler = {}, .paper = {}, .implicit_euler = {}};
+}
+
+/// A sheet of 8 x 8 coarse cells of 10 cm above the origin, its middle at `middle`.
+ClothId add_sheet(World& world, const Vec3& middle, int cells = 8, double size = 0.8, double turn_deg = 0,
+                  const Vec3& velocity = Vec3::Zero(), const ClothMaterial& material = kCotton) {
+  const auto topology = build_grid_topology(test::square(cells, size), SpringModel::alternating);
+  const Mat3 turn = rotation_from_angles_deg({0, turn_deg, 0});
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions)
+    positions.push_back(middle + turn * (p - Vec3(size / 2, 0, size / 2)));
+  return world.add_cloth({.name = "sheet",
+                          .topology = topology,
+                          .material = material,
+                          .positions = positions,
+                          .velocity = velocity});
+}
+
+/// The deepest of points spread over all triangles, > 0 inside [m].
+double deepest_sample(const World& world, ClothId cloth, const Collider& collider) {
+  constexpr int kCuts = 8;
+  const ColliderShape shape = shape_at(collider, world.time());
+  const ClothState& state = world.state(cloth);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : world.model(cloth).topology->mesh.triangles) {
+    const Vec3 a = state.position(t[0]), b = state.position(t[1]), c = state.position(t[2]);
+    for (int i = 0; i <= kCuts; ++i) {
+      for (int j = 0; i + j <= kCuts; ++j) {
+        const Vec3 weights = Vec3(i, j, kCuts - i - j) / kCuts;
+        lowest = std::min(lowest, signed_distance(shape, point_at(weights, a, b, c)).distance);
+      }
+    }
+  }
+  return -lowest;
+}
+
+struct HoldOffCase {
+  const char* name;
+  Collider collider;
+  const char* integrator;
+  int steps_per_second;
+};
+
+std::vector<HoldOffCase> make_hold_off_cases() {
+  // A corner up: the box's diagonal is vertical.
+  const Mat3 corner_up = Eigen::Quaterniond::FromTwoVectors(Vec3::Ones(), Vec3::UnitY()).toRotationMatrix();
+  const Mat3 edge_up = rotation_from_angles_deg({0, 20, 0}) * rotation_from_angles_deg({45, 0, 0});
+  const Collider colliders[] = {
+      {"corner", OrientedBox{Vec3(0, -0.2 * std::sqrt(3.0), 0), Vec3::Constant(0.2), corner_up}, 0.3, {}},
+      {"edge", OrientedBox{Vec3(0, -0.1 * std::sqrt(2.0), 0), Vec3(0.3, 0.1, 0.1), edge_up}, 0.3, {}},
+      {"small_ball", Sphere{{0, -0.04, 0}, 0.04}, 0.3, {}},
+      {"ball", Sphere{{0, -0.25, 0}, 0.25}, 0.3, {}},
+      {"capsule", Capsule{{-0.3, -0.03, 0.05}, {0.3, -0.03, -0.05}, 0.03}, 0.3, {}}};
+  std::vector<HoldOffCase> cases;
+  for (const Collider& c : colliders) {
+    cases.push_back({c.name.c_str(), c, "paper", 600});
+    cases.push_back({c.name.c_str(), c, "implicit_euler", 60});
+  }
+  for (HoldOffCase& c : cases) c.name = c.collider.name.c_str();
+  return cases;
+}
+
+class HoldOff : public testing::TestWithParam<int> {};
+
+TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
+  const HoldOffCase c = make_hold_off_cases()[GetParam()];
+  World world;
+  world.set_integrator(settings(c.integrator));
+  world.add_collider(c.collider);
+  // A corner, an edge or a cap lies under the middle of a cell.
+  const ClothId cloth = add_sheet(world, {0.05, 0.02, 0.03});
+  double deepest = -1;
+  for (int s = 0; s < 4 * c.steps_per_second; ++s) {
+    const StepReport report = world.step(1.0 / c.steps_per_second);
+    ASSERT_TRUE(report.ok) << report.troubles.at(0).sentence;
+    deepest = std::max(deepest, deepest_sample(world, cloth, c.collider));
+  }
+  RecordProperty("deepest_um", std::to_string(deepest * 1e6));
+  EXPECT_LT(deepest, 1e-4) << "half the thickness is 0.5 mm";
+  EXPECT_GT(deepest, -0.01) << "and it did land";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, HoldOff, testing::Range(0, 10), [](const auto& info) {
+  const HoldOffCase c = make_hold_off_cases()[info.param];
+  return c.collider.name + "_" + c.integrator;
+});
+
+class HoldOffMesh : public testing::TestWithParam<const char*> {};
+
+/// How many vertices of the cloth are inside the closed mesh.
+int num_inside(const World& world, ClothId cloth, const TriangleMesh& mesh) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < world.model(cloth).num_particles(); ++i)
+    points.push_back(world.state(cloth).position(i));
+  const std::vector<int> winding = compute_winding_numbers(mesh, points);
+  return static_cast<int>(std::count_if(winding.begin(), winding.end(), [](int w) { return w != 0; }));
+}
+
+TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
+  const int steps_per_second = GetParam() == std::string("implicit_euler") ? 60 : 300;
+  for (const double offset : {0.013, 0.0}) {  // 0: vertices and edges lie exactly above each other
+    World world;
+    world.set_integrator(settings(GetParam()));
+    const auto mesh = std::make_shared<TriangleMesh>(make_sphere_mesh({0, -0.25, 0}, 0.25, 10));
+    MeshShape shape;
+    shape.mesh = mesh;
+    world.add_collider({"ball", shape, 0.3, {}});
+    const ClothId cloth = add_sheet(world, {offset, 0.02, offset}, 12, 0.6);
+    int most = 0;
+    for (int s = 0; s < 2 * steps_per_second; ++s) {
+      ASSERT_TRUE(world.step(1.0 / steps_per_second).ok);
+      most = std::max(most, num_inside(world, cloth, *mesh));
+    }
+    EXPECT_EQ(most, 0) << "offset " << offset;
+    EXPECT_GT(compute_center_of_mass(world.model(cloth), world.state(cloth)).y(), -0.6)
+        << "it did not slide off";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
+                         testing::Values("explicit", "paper_fixed", "implicit_euler"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
+  // An open roof of two planes under a sheet whose middle row lies exactly along the ridge: the row's
+  // vertices see the ridge, an edge, and no face.
+  for (const char* integrator : {"explicit", "implicit_euler"}) {
+    auto roof = std::make_shared<TriangleMesh>();
+    roof->positions = {{-1, -0.6, -1}, {1, -0.6, -1}, {-1, 0, 0}, {1, 0, 0}, {-1, -0.6, 1}, {1, -0.6, 1}};
+    roof->triangles = {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}};
+    MeshShape shape;
+    shape.mesh = roof;
+    World world;
+    world.set_integrator(settings(integrator));
+    world.add_collider({"roof", shape, 0.5, {}});
+    const ClothId cloth = add_sheet(world, {0, 0.01, 0}, 8, 0.8);
+    for (int s = 0; s < 60; ++s) ASSERT_TRUE(world.step(1.0 / 60).ok);
+    double lowest = 1;  // over the roof
+    for (int i = 0; i < world.model(cloth).num_particles(); ++i) {
+      const Vec3 p = world.state(cloth).position(i);
+      lowest = std::min(lowest, p.y() + 0.6 * std::abs(p.z()));
+    }
+    EXPECT_GT(lowest, 0) << integrator;
+  }
+}
+
+/// Of all cloths together.
+struct Totals {
+  Vec3 momentum = Vec3::Zero();
+  double energy = 0;  // kinetic and elastic [J]
+};
+
+Totals measure(const World& world) {
+  Totals totals;
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothModel& model = world.model(ClothId{c});
+    const ClothState& state = world.state(ClothId{c});
+    totals.momentum += compute_momentum(model, state);
+    totals.energy += compute_kinetic_energy(model, state) + compute_elastic_energy(model, state);
+  }
+  return totals;
+}
+
+class Collision : public testing::TestWithParam<double> {};
+
+TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
+  World world;
+  world.set_gravity(Vec3::Zero());
+  world.set_integrator(settings("explicit"));
+  ClothMaterial material = kCotton;
+  material.friction = GetParam();
+  // Turned against each other, off centre, one heavier; each keeps a little above the other at first.
+  ClothMaterial heavy = material;
+  heavy.density = 0.5;
+  add_sheet(world, {0, 0.01, 0}, 6, 0.3, 0, {0.3, -1, 0}, material);
+  add_sheet(world, {0.05, -0.01, 0.03}, 6, 0.3, 30, {0, 0.5, 0.2}, heavy);
+  const Totals before = measure(world);
+  double size = 0;  // of the momenta [kg m/s]
+  for (int c = 0; c < 2; ++c)
+    size += compute_momentum(world.model(ClothId{c}), world.state(ClothId{c})).norm();
+  double highest = before.energy;
+  for (int s = 0; s < 300; ++s) {
+    ASSERT_TRUE(world.step(1.0 / 1000).ok);
+    const Totals now = measure(world);
+    // Velocities are floats: each step rounds each by 6e-8 of itself, at random.
+    EXPECT_LT((now.momentum - before.momentum).norm(), 2e-6 * size) << s;
+    highest = std::max(highest, now.energy);
+  }
+  EXPECT_LE(highest, before.energy * (1 + 1e-3)) << "semi-implicit Euler's energy swings by the share of h ω";
+  EXPECT_LT(measure(world).energy, 0.95 * before.energy) << "the blow has no bounce, and so takes energy";
+}
+
+INSTANTIATE_TEST_SUITE_P(Frictions, Collision, testing::Values(0.0, 0.5));
+
+}  // namespace
+}  // namespace weft
