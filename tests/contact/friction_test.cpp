@@ -99,8 +99,8 @@ INSTANTIATE_TEST_SUITE_P(
                     FrictionCase{Ground::plane, "desbrun"}, FrictionCase{Ground::plane, "implicit_euler"},
                     FrictionCase{Ground::box, "explicit"}, FrictionCase{Ground::box, "paper_fixed"},
                     FrictionCase{Ground::box, "desbrun"}, FrictionCase{Ground::box, "implicit_euler"}),
-    [](const auto& info) {
-      return std::string(info.param.ground == Ground::plane ? "plane_" : "box_") + info.param.integrator;
+    [](const auto& test) {
+      return std::string(test.param.ground == Ground::plane ? "plane_" : "box_") + test.param.integrator;
     });
 
 /// A small sheet on a bigger one that is pinned flat, tilted by `angle_deg`; the small one starts with
@@ -168,7 +168,7 @@ TEST_P(FrictionOnCloth, WithoutFrictionTheSheetKeepsItsSpeed) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FrictionOnCloth,
                          testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace weft

@@ -98,8 +98,8 @@ TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
   EXPECT_GT(deepest, -0.01) << "and it did land";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, HoldOff, testing::Range(0, 10), [](const auto& info) {
-  const HoldOffCase c = make_hold_off_cases()[info.param];
+INSTANTIATE_TEST_SUITE_P(Scenes, HoldOff, testing::Range(0, 10), [](const auto& test) {
+  const HoldOffCase c = make_hold_off_cases()[test.param];
   return c.collider.name + "_" + c.integrator;
 });
 
@@ -137,7 +137,7 @@ TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
                          testing::Values("explicit", "paper_fixed", "implicit_euler"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
   // An open roof of two planes under a sheet whose middle row lies exactly along the ridge: the row's

@@ -89,7 +89,7 @@ TEST_P(Repeats, WithContactFromASnapshot) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Repeats,
                          testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {
   // Two sheets 5 mm apart, at rest without gravity; then they become 8 mm thick.

@@ -33,9 +33,9 @@ constexpr double kTouching = 1e-9;
 /// A triangle counts beside its corners where it comes this much nearer to a shape than they do [m].
 constexpr double kNearerThanCorners = 1e-6;
 
-constexpr int kRounds = 6;         // planes of round shapes are taken anew this often
+constexpr int kRounds = 8;         // planes of round shapes are taken anew this often
 constexpr int kPasses = 8;         // over all constraints between
-constexpr int kSearches = 3;       // after friction, contacts are looked for anew this often
+constexpr int kSearches = 6;       // after friction, contacts are looked for anew this often
 constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
 
 double slack_of(const ClothTopology& topology, double thickness) {
@@ -265,16 +265,57 @@ void ContactSystem::collect_pairs(JobSystem& jobs) {
       chunk.clear();
       for (int p = begin; p < end; ++p) {
         Constraint c;
-        if (make(pairs[p], c)) chunk.push_back(c);
+        if (make(p, c)) chunk.push_back(c);
       }
     });
     for (std::size_t k = 0; k < num_chunks; ++k) {
       constraints_.insert(constraints_.end(), chunks_[k].begin(), chunks_[k].end());
     }
   };
-  collect(proximity_.vertex_triangle(),
-          [&](const auto& p, Constraint& c) { return make_vertex_triangle(p, c); });
-  collect(proximity_.edge_edge(), [&](const auto& p, Constraint& c) { return make_edge_edge(p, c); });
+  const std::vector<FeaturePair>& vertex_triangle = proximity_.vertex_triangle();
+  const std::vector<FeaturePair>& edge_edge = proximity_.edge_edge();
+  collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_triangle(vertex_triangle[p], c); });
+  collect(edge_edge, [&](int p, Constraint& c) { return make_edge_edge(edge_edge[p], c); });
+  if (!bodies_.empty())
+    collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_corner(p, c); });
+}
+
+/// A vertex of cloth that is nearest to an edge or a corner of a collider's mesh: ridges have no face under
+/// them. The vertex' first pair with a mesh stands for all of them.
+bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
+  const std::vector<FeaturePair>& pairs = proximity_.vertex_triangle();
+  const std::vector<Vec3>& x = motion_.start;
+  const int vertex = pairs[first].a, num_cloth = first_vertex_.back();
+  const auto is_body = [&](const FeaturePair& p) {
+    return proximity_.surface().triangles[p.b][0] >= num_cloth;
+  };
+  if (vertex >= num_cloth || !is_body(pairs[first])) return false;
+  if (first > 0 && pairs[first - 1].a == vertex && is_body(pairs[first - 1])) return false;
+  // Nearest at the start or, for what comes from farther, at the end: what lists hold by chance must not
+  // count.
+  PointTriangleDistance nearest{0, Vec3::Zero(), TriangleRegion::face};
+  const FeaturePair* pair = nullptr;
+  for (const std::vector<Vec3>* y : {&motion_.start, &motion_.end}) {
+    nearest.distance_sq = std::numeric_limits<double>::infinity();
+    for (std::size_t p = first; p < pairs.size() && pairs[p].a == vertex; ++p) {
+      const auto [i, j, k] = proximity_.surface().triangles[pairs[p].b];
+      const PointTriangleDistance d = point_triangle_distance((*y)[vertex], (*y)[i], (*y)[j], (*y)[k]);
+      if (d.distance_sq >= nearest.distance_sq) continue;
+      nearest = d;
+      pair = &pairs[p];
+    }
+    if (nearest.distance() <= motion_.half_thickness[vertex]) break;
+  }
+  if (nearest.region == TriangleRegion::face || nearest.distance() > motion_.half_thickness[vertex])
+    return false;
+  const auto [i, j, k] = proximity_.surface().triangles[pair->b];
+  c.num_vertices = 4;
+  c.vertex = {i, j, k, vertex};
+  c.weight = {-nearest.weights[0], -nearest.weights[1], -nearest.weights[2], 1};
+  const double distance = c.sum(x).norm();
+  if (distance < kTouching) return false;
+  c.normal = c.sum(x) / distance;
+  return finish_pair(distance, gap_of(*pair, c), c);
 }
 
 /// At the start only with the foot inside the triangle: towards its border the direction would lie sideways
@@ -297,6 +338,12 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   if (d.region != TriangleRegion::face) return false;
   c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
   double distance = d.distance();
+  const double gap = gap_of(pair, c);
+  const std::vector<Vec3>& y = motion_.end;
+  if (!is_close(distance, gap, c,
+                [&] { return point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance(); })) {
+    return false;
+  }
   if (is_on_closed_body(i)) {
     // The outside is known, so that what is inside by a little is pushed out.
     c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
@@ -305,7 +352,7 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
     if (distance < kTouching) return false;
     c.normal = c.sum(x) / distance;
   }
-  return finish_pair(pair, distance, c);
+  return finish_pair(distance, gap, c);
 }
 
 bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const {
@@ -332,11 +379,14 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   }
   const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
   if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
-  const double distance = d.distance();
+  const double distance = d.distance(), gap = gap_of(pair, c);
   if (distance < kTouching) return false;
+  const std::vector<Vec3>& y = motion_.end;
+  if (!is_close(distance, gap, c, [&] { return edge_edge_distance(y[i], y[j], y[k], y[l]).distance(); }))
+    return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
-  return finish_pair(pair, distance, c);
+  return finish_pair(distance, gap, c);
 }
 
 std::array<Vec3, 4> ContactSystem::places(const Constraint& c, const std::vector<Vec3>& x) {
@@ -353,16 +403,32 @@ std::array<Vec3, 4> ContactSystem::places_at(const Constraint& c, double time) c
 bool ContactSystem::finish_crossing(const FeaturePair& pair, Constraint& c) const {
   const Vec3 approach = c.sum(motion_.end) - c.sum(motion_.start);
   if (c.normal.dot(approach) > 0) c.normal = -c.normal;
-  return finish_pair(pair, std::max(c.normal.dot(c.sum(motion_.start)), kTouching), c);
+  return finish_pair(std::max(c.normal.dot(c.sum(motion_.start)), kTouching), gap_of(pair, c), c);
 }
 
-/// False if the pair cannot meet during the step.
-bool ContactSystem::finish_pair(const FeaturePair& pair, double distance, Constraint& c) const {
+/// The pair's thickness, or what neighbours on the mesh may have of it.
+double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const {
+  const double thickness = motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
+  return std::min(thickness, double{pair.max_gap});
+}
+
+/// Whether the pair is close at the start of the step or at its end. Lists hold all such pairs, and others by
+/// chance: these must not count. `distance` is that at the start.
+template <class Distance>
+bool ContactSystem::is_close(double distance, double gap, const Constraint& c,
+                             const Distance& distance_at_end) const {
+  if (distance <= gap) return true;
+  double travel = 0;
+  const Vec3 common = motion_.end[c.vertex[0]] - motion_.start[c.vertex[0]];
+  for (int k = 1; k < 4; ++k) {
+    travel = std::max(travel, (motion_.end[c.vertex[k]] - motion_.start[c.vertex[k]] - common).norm());
+  }
+  return distance <= gap + 2 * travel && distance_at_end() <= gap;
+}
+
+/// False if nothing of the pair can move.
+bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) const {
   const int first = c.vertex[0], last = c.vertex[3];
-  const double thickness = motion_.half_thickness[first] + motion_.half_thickness[last];
-  const double gap = std::min(thickness, double{pair.max_gap});
-  const double approach = (c.sum(motion_.end) - c.sum(motion_.start)).norm();
-  if (distance > 2 * gap + 2 * approach) return false;
   for (int k = 0; k < 4; ++k) c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
   if (c.inverse_mass == 0) return false;
   const bool is_body = std::max(first, last) >= first_vertex_.back();
@@ -505,13 +571,10 @@ double ContactSystem::settle_positions() {
 
 void ContactSystem::project(JobSystem& jobs) {
   settle_positions();
-  for (const Constraint& c : constraints_) {
-    for (int k = 0; k < c.num_vertices; ++k) {
-      const int v = c.vertex[k];
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
+      velocity_[v] = cloths_[c].state->v.get(v - first_vertex_[c]);
       slowed_[v].setZero();
-      if (v >= first_vertex_.back()) continue;
-      const int cloth = cloth_of(v);
-      velocity_[v] = cloths_[cloth].state->v.get(v - first_vertex_[cloth]);
     }
   }
   project_velocities(inverse_mass_, constraints_, velocity_, slowed_);

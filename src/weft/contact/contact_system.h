@@ -91,11 +91,15 @@ class ContactSystem {
   void place_bodies();
   void collect_pairs(JobSystem& jobs);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
+  bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
   static std::array<Vec3, 4> places(const Constraint& c, const std::vector<Vec3>& x);
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
   bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
-  bool finish_pair(const FeaturePair& pair, double distance, Constraint& c) const;
+  double gap_of(const FeaturePair& pair, const Constraint& c) const;
+  template <class Distance>
+  bool is_close(double distance, double gap, const Constraint& c, const Distance& distance_at_end) const;
+  bool finish_pair(double distance, double gap, Constraint& c) const;
   int cloth_of(int vertex) const;
   double friction_of(int vertex) const;
   const Body& body_of(int vertex) const;

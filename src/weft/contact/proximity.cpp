@@ -11,8 +11,13 @@ namespace {
 constexpr double kLoosest = 1.6;
 
 /// The triangles around a vertex are its neighbours on the mesh. As long as their normals are this near to
-/// their sum, seen along it they do not overlap, and nothing of them can come close: cos 45°.
-constexpr double kSharp = 0.7;
+/// their sum, seen along it they do not overlap, and nothing of them can come close. cos 30°: the lists are
+/// kept while it bends further.
+constexpr double kSharp = 0.87;
+
+/// So few triangles may all be near to each other, as long as they do not fly off [m].
+constexpr int kFewTriangles = 500;
+constexpr double kFarthest = 1e6;
 
 /// Of two neighbours' distance at rest, what contact may ask for.
 constexpr float kShareOfRest = 0.5f;
@@ -36,7 +41,7 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
 }
 
 bool Proximity::still_holds(const SurfaceMotion& motion) {
-  if (reference_.size() != motion.end.size()) return false;
+  if (reference_.size() != motion.end.size() || motion.half_thickness != half_thickness_) return false;
   for (const std::vector<Vec3>* places : {&motion.start, &motion.end}) {
     Vec3 mean = Vec3::Zero();
     for (int v = 0; v < num_cloth_vertices_; ++v) mean += (*places)[v] - reference_[v];
@@ -95,7 +100,8 @@ int Proximity::find_wildest(const SurfaceMotion& motion) const {
     sum += travel_[v];
     if (!(travel_[v] <= travel_[wildest])) wildest = v;
   }
-  return sum <= num_cloth_vertices_ * (high - low).norm() ? -1 : wildest;
+  const double size = num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : kFarthest;
+  return sum <= num_cloth_vertices_ * size ? -1 : wildest;
 }
 
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
@@ -124,6 +130,7 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   }
   measure_edges(motion);
   reference_ = motion.end;
+  half_thickness_ = motion.half_thickness;
 }
 
 /// Each end may move by the slack before this is done again.

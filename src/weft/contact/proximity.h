@@ -34,8 +34,8 @@ class Proximity {
   void reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices, int num_cloth_triangles,
              double slack);
 
-  /// Makes the lists hold for this motion. If cloth moves against itself by more than its own size, then all
-  /// is near to all: the lists are left empty, and wildest() tells a vertex.
+  /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
+  /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
 
   /// The vertex that moved farthest when the last update gave up, -1 if it did not.
@@ -67,7 +67,8 @@ class Proximity {
   double slack_ = 0;
 
   AabbTree cloth_tree_, body_tree_;
-  std::vector<Vec3> reference_;  // (num_vertices) where the lists were made, empty if there are none
+  std::vector<Vec3> reference_;         // (num_vertices) where the lists were made, empty if there are none
+  std::vector<double> half_thickness_;  // (num_vertices) for which they were made [m]
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   double longest_edge_ = 0;  // [m]
   int wildest_ = -1;
