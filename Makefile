@@ -2,11 +2,12 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help demo test build asan tsan fuzz format clean
+.PHONY: help demo test scenes build asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
 	@echo "make test    install what is missing, build, run all tests"
+	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (minutes)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (minutes)"
 	@echo "make fuzz    fuzz the scene and OBJ readers, FUZZ_SECONDS each (default 60)"
@@ -22,6 +23,9 @@ demo: build
 
 test: build
 	@ctest --preset release
+
+scenes: build
+	@tools/check_scenes.sh build/release/bin/weft
 
 asan tsan:
 	@tools/install_deps.sh
