@@ -95,7 +95,7 @@ TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
   }
   RecordProperty("deepest_um", std::to_string(deepest * 1e6));
   // At 60 steps per second this coarse sheet lands on the edge with one step of 0.16 mm.
-  const bool is_hard_landing = c.name == std::string("edge") && c.integrator == std::string("implicit_euler");
+  const bool is_hard_landing = c.collider.name == "edge" && c.integrator == std::string("implicit_euler");
   EXPECT_LT(deepest, is_hard_landing ? 2e-4 : 1e-4) << "half the thickness is 0.5 mm";
   EXPECT_GT(deepest, -0.01) << "and it did land";
 }
