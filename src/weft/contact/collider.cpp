@@ -5,6 +5,7 @@
 namespace weft {
 namespace {
 
+/// Meshes are met by their vertices, edges and triangles (see contact_system.h), never by this distance.
 SignedDistance signed_distance(const MeshShape&, const Vec3&) {
   return {std::numeric_limits<double>::infinity(), Vec3::UnitY()};
 }

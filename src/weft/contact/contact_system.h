@@ -108,8 +108,9 @@ class ContactSystem {
   void collect_shape(int shape, double share_of_travel);
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
-  double settle_positions();
+  void settle_positions();
   void project(JobSystem& jobs);
+  bool has_left_reach() const;
   void take_back_slides();
   void mark_touched();
   void store_touched();
@@ -135,6 +136,7 @@ class ContactSystem {
   std::vector<char> is_touched_;
   std::vector<double> shape_distance_;
   std::vector<Vec3> velocity_, slowed_;
+  std::vector<Vec3> arrived_;  // where contacts were last looked for
 };
 
 }  // namespace weft

@@ -1,0 +1,139 @@
+/// ContactSystem's plain shapes: spheres, planes, capsules and boxes, against particles and triangles.
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/contact/contact_system.h"
+#include "weft/geometry/distance.h"
+
+namespace weft {
+namespace {
+
+/// A triangle counts beside its corners where it comes this much nearer to a shape than they do [m].
+constexpr double kNearerThanCorners = 1e-6;
+
+/// A ball around the shape; planes have none.
+struct Bound {
+  Vec3 center = Vec3::Zero();
+  double radius = std::numeric_limits<double>::infinity();
+};
+Bound bound_of(const Sphere& s) { return {s.center, s.radius}; }
+Bound bound_of(const Plane&) { return {}; }
+Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).norm() + c.radius}; }
+Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
+Bound bound_of(const MeshShape&) { return {}; }
+
+TriangleSignedDistance triangle_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
+                                         const Vec3& c, double reach = kNoReach) {
+  return std::visit(
+      [&](const auto& s) -> TriangleSignedDistance {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) {
+          return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
+        } else {
+          return signed_distance(s, a, b, c, reach);
+        }
+      },
+      shape);
+}
+
+}  // namespace
+
+Vec3 ContactSystem::MovingShape::velocity_at(const Vec3& p, double step) const {
+  if (collider->motion.is_still()) return Vec3::Zero();
+  return (p - apply(pose_before, pivot, apply_inverse(pose_after, pivot, p))) / step;
+}
+
+void ContactSystem::collect_shapes(double share_of_travel) {
+  for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
+    if (!shapes_[s].is_mesh()) collect_shape(s, share_of_travel);
+  }
+}
+
+/// Particles nearer than their gap and as much again, and `share_of_travel` of their way in this step; and
+/// triangles that are nearer than their corners.
+void ContactSystem::collect_shape(int shape, double share_of_travel) {
+  const MovingShape& moving = shapes_[shape];
+  const Bound bound = std::visit([](const auto& s) { return bound_of(s); }, moving.after);
+  const double triangle_reach = proximity_.longest_edge() / std::sqrt(3.0);
+  const int num_vertices = first_vertex_.back();
+  shape_distance_.resize(num_vertices);
+  bool is_any_near = false;
+  for (int v = 0; v < num_vertices; ++v) {
+    const double reach =
+        2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
+    const Vec3& p = motion_.end[v];
+    shape_distance_[v] = std::numeric_limits<double>::infinity();
+    const double farthest = bound.radius + reach + triangle_reach;
+    if ((p - bound.center).squaredNorm() > farthest * farthest) continue;
+    shape_distance_[v] = signed_distance(moving.after, p).distance;
+    is_any_near = true;
+    if (shape_distance_[v] < reach && inverse_mass_[v] > 0) add_shape_constraint(shape, 1, {v, v, v});
+  }
+  if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
+  const std::vector<Triangle>& triangles = proximity_.surface().triangles;
+  for (const Triangle& t : triangles) {
+    if (t[0] >= num_vertices) break;
+    const double nearest = std::min({shape_distance_[t[0]], shape_distance_[t[1]], shape_distance_[t[2]]});
+    const double travel = share_of_travel * (motion_.end[t[0]] - motion_.start[t[0]]).norm();
+    const double reach = 2 * motion_.half_thickness[t[0]] + travel;
+    if (nearest > reach + triangle_reach) continue;
+    const std::vector<Vec3>& x = motion_.end;
+    const double distance = triangle_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
+    if (distance < reach &&
+        distance < nearest - std::max(kNearerThanCorners, share_of_travel * motion_.half_thickness[t[0]]))
+      add_shape_constraint(shape, 3, t);
+  }
+}
+
+void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Triangle& vertices) {
+  Constraint c;
+  c.num_vertices = num_vertices;
+  c.vertex = {vertices[0], vertices[1], vertices[2], 0};
+  c.shape = shape;
+  c.friction = shapes_[shape].collider->friction;
+  take_plane(c);
+  if (c.inverse_mass > 0) constraints_.push_back(c);
+}
+
+ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, const Constraint& c,
+                                                   const std::vector<Vec3>& x) {
+  const Vec3& a = x[c.vertex[0]];
+  if (c.num_vertices == 1) {
+    const SignedDistance d = signed_distance(shape, a);
+    return {d.distance, d.normal, a - d.distance * d.normal, {1, 0, 0, 0}};
+  }
+  const Vec3 &b = x[c.vertex[1]], &e = x[c.vertex[2]];
+  const TriangleSignedDistance d = triangle_distance(shape, a, b, e);
+  return {d.distance,
+          d.normal,
+          point_at(d.weights, a, b, e) - d.distance * d.normal,
+          {d.weights[0], d.weights[1], d.weights[2], 0}};
+}
+
+/// The plane that touches the shape where the particle or triangle is nearest at the end of the step; unless
+/// that lies beyond the shape's middle: then where it was nearest at the start.
+void ContactSystem::take_plane(Constraint& c) const {
+  const MovingShape& moving = shapes_[c.shape];
+  Nearest nearest = find_nearest(moving.after, c, motion_.end);
+  if (nearest.distance < 0) {
+    const Mat3 turn = moving.pose_after.rotation * moving.pose_before.rotation.transpose();
+    const Nearest before = find_nearest(moving.before, c, motion_.start);
+    const Vec3 normal_before = turn * before.normal;
+    if (before.distance > 0 && nearest.normal.dot(normal_before) <= 0) {
+      c.is_fixed = true;
+      nearest = before;
+      nearest.normal = normal_before;
+      nearest.foot = apply(moving.pose_after, moving.pivot,
+                           apply_inverse(moving.pose_before, moving.pivot, before.foot));
+    }
+  }
+  c.normal = nearest.normal;
+  c.weight = nearest.weight;
+  c.target = c.normal.dot(nearest.foot) + motion_.half_thickness[c.vertex[0]];
+  c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
+  c.inverse_mass = 0;
+  for (int k = 0; k < c.num_vertices; ++k)
+    c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+}
+
+}  // namespace weft
