@@ -106,6 +106,8 @@ struct TreeView {
   const aabb_tree::Leaf* leaves;
 };
 
+constexpr unsigned kBit[kLanes] = {1, 2, 4, 8, 16, 32, 64, 128};
+
 /// Bit j: the leaf's box j overlaps the box from min to max.
 template <class Leaf>
 WEFT_ALWAYS_INLINE unsigned find_overlapping(const Leaf& leaf, const float* min, const float* max) {
@@ -116,7 +118,7 @@ WEFT_ALWAYS_INLINE unsigned find_overlapping(const Leaf& leaf, const float* min,
     const unsigned overlaps = (min_x <= leaf.max[0][j]) & (leaf.min[0][j] <= max_x) &
                               (min_y <= leaf.max[1][j]) & (leaf.min[1][j] <= max_y) &
                               (min_z <= leaf.max[2][j]) & (leaf.min[2][j] <= max_z);
-    bits |= overlaps << j;
+    bits |= kBit[j] & (0u - overlaps);
   }
   return bits;
 }
@@ -130,7 +132,7 @@ WEFT_ALWAYS_INLINE unsigned find_joined(const Leaf& leaf, int p, int q, int r) {
     const int u = leaf.key[0][j], v = leaf.key[1][j], w = leaf.key[2][j];
     const unsigned is_joined =
         (p == u) | (p == v) | (p == w) | (q == u) | (q == v) | (q == w) | (r == u) | (r == v) | (r == w);
-    bits |= is_joined << j;
+    bits |= kBit[j] & (0u - is_joined);
   }
   return bits;
 }
