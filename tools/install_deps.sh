@@ -12,7 +12,13 @@ packages=(
   libfmt-dev              # words
   nlohmann-json3-dev      # reports
   libcli11-dev            # the command line
+  pkg-config libepoxy-dev libegl-dev          # pictures: building …
+  libegl1 libgl1-mesa-dri                     # … and drawing, in software where there is no graphics card
+  libstb-dev              # PNG
+  libglfw3-dev libimgui-dev                   # the window
+  ffmpeg                  # videos
   libgtest-dev            # tests
+  xvfb xdotool            # tests of the window
 )
 if [ "${1:-}" = --fuzz ]; then packages+=(clang libclang-rt-dev); fi
 

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_run_command(app, exit_code);
   add_demo_command(app, exit_code);
+  add_render_command(app, exit_code);
   add_scenes_command(app, exit_code);
   add_check_command(app, exit_code);
   add_verify_command(app, exit_code);

@@ -21,7 +21,8 @@ class ProgressBar {
   double last_drawn_ = -1;  // seconds spent at the last drawing
 };
 
-/// From now on the first Ctrl-C only sets interrupted(); one that comes seconds later ends the program at once.
+/// From now on the first Ctrl-C only sets interrupted(); one that comes seconds later ends the program at
+/// once.
 void catch_interrupts();
 bool interrupted();
 

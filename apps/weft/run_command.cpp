@@ -3,13 +3,11 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <cerrno>
-#include <fstream>
 #include <memory>
 #include <system_error>
-#include <thread>
 
 #include "commands.h"
+#include "common.h"
 #include "progress.h"
 #include "summary.h"
 #include "weft/scene/scene_library.h"
@@ -21,19 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAnimationName = "animation.glb";
 constexpr const char* kReportName = "report.json";
-
-/// The file can be written after the simulation, or InputError before it. What is in it stays, and so does a
-/// pipe.
-void require_writable(const fs::path& file) {
-  std::error_code error;
-  if (fs::is_other(file, error)) return;
-  const bool is_new = !fs::exists(fs::symlink_status(file, error));
-  errno = 0;
-  if (!std::ofstream(file, std::ios::app)) {
-    throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
-  }
-  if (is_new) fs::remove(file, error);
-}
 
 /// The folder is there and everything can be written, or InputError. Results of an earlier run in the folder
 /// go.
@@ -50,8 +35,6 @@ void prepare_folder(const fs::path& folder, const fs::path& report) {
   }
 }
 
-int all_processors() { return std::max(1u, std::thread::hardware_concurrency()); }
-
 }  // namespace
 
 FinishedRun run_to_files(const RunRequest& request) {
@@ -59,7 +42,7 @@ FinishedRun run_to_files(const RunRequest& request) {
   const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
   prepare_folder(folder, request.report);
   const RunOptions options{.frames = request.frames,
-                           .threads = request.threads > 0 ? request.threads : all_processors()};
+                           .threads = request.threads > 0 ? request.threads : num_processors()};
   ProgressBar bar(scene.name);
   catch_interrupts();
   const RunResult result = run_scene(scene, options, [&](const Progress& progress) {

@@ -34,6 +34,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"run",
      {"core", "geometry", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators",
       "world", "verify", "io", "scene"}},
+    {"render", {"core", "geometry", "mesh"}},
+    {"lab",
+     {"core", "geometry", "mesh", "model", "forces", "solvers", "animation", "contact", "integrators",
+      "world", "verify", "io", "scene", "run", "render"}},
 };
 
 /// Folders of weft that a file includes from.

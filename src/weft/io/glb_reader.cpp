@@ -110,13 +110,27 @@ std::vector<Triangle> read_triangles(const tinygltf::Model& model, int index, si
   return triangles;
 }
 
+std::array<double, 3> read_color(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  const auto& factor =
+      at(model.materials, primitive.material, "material").pbrMetallicRoughness.baseColorFactor;
+  if (factor.size() < 3) fail("material " + std::to_string(primitive.material) + " has no colour");
+  return {factor[0], factor[1], factor[2]};
+}
+
 AnimatedMesh read_cloth(const tinygltf::Model& model, const tinygltf::Node& node) {
   const tinygltf::Primitive& primitive = primitive_of(model, node);
   AnimatedMesh cloth;
   cloth.name = node.name;
+  cloth.color = read_color(model, primitive);
   const auto base = read_positions(model, primitive.attributes);
   cloth.triangles = read_triangles(model, primitive.indices, base.size() / 3);
   cloth.frames.push_back(base);
+  const auto fabric = primitive.attributes.find("TEXCOORD_0");
+  if (fabric != primitive.attributes.end()) {
+    cloth.fabric_coordinates = read_floats(model, fabric->second, TINYGLTF_TYPE_VEC2);
+    if (cloth.fabric_coordinates.size() != base.size() / 3 * 2)
+      fail("cloth '" + node.name + "' has more or fewer texture coordinates than vertices");
+  }
   for (const auto& target : primitive.targets) {
     auto frame = read_positions(model, target);
     if (frame.size() != base.size())

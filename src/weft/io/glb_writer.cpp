@@ -28,6 +28,7 @@ struct Layout {
 };
 constexpr Layout kPositions{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, true};
 constexpr Layout kNormals{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, false};
+constexpr Layout kFabricCoordinates{TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER, false};
 constexpr Layout kTimes{TINYGLTF_TYPE_SCALAR, 1, 0, true};
 constexpr Layout kWeights{TINYGLTF_TYPE_SCALAR, 1, 0, false};
 constexpr Layout kTranslations{TINYGLTF_TYPE_VEC3, 3, 0, false};
@@ -73,6 +74,9 @@ void require_valid(const AnimatedMesh& cloth, size_t frames) {
     require_finite(cloth.name, k, cloth.frames[k]);
   }
   require_triangles(cloth.name, cloth.triangles, num_floats / 3);
+  if (cloth.fabric_coordinates.empty()) return;
+  require_count(cloth.name, "fabric coordinates", cloth.fabric_coordinates.size(), num_floats / 3 * 2);
+  require_finite(cloth.name, 0, cloth.fabric_coordinates);
 }
 
 void require_valid(const RigidMesh& body, size_t frames) {
@@ -251,6 +255,8 @@ class GlbBuilder {
     const auto& base = cloth.frames[0];
     const auto base_normals = compute_normals(cloth.triangles, base);
     primitive.attributes = add_vertices(base, base_normals);
+    if (!cloth.fabric_coordinates.empty())
+      primitive.attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
     for (size_t k = 1; k < num_frames_; ++k) {
       const auto normals = compute_normals(cloth.triangles, cloth.frames[k]);
       primitive.targets.push_back(

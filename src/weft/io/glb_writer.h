@@ -19,6 +19,7 @@ struct AnimatedMesh {
   std::vector<Triangle> triangles;
   std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
   std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
+  std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
 };
 
 /// A mesh that moves rigidly: for each frame a pose, which takes it to the world. One pose: it stands still.
@@ -42,7 +43,8 @@ struct Animation {
   std::vector<RigidMesh> bodies;
 };
 
-/// Writes the animation; materials are double-sided. What glTF has no words for goes to the nodes' extras, as
+/// Writes the animation; materials are double-sided, fabric coordinates become texture coordinates in metres.
+/// What glTF has no words for goes to the nodes' extras, as
 /// `"weft": {"role": "cloth"}` or `{"role": "collider", "shape": "sphere", "center": [0, 0, 0], "radius":
 /// 0.3}`; other shapes are `plane` (point, normal), `capsule` (a, b, radius), `box` (center, half_size,
 /// rotation: nine numbers row by row) and `mesh`. All meshes have the same number of frames (>= 1). Writes to

@@ -7,6 +7,7 @@
 
 #include "weft/core/error.h"
 #include "weft/core/version.h"
+#include "weft/run/film.h"
 #include "weft/run/frame_checks.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_world.h"
@@ -15,8 +16,6 @@
 namespace weft {
 namespace {
 
-constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
-constexpr int kSphereRings = 32;
 constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
 
 std::string hex(std::uint64_t value) {
@@ -95,74 +94,6 @@ class Recorder {
   RunReport& report_;
 };
 
-/// Keeps frames for the animation file.
-class Filmer {
- public:
-  Filmer(const SceneDesc& scene, const World& world, Animation& animation)
-      : world_(world), animation_(animation) {
-    animation.title = scene.name;
-    animation.frames_per_second = scene.fps;
-    for (int c = 0; c < world.num_cloths(); ++c) {
-      AnimatedMesh mesh;
-      mesh.name = world.name({c});
-      mesh.triangles = world.model({c}).topology->mesh.triangles;
-      mesh.color = scene.cloths[c].color;
-      animation.cloths.push_back(std::move(mesh));
-    }
-    for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
-  }
-
-  void add_frame() {
-    for (int c = 0; c < world_.num_cloths(); ++c)
-      animation_.cloths[c].frames.push_back(positions(world_.state({c})));
-    for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
-      const Collider& collider = world_.colliders()[b];
-      if (collider.motion.is_still() && !animation_.bodies[b].poses.empty()) continue;
-      const Pose pose = collider.motion.at(world_.time());
-      const Vec3 center = pivot(collider.shape);
-      animation_.bodies[b].poses.push_back({center + pose.translation, Eigen::Quaterniond(pose.rotation)});
-    }
-  }
-
- private:
-  /// The collider's shape around its own pivot, exact and as a mesh to look at.
-  static RigidMesh show(const Collider& collider) {
-    RigidMesh body;
-    body.name = collider.name;
-    if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
-      body.shape = Sphere{Vec3::Zero(), sphere->radius};
-      body.mesh = make_sphere_mesh(Vec3::Zero(), sphere->radius, kSphereRings);
-    } else if (const Plane* plane = std::get_if<Plane>(&collider.shape)) {
-      body.shape = Plane{Vec3::Zero(), plane->normal};
-      body.mesh = make_square_mesh(Vec3::Zero(), plane->normal, kPlaneSide);
-    } else if (const Capsule* capsule = std::get_if<Capsule>(&collider.shape)) {
-      const Vec3 half = 0.5 * (capsule->b - capsule->a);
-      body.shape = Capsule{-half, half, capsule->radius};
-      body.mesh = make_capsule_mesh(-half, half, capsule->radius, kSphereRings);
-    } else if (const OrientedBox* box = std::get_if<OrientedBox>(&collider.shape)) {
-      body.shape = OrientedBox{Vec3::Zero(), box->half_size, box->rotation};
-      body.mesh = make_box_mesh(Vec3::Zero(), box->half_size, box->rotation);
-    } else if (const MeshShape* shape = std::get_if<MeshShape>(&collider.shape)) {
-      body.mesh = *shape->mesh;
-      for (Vec3& p : body.mesh.positions) p = shape->rotation * p;
-    }
-    return body;
-  }
-
-  static std::vector<float> positions(const ClothState& state) {
-    std::vector<float> values;
-    values.reserve(3 * state.x.size());
-    for (std::size_t i = 0; i < state.x.size(); ++i) {
-      const Vec3 p = state.position(i);
-      for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(p[c]));
-    }
-    return values;
-  }
-
-  const World& world_;
-  Animation& animation_;
-};
-
 /// The paper's Eq. 16 slows gravity the more, the stiffer the cloth is for its step.
 void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
   if (scene.solver.integrator != "paper") return;
@@ -207,12 +138,12 @@ class Run {
         num_frames_(options.frames.value_or(scene.num_frames())),
         built_(build_world(scene, make_jobs(options.threads))),
         recorder_(scene, built_.world, result_.report),
-        filmer_(scene, built_.world, result_.animation) {
+        film_(scene, built_.world) {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
     recorder_.judge_start();
-    if (options.record_animation) filmer_.add_frame();
+    if (options.record_animation) film_.add_frame();
   }
 
   RunResult go(const OnFrame& on_frame) {
@@ -225,11 +156,12 @@ class Run {
       spent_ += seconds;
       frame_ms_.push_back(1000 * seconds);
       recorder_.add_frame();
-      if (options_.record_animation) filmer_.add_frame();
+      if (options_.record_animation) film_.add_frame();
       const Progress progress{frame, num_frames_, spent_, spent_ / frame * (num_frames_ - frame)};
       if (on_frame && !on_frame(progress) && frame < num_frames_) report.outcome = RunOutcome::interrupted;
     }
     finish();
+    result_.animation = film_.take();
     return std::move(result_);
   }
 
@@ -270,7 +202,7 @@ class Run {
   SceneWorld built_;
   RunResult result_;
   Recorder recorder_;
-  Filmer filmer_;
+  Film film_;
   Stopwatch stopwatch_;
   Troubles troubles_;
   std::vector<double> frame_ms_;

@@ -1,0 +1,28 @@
+#include "common.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <thread>
+
+#include "weft/core/error.h"
+
+namespace weft::app {
+
+namespace fs = std::filesystem;
+
+void require_writable(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_other(file, error)) return;
+  const bool is_new = !fs::exists(fs::symlink_status(file, error));
+  errno = 0;
+  if (!std::ofstream(file, std::ios::app)) {
+    throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
+  }
+  if (is_new) fs::remove(file, error);
+}
+
+int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+}  // namespace weft::app

@@ -1,0 +1,65 @@
+#include "weft/render/image.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "weft/core/error.h"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace weft {
+
+Image::Image(int width_, int height_)
+    : width(width_),
+      height(height_),
+      rgba(4 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
+
+Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap) {
+  if (images.empty()) return {};
+  const int count = static_cast<int>(images.size()), rows = (count + columns - 1) / columns;
+  columns = std::min(columns, count);
+  const int w = images[0].width, h = images[0].height;
+  Image sheet(columns * w + (columns - 1) * gap, rows * h + (rows - 1) * gap);
+  std::fill(sheet.rgba.begin(), sheet.rgba.end(), std::uint8_t{255});
+  for (int k = 0; k < count; ++k) {
+    const int left = k % columns * (w + gap), top = k / columns * (h + gap);
+    for (int y = 0; y < h; ++y)
+      std::copy_n(images[k].pixel(0, y), 4 * static_cast<std::size_t>(w), sheet.pixel(left, top + y));
+  }
+  return sheet;
+}
+
+void write_png(const std::filesystem::path& file, const Image& image) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  const auto write = [](void* stream, void* data, int size) {
+    static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(data), size);
+  };
+  const bool done = out && stbi_write_png_to_func(write, &out, image.width, image.height, 4,
+                                                  image.rgba.data(), 4 * image.width) != 0;
+  if (done && out.flush()) return;
+  throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
+}
+
+Image read_png(const std::filesystem::path& file) {
+  int width = 0, height = 0, channels = 0;
+  std::uint8_t* pixels = stbi_load(file.string().c_str(), &width, &height, &channels, 4);
+  if (!pixels) throw InputError(file.string() + " cannot be read as a PNG: " + stbi_failure_reason());
+  Image image(width, height);
+  std::copy_n(pixels, image.rgba.size(), image.rgba.begin());
+  stbi_image_free(pixels);
+  return image;
+}
+
+}  // namespace weft

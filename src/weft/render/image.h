@@ -1,0 +1,31 @@
+#pragma once
+/// Pictures in memory, and as PNG files.
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace weft {
+
+/// Rows from the top, four bytes a pixel: sRGB red, green, blue, and alpha (not premultiplied).
+struct Image {
+  int width = 0, height = 0;       // [pixels]
+  std::vector<std::uint8_t> rgba;  // (height x width x 4)
+
+  Image() = default;
+  Image(int width, int height);  // transparent black
+
+  const std::uint8_t* pixel(int x, int y) const {
+    return rgba.data() + 4 * (static_cast<std::size_t>(y) * width + x);
+  }
+  std::uint8_t* pixel(int x, int y) { return rgba.data() + 4 * (static_cast<std::size_t>(y) * width + x); }
+};
+
+/// Pictures of one size side by side in rows of `columns` (>= 1), `gap` pixels of white apart.
+Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap);
+
+/// Throws InputError if the file cannot be written or is no PNG.
+void write_png(const std::filesystem::path& file, const Image& image);
+Image read_png(const std::filesystem::path& file);
+
+}  // namespace weft

@@ -1,0 +1,65 @@
+#pragma once
+/// What is drawn: lists of meshes, lines and dots, seen by a camera. Knows no physics.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "weft/mesh/triangle_mesh.h"
+#include "weft/render/camera.h"
+
+namespace weft {
+
+using Color = std::array<double, 3>;  // linear red, green, blue in [0, 1]
+
+struct Look {
+  enum class Kind { fabric, solid };
+
+  Kind kind = Kind::solid;
+  Color color = {0.6, 0.6, 0.6};
+  double check_size = 0;  // of the checks woven into fabric, in fabric coordinates; 0: none [m]
+};
+
+/// A triangle mesh, with a normal per vertex that is made from the triangles around it.
+struct DrawnMesh {
+  std::vector<Triangle> triangles;
+  std::vector<float> positions;           // (num_vertices x 3) [m]
+  std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+  Look look;
+};
+
+/// Straight lines, flat in colour, before or behind meshes as they lie.
+struct DrawnLines {
+  std::vector<Vec3> ends;  // (2 x num_lines) [m]
+  Color color = {0.1, 0.1, 0.1};
+  double width = 1.5;  // [pixels]
+};
+
+/// Small balls of a size that does not depend on the distance.
+struct DrawnDots {
+  std::vector<Vec3> positions;  // [m]
+  Color color = {0.1, 0.1, 0.1};
+  double diameter = 6;  // [pixels]
+};
+
+struct Light {
+  Vec3 to_sun = Vec3(0.45, 1.0, 0.35).normalized();  // unit [1]
+  Color sun = {3.0, 2.85, 2.6};
+  Color sky = {0.62, 0.70, 0.82};     // from above
+  Color ground = {0.40, 0.36, 0.32};  // from below
+};
+
+struct Picture {
+  Camera camera;
+  Light light;
+  std::vector<DrawnMesh> meshes;
+  std::vector<DrawnLines> lines;
+  std::vector<DrawnDots> dots;
+  std::optional<double> ground;  // height of the ground that catches shadows; empty: none [m]
+  bool transparent = false;      // no sky and no ground: alpha tells where something is
+};
+
+/// Normals of the vertices (num_vertices x 3), unit, weighted by the areas around; up where there is none.
+std::vector<float> compute_normals(const DrawnMesh& mesh);
+
+}  // namespace weft

@@ -1,0 +1,43 @@
+#pragma once
+/// Draws pictures. The stages, and what each reads:
+///
+///     shadow     depth seen from the sun
+///     depth      depth seen by the camera
+///     occlusion  how much of the sky each place sees, from the camera's depth; then smoothed
+///     colour     sky, surfaces lit through shadow and occlusion, lines, dots; several samples a pixel
+///     resolve    one sample a pixel
+
+#include <memory>
+
+#include "weft/render/device.h"
+#include "weft/render/picture.h"
+
+namespace weft {
+
+struct RenderSettings {
+  int samples = 4;         // per pixel, against steps at edges; 1: none
+  int shadow_size = 2048;  // of the shadow map; 0: no shadows [pixels]
+  bool occlusion = true;   // ambient occlusion
+};
+
+class Renderer {
+ public:
+  explicit Renderer(std::unique_ptr<Device> device, const RenderSettings& settings = {});
+  ~Renderer();
+
+  /// Draws the picture and reads it back.
+  Image draw(const Picture& picture, PictureSize size);
+
+  /// Draws the picture to the device's window.
+  void show(const Picture& picture, PictureSize size);
+
+ private:
+  struct Stage;
+
+  TargetId compose(const Picture& picture, PictureSize size);
+
+  std::unique_ptr<Device> device_;
+  RenderSettings settings_;
+};
+
+}  // namespace weft

@@ -1,0 +1,311 @@
+#include "weft/render/shaders.h"
+
+namespace weft {
+namespace {
+
+const char* const kHead = "#version 330 core\n";
+
+// ---- Meshes ----
+
+const char* const kMeshVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 fabric;
+uniform mat4 to_clip;
+out vec3 world;
+out vec3 world_normal;
+out vec2 warp_weft;
+
+void main() {
+  world = position;
+  world_normal = normal;
+  warp_weft = fabric;
+  gl_Position = to_clip * vec4(position, 1.0);
+}
+)";
+
+const char* const kDepthVertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat4 to_clip;
+
+void main() { gl_Position = to_clip * vec4(position, 1.0); }
+)";
+
+const char* const kDepthFragment = R"(
+void main() {}
+)";
+
+// How a surface scatters light: sun through the shadow map, sky and ground through ambient occlusion. Cloth
+// is lit from both sides, lets some light through, and shines softly where it is seen edge-on.
+const char* const kSurfaceFragment = R"(
+in vec3 world;
+in vec3 world_normal;
+in vec2 warp_weft;
+uniform vec3 eye;
+uniform int kind;             // 0 fabric, 1 solid, 2 ground
+uniform vec3 color;           // linear
+uniform float check_size;     // [m]
+uniform vec3 to_sun, sun, sky, ground;
+uniform mat4 to_shadow;       // world to the shadow map's texture
+uniform float shadow_texel;   // side of a texel of the shadow map in the world [m], 0: no shadows
+uniform float shadow_size;    // texels on a side
+uniform sampler2DShadow shadow_compare;
+uniform sampler2D shadow_depth;
+uniform float shadow_depth_range;  // [m]
+uniform sampler2D occlusion;
+uniform vec2 pixel;           // size of one in the occlusion texture's coordinates
+uniform vec3 horizon;
+uniform vec2 fade;            // distances at which the ground begins and ends to fade into the horizon [m]
+out vec4 result;
+
+const float kSunSize = 0.06;  // the light's width as seen from its target: soft shadows
+
+vec2 spiral(int i, int n) {
+  float r = sqrt((float(i) + 0.5) / float(n)), a = 2.39996323 * float(i);
+  return r * vec2(cos(a), sin(a));
+}
+
+float sunlight(vec3 n) {
+  if (shadow_texel == 0.0) return 1.0;
+  vec4 place = to_shadow * vec4(world + 1.5 * shadow_texel * n, 1.0);
+  if (any(lessThan(place.xyz, vec3(0.0))) || any(greaterThan(place.xyz, vec3(1.0)))) return 1.0;
+  float bias = 1.0 * shadow_texel / shadow_depth_range;
+  // How far in front is what casts the shadow? The farther, the softer.
+  float search = 0.03 / (shadow_texel * shadow_size), blockers = 0.0, distance = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    float depth = texture(shadow_depth, place.xy + search * spiral(i, 8)).r;
+    if (depth < place.z - bias) {
+      blockers += 1.0;
+      distance += place.z - depth;
+    }
+  }
+  float gap = blockers > 0.0 ? distance / blockers * shadow_depth_range : 0.05;
+  float radius = clamp(kSunSize * gap, 1.2 * shadow_texel, 0.05) / (shadow_texel * shadow_size);
+  float light = 0.0;
+  for (int i = 0; i < 16; ++i)
+    light += texture(shadow_compare, vec3(place.xy + radius * spiral(i, 16), place.z - bias));
+  return light / 16.0;
+}
+
+// A square wave of period 2 and height 1, averaged over `width`.
+float stripe(float x, float width) {
+  vec2 ends = vec2(x - 0.5 * width, x + 0.5 * width);
+  vec2 area = floor(0.5 * ends) + max(vec2(0.0), 2.0 * fract(0.5 * ends) - 1.0);
+  return (area.y - area.x) / width;
+}
+
+// Checks woven of two yarns: light, dark, and between where they cross. Close up, the yarns themselves show.
+vec3 fabric_color() {
+  if (check_size == 0.0) return color;
+  vec2 place = warp_weft / check_size;
+  vec2 width = max(fwidth(place), vec2(1e-4));
+  float dark = stripe(place.x, width.x) + stripe(place.y, width.y);
+  vec3 shade = mix(mix(color, vec3(1.0), 0.16), 0.62 * color, 0.5 * dark);
+  vec2 yarn = warp_weft * 1200.0;
+  float near = 1.0 - smoothstep(0.15, 0.5, max(fwidth(yarn.x), fwidth(yarn.y)));
+  return shade * (1.0 - 0.25 * near * (0.5 - 0.5 * cos(6.2832 * yarn.x) * cos(6.2832 * yarn.y)));
+}
+
+vec3 film(vec3 light) {  // Narkowicz's fit of the ACES curve, then sRGB
+  vec3 c = clamp(light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14), 0.0, 1.0);
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+void main() {
+  vec3 n = normalize(world_normal), to_eye = normalize(eye - world);
+  bool is_fabric = kind == 0;
+  if (is_fabric && !gl_FrontFacing) n = -n;
+  vec3 base = is_fabric ? fabric_color() : color;
+  float open = texture(occlusion, gl_FragCoord.xy * pixel).r;
+  float facing = dot(n, to_sun), lit = sunlight(facing < 0.0 ? -n : n);
+  vec3 light = mix(ground, sky, 0.5 + 0.5 * n.y) * open;
+  light += sun * lit * max(facing, 0.0) * mix(open, 1.0, 0.5);
+  if (is_fabric) {
+    light += 0.22 * base * sun * lit * max(-facing, 0.0);
+    float rim = pow(1.0 - abs(dot(n, to_eye)), 4.0);
+    light += 0.5 * rim * mix(ground, sky, 0.5 + 0.5 * n.y) * open;
+  }
+  vec3 shine = vec3(0.0);
+  if (kind == 1) {
+    float s = pow(max(dot(n, normalize(to_sun + to_eye)), 0.0), 40.0);
+    shine = 0.12 * s * sun * lit;
+  }
+  vec3 c = film(0.36 * (base * light + shine));
+  if (kind == 2) c = mix(c, horizon, smoothstep(fade.x, fade.y, length(world.xz - eye.xz)));
+  result = vec4(c, 1.0);
+}
+)";
+
+// ---- The whole target ----
+
+const char* const kScreenVertex = R"(
+out vec2 place;  // 0 to 1
+
+void main() {
+  place = vec2(gl_VertexID == 1 ? 2.0 : 0.0, gl_VertexID == 2 ? 2.0 : 0.0);
+  gl_Position = vec4(2.0 * place - 1.0, 1.0, 1.0);
+}
+)";
+
+const char* const kSkyFragment = R"(
+in vec2 place;
+uniform mat4 from_clip;  // to directions in the world
+uniform vec3 horizon, zenith;
+out vec4 result;
+
+void main() {
+  vec4 direction = from_clip * vec4(2.0 * place - 1.0, 1.0, 1.0);
+  float up = normalize(direction.xyz).y;
+  result = vec4(mix(horizon, zenith, smoothstep(0.0, 0.7, up)), 1.0);
+}
+)";
+
+// Scalable ambient obscurance (McGuire, Mara, Luebke 2012): how much of the surroundings rises above the
+// tangent plane of each place.
+const char* const kOcclusionFragment = R"(
+in vec2 place;
+uniform sampler2D depth;
+uniform mat4 projection;
+uniform vec2 pixel;
+uniform float radius;  // [m]
+out float result;
+
+vec3 in_view(vec2 at) {
+  float z = projection[3][2] / (2.0 * textureLod(depth, at, 0.0).r - 1.0 + projection[2][2]);
+  return vec3((2.0 * at - 1.0) * z / vec2(projection[0][0], projection[1][1]), -z);
+}
+
+vec3 shorter(vec3 a, vec3 b) { return dot(a, a) < dot(b, b) ? a : b; }
+
+void main() {
+  if (textureLod(depth, place, 0.0).r == 1.0) {
+    result = 1.0;
+    return;
+  }
+  vec3 p = in_view(place);
+  vec3 across = shorter(in_view(place + vec2(pixel.x, 0.0)) - p, p - in_view(place - vec2(pixel.x, 0.0)));
+  vec3 upwards = shorter(in_view(place + vec2(0.0, pixel.y)) - p, p - in_view(place - vec2(0.0, pixel.y)));
+  vec3 n = normalize(cross(across, upwards));
+  vec2 reach = 0.5 * radius * vec2(projection[0][0], projection[1][1]) / -p.z;
+  ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
+  float turn = 6.2832 / 16.0 * float(4 * ((cell.x + 2 * cell.y) & 3) + ((2 * cell.x + cell.y) & 3));
+  float sum = 0.0;
+  const int kSamples = 12;
+  for (int i = 0; i < kSamples; ++i) {
+    float r = (float(i) + 0.5) / float(kSamples), a = turn + 2.39996323 * float(i);
+    vec3 v = in_view(place + r * reach * vec2(cos(a), sin(a))) - p;
+    float near = max(radius * radius - dot(v, v), 0.0);
+    sum += near * near * near * max((dot(v, n) - 0.01 * radius) / (0.0001 * radius * radius + dot(v, v)), 0.0);
+  }
+  float r6 = pow(radius, 6.0);
+  result = max(0.0, 1.0 - 3.2 * radius / r6 * sum / float(kSamples));
+}
+)";
+
+const char* const kBlurFragment = R"(
+in vec2 place;
+uniform sampler2D occlusion, depth;
+uniform mat4 projection;
+uniform vec2 pixel;
+out float result;
+
+float depth_at(vec2 at) {
+  return projection[3][2] / (2.0 * textureLod(depth, at, 0.0).r - 1.0 + projection[2][2]);
+}
+
+void main() {
+  float here = depth_at(place), sum = 0.0, weights = 0.0;
+  for (int y = -2; y < 2; ++y) {
+    for (int x = -2; x < 2; ++x) {
+      vec2 at = place + pixel * (vec2(x, y) + 0.5);
+      float weight = exp2(-40.0 * abs(depth_at(at) / here - 1.0));
+      sum += weight * textureLod(occlusion, at, 0.0).r;
+      weights += weight;
+    }
+  }
+  result = sum / max(weights, 1e-4);
+}
+)";
+
+// ---- Lines and dots ----
+
+const char* const kLineVertex = R"(
+layout(location = 0) in vec3 a;
+layout(location = 1) in vec3 b;
+uniform mat4 to_clip;
+uniform vec2 size;    // of the target [pixels]
+uniform float width;  // [pixels]
+
+void main() {
+  vec4 from = to_clip * vec4(a, 1.0), to = to_clip * vec4(b, 1.0);
+  vec2 along = normalize((to.xy / to.w - from.xy / from.w) * size + vec2(1e-6, 0.0));
+  vec4 end = gl_VertexID < 2 ? from : to;
+  float side = (gl_VertexID & 1) == 0 ? 1.0 : -1.0;
+  end.xy += side * width * vec2(-along.y, along.x) / size * end.w;
+  end.z -= 0.0005 * end.w;
+  gl_Position = end;
+}
+)";
+
+const char* const kLineFragment = R"(
+uniform vec3 color;  // sRGB
+out vec4 result;
+
+void main() { result = vec4(color, 1.0); }
+)";
+
+const char* const kDotVertex = R"(
+layout(location = 0) in vec3 a;
+uniform mat4 to_clip;
+uniform vec2 size;
+uniform float diameter;  // [pixels]
+out vec2 corner;
+
+void main() {
+  corner = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, gl_VertexID < 2 ? -1.0 : 1.0);
+  vec4 center = to_clip * vec4(a, 1.0);
+  center.xy += corner * diameter / size * center.w;
+  center.z -= 0.001 * center.w;
+  gl_Position = center;
+}
+)";
+
+const char* const kDotFragment = R"(
+in vec2 corner;
+uniform vec3 color;  // sRGB
+out vec4 result;
+
+void main() {
+  float r2 = dot(corner, corner);
+  if (r2 > 1.0) discard;
+  float light = dot(vec3(corner, sqrt(1.0 - r2)), vec3(-0.35, 0.55, 0.75));
+  result = vec4(mix(0.7 * color, mix(color, vec3(1.0), 0.35), clamp(light, 0.0, 1.0)), 1.0);
+}
+)";
+
+}  // namespace
+
+ShaderSource shader_source(Program program) {
+  const auto source = [](const char* vertex, const char* fragment) {
+    return ShaderSource{std::string(kHead) + vertex, std::string(kHead) + fragment};
+  };
+  switch (program) {
+    case Program::depth:
+      return source(kDepthVertex, kDepthFragment);
+    case Program::occlusion:
+      return source(kScreenVertex, kOcclusionFragment);
+    case Program::blur:
+      return source(kScreenVertex, kBlurFragment);
+    case Program::sky:
+      return source(kScreenVertex, kSkyFragment);
+    case Program::surface:
+      return source(kMeshVertex, kSurfaceFragment);
+    case Program::line:
+      return source(kLineVertex, kLineFragment);
+    case Program::dot:
+      break;
+  }
+  return source(kDotVertex, kDotFragment);
+}
+
+}  // namespace weft

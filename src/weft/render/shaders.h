@@ -1,0 +1,16 @@
+#pragma once
+/// The sources of the graphics card's programs (GLSL 3.30).
+
+#include <string>
+
+#include "weft/render/device.h"
+
+namespace weft {
+
+struct ShaderSource {
+  std::string vertex, fragment;
+};
+
+ShaderSource shader_source(Program program);
+
+}  // namespace weft

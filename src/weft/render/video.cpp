@@ -1,0 +1,146 @@
+#include "weft/render/video.h"
+
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+#include "weft/core/error.h"
+
+extern char** environ;
+
+namespace weft {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+/// How ffmpeg encodes each kind of file.
+Arguments encoding(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".mp4") {
+    return {"-vf",       "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+            "-c:v",      "libx264",
+            "-pix_fmt",  "yuv420p",
+            "-crf",      "20",
+            "-movflags", "+faststart",
+            "-f",        "mp4"};
+  }
+  if (ending == ".webp") {
+    return {"-c:v", "libwebp_anim", "-quality", "70", "-compression_level", "5", "-loop", "0", "-f", "webp"};
+  }
+  if (ending == ".gif") {
+    return {"-vf",   "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer:bayer_scale=4",
+            "-loop", "0",
+            "-f",    "gif"};
+  }
+  throw InputError(file.string() + ": expected a name that ends in .mp4, .webp or .gif");
+}
+
+Arguments command(const std::filesystem::path& file, const std::filesystem::path& part, int width, int height,
+                  double frames_per_second) {
+  Arguments arguments = {"ffmpeg",    "-y",
+                         "-loglevel", "error",
+                         "-f",        "rawvideo",
+                         "-pix_fmt",  "rgba",
+                         "-s",        std::to_string(width) + "x" + std::to_string(height),
+                         "-r",        std::to_string(frames_per_second),
+                         "-i",        "-",
+                         "-an"};
+  for (std::string& argument : encoding(file)) arguments.push_back(std::move(argument));
+  arguments.push_back("file:" + part.string());
+  return arguments;
+}
+
+}  // namespace
+
+bool is_video(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".mp4" || ending == ".webp" || ending == ".gif";
+}
+
+void require_ffmpeg(const std::filesystem::path& file) {
+  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((std::filesystem::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return;
+  }
+  throw InputError(
+      file.string() +
+      " needs the program ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt-get "
+      "install ffmpeg), or ask for .png pictures");
+}
+
+VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second)
+    : file_(file), part_(file.string() + ".part") {
+  Arguments arguments = command(file_, part_, width, height, frames_per_second);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  // A socket, not a pipe: writing to one that is closed can be told not to end the program.
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    fail(std::generic_category().message(errno));
+  to_ffmpeg_ = ends[0];
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  const int error = posix_spawnp(&process_, "ffmpeg", &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (error == 0) return;
+  process_ = -1;
+  fail("ffmpeg cannot be started: " + std::generic_category().message(error));
+}
+
+VideoWriter::~VideoWriter() {
+  if (process_ < 0) return;
+  wait();
+  std::error_code ignored;
+  std::filesystem::remove(part_, ignored);
+}
+
+void VideoWriter::add(const Image& image) {
+  const std::uint8_t* bytes = image.rgba.data();
+  std::size_t left = image.rgba.size();
+  while (left > 0) {
+    const ssize_t sent = send(to_ffmpeg_, bytes, left, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) fail("ffmpeg ended too early");
+    bytes += sent;
+    left -= static_cast<std::size_t>(sent);
+  }
+}
+
+void VideoWriter::finish() {
+  const int status = wait();
+  if (status != 0) fail("ffmpeg ended with status " + std::to_string(status));
+  std::error_code error;
+  std::filesystem::rename(part_, file_, error);
+  if (error) fail(error.message());
+}
+
+/// Tells ffmpeg that this was all, and gives its exit status.
+int VideoWriter::wait() {
+  if (to_ffmpeg_ >= 0) close(to_ffmpeg_);
+  to_ffmpeg_ = -1;
+  int status = 0;
+  while (process_ >= 0 && waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void VideoWriter::fail(const std::string& reason) {
+  wait();
+  std::error_code ignored;
+  std::filesystem::remove(part_, ignored);
+  throw InputError(file_.string() + " cannot be written: " + reason);
+}
+
+}  // namespace weft
