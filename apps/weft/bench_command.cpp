@@ -4,6 +4,7 @@
 
 #include "bench/collision.h"
 #include "bench/integrators.h"
+#include "bench/pictures.h"
 #include "commands.h"
 #include "weft/core/error.h"
 #include "weft/core/simd.h"
@@ -69,6 +70,25 @@ void add_collision(CLI::App& bench, int& exit_code) {
   });
 }
 
+void add_pictures(CLI::App& bench) {
+  auto options = std::make_shared<bench::PictureBenchOptions>();
+  CLI::App* command = bench.add_subcommand("pictures", "Cost of drawing a picture without a display");
+  command->add_option("--triangles", options->triangles, "Of the cloth")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--width", options->size.width, "Pixels")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  command->add_option("--height", options->size.height, "Pixels")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "Pictures per figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->callback([options] { bench::bench_pictures(*options); });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
@@ -76,6 +96,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->require_subcommand(1);
   add_integrators(*command);
   add_collision(*command, exit_code);
+  add_pictures(*command);
 }
 
 }  // namespace weft::app

@@ -7,7 +7,7 @@ namespace weft {
 namespace {
 
 constexpr double kCheckSize = 0.025;  // of the checks in cloth [m]
-constexpr double kBelow = 0.15;       // of the ground under what is drawn, as a share of its size [1]
+constexpr double kBelow = 0.02;       // of the ground under what is drawn, as a share of its size [1]
 constexpr double kLevel = 0.999;      // a plane is ground where its normal's y is more [1]
 constexpr Color kStructural = {0.05, 0.10, 0.25}, kShear = {0.75, 0.22, 0.04}, kBend = {0.10, 0.45, 0.25};
 constexpr int kArcPieces = 8;        // bending springs are drawn as arcs of so many lines …

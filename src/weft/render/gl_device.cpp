@@ -214,7 +214,8 @@ class GlDevice : public Device {
     GLuint buffer = 0;
     glGenRenderbuffers(1, &buffer);
     glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, desc.samples > 1 ? desc.samples : 0, format, desc.width, desc.height);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, desc.samples > 1 ? desc.samples : 0, format, desc.width,
+                                     desc.height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
     return buffer;
   }

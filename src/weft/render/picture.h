@@ -43,10 +43,11 @@ struct DrawnDots {
 };
 
 struct Light {
-  Vec3 to_sun = Vec3(0.45, 1.0, 0.35).normalized();  // unit [1]
-  Color sun = {3.0, 2.85, 2.6};
-  Color sky = {0.62, 0.70, 0.82};     // from above
-  Color ground = {0.40, 0.36, 0.32};  // from below
+  Vec3 to_sun = Vec3(-0.55, 0.95, 0.45).normalized();  // unit [1]
+  Color sun = {2.45, 2.3, 2.05};
+  Color sky = {0.76, 0.80, 0.87};     // from above
+  Color ground = {0.74, 0.70, 0.65};  // from below
+  double exposure = 0.40;             // what light is multiplied by before it meets the film [1]
 };
 
 struct Picture {

@@ -12,8 +12,8 @@ using Matrix4f = Eigen::Matrix4f;
 
 constexpr double kGroundSide = 60;        // of the square that is drawn as ground [m]
 constexpr double kOcclusionShare = 0.09;  // its reach, as a share of the scene's radius [1]
-const Vector3f kHorizon(0.86f, 0.885f, 0.91f), kZenith(0.52f, 0.64f, 0.78f);  // sRGB
-const Color kGroundColor = {0.52, 0.53, 0.55};
+const Vector3f kHorizon(0.93f, 0.94f, 0.945f), kZenith(0.66f, 0.76f, 0.87f);  // sRGB
+const Color kGroundColor = {0.66, 0.65, 0.63};
 
 Vector3f to_vector(const Color& c) { return Eigen::Vector3d(c[0], c[1], c[2]).cast<float>(); }
 
@@ -192,6 +192,7 @@ struct Renderer::Stage {
           {"sun", to_vector(light.sun)},
           {"sky", to_vector(light.sky)},
           {"ground", to_vector(light.ground)},
+          {"exposure", static_cast<float>(light.exposure)},
           {"to_shadow", Matrix4f((to_texture * sun.to_clip).cast<float>())},
           {"shadow_texel", texel},
           {"shadow_size", static_cast<float>(std::max(settings.shadow_size, 1))},
@@ -249,9 +250,9 @@ TargetId Renderer::compose(const Picture& picture, PictureSize size) {
   const TargetId rough =
       device_->target("colour", {TargetDesc::Format::color, size.width, size.height, settings_.samples});
   device_->begin_pass(rough);
-  stage.draw_sky();
   stage.draw_surfaces();
   stage.draw_lines_and_dots();
+  stage.draw_sky();
   const TargetId smooth = device_->target("picture", {TargetDesc::Format::color, size.width, size.height});
   device_->resolve(rough, smooth);
   return smooth;

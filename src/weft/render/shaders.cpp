@@ -46,6 +46,7 @@ uniform int kind;             // 0 fabric, 1 solid, 2 ground
 uniform vec3 color;           // linear
 uniform float check_size;     // [m]
 uniform vec3 to_sun, sun, sky, ground;
+uniform float exposure;
 uniform mat4 to_shadow;       // world to the shadow map's texture
 uniform float shadow_texel;   // side of a texel of the shadow map in the world [m], 0: no shadows
 uniform float shadow_size;    // texels on a side
@@ -60,31 +61,42 @@ out vec4 result;
 
 const float kSunSize = 0.06;  // the light's width as seen from its target: soft shadows
 
-vec2 spiral(int i, int n) {
-  float r = sqrt((float(i) + 0.5) / float(n)), a = 2.39996323 * float(i);
-  return r * vec2(cos(a), sin(a));
-}
+// Places spread evenly over a disc.
+const vec2 kDisc[16] = vec2[](
+    vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371),
+    vec2(-0.522, -0.092), vec2(0.495, -0.315), vec2(-0.165, 0.616), vec2(-0.316, -0.608),
+    vec2(0.685, 0.250), vec2(-0.712, 0.294), vec2(0.343, -0.734), vec2(0.254, 0.809),
+    vec2(-0.765, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779), vec2(-0.126, -0.976));
 
+// The share of the sun's light that arrives. Loops end early where nothing, or everything, is in the way: software
+// drivers skip what a loop leaves out, but not what a branch does.
 float sunlight(vec3 n) {
-  if (shadow_texel == 0.0) return 1.0;
+  const int kLooks = 8, kTaps = 16;
   vec4 place = to_shadow * vec4(world + 1.5 * shadow_texel * n, 1.0);
-  if (any(lessThan(place.xyz, vec3(0.0))) || any(greaterThan(place.xyz, vec3(1.0)))) return 1.0;
-  float bias = 1.0 * shadow_texel / shadow_depth_range;
+  bool outside = any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0)));
+  place.z = min(place.z, 1.0) - shadow_texel / shadow_depth_range;  // what is behind everything is behind
+  // Another turn for each pixel: grain is less seen than bands (interleaved gradient noise, Jimenez 2014).
+  float angle = 6.2832 * fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
+  mat2 turn = mat2(cos(angle), sin(angle), -sin(angle), cos(angle));
   // How far in front is what casts the shadow? The farther, the softer.
-  float search = 0.03 / (shadow_texel * shadow_size), blockers = 0.0, distance = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    float depth = texture(shadow_depth, place.xy + search * spiral(i, 8)).r;
-    if (depth < place.z - bias) {
+  float map_side = shadow_texel * shadow_size, blockers = 0.0, gap = 0.0;
+  mat2 search = 0.04 / map_side * turn;
+  int looks = outside || shadow_texel == 0.0 ? 0 : kLooks;
+  for (int i = 0; i < looks; ++i) {
+    float depth = texture(shadow_depth, place.xy + search * kDisc[2 * i]).r;
+    if (depth < place.z) {
       blockers += 1.0;
-      distance += place.z - depth;
+      gap += place.z - depth;
     }
   }
-  float gap = blockers > 0.0 ? distance / blockers * shadow_depth_range : 0.05;
-  float radius = clamp(kSunSize * gap, 1.2 * shadow_texel, 0.05) / (shadow_texel * shadow_size);
+  float radius = clamp(kSunSize * gap / max(blockers, 1.0) * shadow_depth_range, 1.2 * shadow_texel, 0.04) / map_side;
+  mat2 spread = radius * turn;
   float light = 0.0;
-  for (int i = 0; i < 16; ++i)
-    light += texture(shadow_compare, vec3(place.xy + radius * spiral(i, 16), place.z - bias));
-  return light / 16.0;
+  bool is_clear = blockers == 0.0, is_dark = blockers == float(kLooks);
+  int taps = is_clear || is_dark ? 0 : kTaps;
+  for (int i = 0; i < taps; ++i)
+    light += texture(shadow_compare, vec3(place.xy + spread * kDisc[i], place.z));
+  return is_clear ? 1.0 : is_dark ? 0.0 : light / float(kTaps);
 }
 
 // A square wave of period 2 and height 1, averaged over `width`.
@@ -100,14 +112,17 @@ vec3 fabric_color() {
   vec2 place = warp_weft / check_size;
   vec2 width = max(fwidth(place), vec2(1e-4));
   float dark = stripe(place.x, width.x) + stripe(place.y, width.y);
-  vec3 shade = mix(mix(color, vec3(1.0), 0.16), 0.62 * color, 0.5 * dark);
+  vec3 shade = mix(mix(color, vec3(1.0), 0.13), 0.55 * color, 0.5 * dark);
   vec2 yarn = warp_weft * 1200.0;
   float near = 1.0 - smoothstep(0.15, 0.5, max(fwidth(yarn.x), fwidth(yarn.y)));
   return shade * (1.0 - 0.25 * near * (0.5 - 0.5 * cos(6.2832 * yarn.x) * cos(6.2832 * yarn.y)));
 }
 
-vec3 film(vec3 light) {  // Narkowicz's fit of the ACES curve, then sRGB
-  vec3 c = clamp(light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14), 0.0, 1.0);
+// Linear up to a shoulder, above which light saturates softly; then sRGB.
+vec3 film(vec3 light) {
+  const float kShoulder = 0.7;
+  vec3 over = max(light - kShoulder, 0.0) / (1.0 - kShoulder);
+  vec3 c = min(light, kShoulder) + (1.0 - kShoulder) * (1.0 - exp(-over));
   return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 
@@ -121,7 +136,7 @@ void main() {
   vec3 light = mix(ground, sky, 0.5 + 0.5 * n.y) * open;
   light += sun * lit * max(facing, 0.0) * mix(open, 1.0, 0.5);
   if (is_fabric) {
-    light += 0.22 * base * sun * lit * max(-facing, 0.0);
+    light += 0.30 * sqrt(base) * sun * lit * max(-facing, 0.0);
     float rim = pow(1.0 - abs(dot(n, to_eye)), 4.0);
     light += 0.5 * rim * mix(ground, sky, 0.5 + 0.5 * n.y) * open;
   }
@@ -130,7 +145,7 @@ void main() {
     float s = pow(max(dot(n, normalize(to_sun + to_eye)), 0.0), 40.0);
     shine = 0.12 * s * sun * lit;
   }
-  vec3 c = film(0.36 * (base * light + shine));
+  vec3 c = film(exposure * (base * light + shine));
   if (kind == 2) c = mix(c, horizon, smoothstep(fade.x, fade.y, length(world.xz - eye.xz)));
   result = vec4(c, 1.0);
 }

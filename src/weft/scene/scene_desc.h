@@ -66,7 +66,7 @@ struct ClothSceneDesc {
   Vec3 position = Vec3::Zero();      // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
-  std::array<double, 3> color = {0.72, 0.16, 0.14};  // linear red, green, blue [0, 1]
+  std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
   std::vector<PinDesc> pins;
 };
 
