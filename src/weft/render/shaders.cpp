@@ -72,9 +72,12 @@ const vec2 kDisc[16] = vec2[](
 // drivers skip what a loop leaves out, but not what a branch does.
 float sunlight(vec3 n) {
   const int kLooks = 8, kTaps = 16;
-  vec4 place = to_shadow * vec4(world + 1.5 * shadow_texel * n, 1.0);
+  vec4 place = to_shadow * vec4(world + 4.0 * shadow_texel * n, 1.0);
   bool outside = any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0)));
-  place.z = min(place.z, 1.0) - shadow_texel / shadow_depth_range;  // what is behind everything is behind
+  place.z -= shadow_texel / shadow_depth_range;
+  // Beside this place the surface goes on along its tangent plane, and must not shade itself there.
+  vec3 across = mat3(to_shadow) * n;
+  vec2 slope = clamp(-across.xy / min(across.z, -1e-6), -4.0, 4.0);
   // Another turn for each pixel: grain is less seen than bands (interleaved gradient noise, Jimenez 2014).
   float angle = 6.2832 * fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
   mat2 turn = mat2(cos(angle), sin(angle), -sin(angle), cos(angle));
@@ -83,8 +86,9 @@ float sunlight(vec3 n) {
   mat2 search = 0.04 / map_side * turn;
   int looks = outside || shadow_texel == 0.0 ? 0 : kLooks;
   for (int i = 0; i < looks; ++i) {
-    float depth = texture(shadow_depth, place.xy + search * kDisc[2 * i]).r;
-    if (depth < place.z) {
+    vec2 beside = search * kDisc[2 * i];
+    float depth = texture(shadow_depth, place.xy + beside).r;
+    if (depth < min(place.z + dot(slope, beside), 1.0)) {  // the map ends at 1, the ground lies farther
       blockers += 1.0;
       gap += place.z - depth;
     }
@@ -94,8 +98,10 @@ float sunlight(vec3 n) {
   float light = 0.0;
   bool is_clear = blockers == 0.0, is_dark = blockers == float(kLooks);
   int taps = is_clear || is_dark ? 0 : kTaps;
-  for (int i = 0; i < taps; ++i)
-    light += texture(shadow_compare, vec3(place.xy + spread * kDisc[i], place.z));
+  for (int i = 0; i < taps; ++i) {
+    vec2 beside = spread * kDisc[i];
+    light += texture(shadow_compare, vec3(place.xy + beside, min(place.z + dot(slope, beside), 1.0)));
+  }
   return is_clear ? 1.0 : is_dark ? 0.0 : light / float(kTaps);
 }
 
@@ -205,15 +211,15 @@ void main() {
   ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
   float turn = 6.2832 / 16.0 * float(4 * ((cell.x + 2 * cell.y) & 3) + ((2 * cell.x + cell.y) & 3));
   float sum = 0.0;
-  const int kSamples = 12;
+  const int kSamples = 16;
   for (int i = 0; i < kSamples; ++i) {
     float r = (float(i) + 0.5) / float(kSamples), a = turn + 2.39996323 * float(i);
     vec3 v = in_view(place + r * reach * vec2(cos(a), sin(a))) - p;
     float near = max(radius * radius - dot(v, v), 0.0);
-    sum += near * near * near * max((dot(v, n) - 0.01 * radius) / (0.0001 * radius * radius + dot(v, v)), 0.0);
+    sum += near * near * near * max((dot(v, n) - 0.03 * radius) / (0.003 * radius * radius + dot(v, v)), 0.0);
   }
   float r6 = pow(radius, 6.0);
-  result = max(0.0, 1.0 - 3.2 * radius / r6 * sum / float(kSamples));
+  result = max(0.0, 1.0 - 5.0 * radius / r6 * sum / float(kSamples));
 }
 )";
 
@@ -230,10 +236,10 @@ float depth_at(vec2 at) {
 
 void main() {
   float here = depth_at(place), sum = 0.0, weights = 0.0;
-  for (int y = -2; y < 2; ++y) {
+  for (int y = -2; y < 2; ++y) {  // as wide as the pattern of turns
     for (int x = -2; x < 2; ++x) {
-      vec2 at = place + pixel * (vec2(x, y) + 0.5);
-      float weight = exp2(-40.0 * abs(depth_at(at) / here - 1.0));
+      vec2 at = place + pixel * vec2(x, y);
+      float weight = exp2(-25.0 * abs(depth_at(at) / here - 1.0));
       sum += weight * textureLod(occlusion, at, 0.0).r;
       weights += weight;
     }
