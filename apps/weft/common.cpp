@@ -23,6 +23,12 @@ void require_writable(const fs::path& file) {
   if (is_new) fs::remove(file, error);
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
+}
+
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 }  // namespace weft::app

@@ -9,6 +9,9 @@ namespace weft::app {
 /// pipe.
 void require_writable(const std::filesystem::path& file);
 
+/// The folder is there, or InputError.
+void make_folder(const std::filesystem::path& folder);
+
 /// Processors of this machine, at least 1.
 int num_processors();
 

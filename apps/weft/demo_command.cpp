@@ -3,12 +3,17 @@
 #include <memory>
 
 #include "commands.h"
+#include "painter.h"
 #include "progress.h"
 #include "run_command.h"
 #include "summary.h"
+#include "weft/io/glb_reader.h"
+#include "weft/render/video.h"
 
 namespace weft::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The paper's figures, each with its twin of real fabric.
 const std::vector<std::string> kScenes = {
@@ -16,25 +21,64 @@ const std::vector<std::string> kScenes = {
     "paper/fig5_falling",    "paper/fig5_falling_real",    "paper/fig6_ball",     "paper/fig6_ball_real",
 };
 
-int run_demo(const std::filesystem::path& out) {
-  fmt::print("The paper's four scenes, and each again with real fabric (_real).\n\n{}", table_head());
-  for (const std::string& scene : kScenes) {
-    const RunReport report = run_to_files({.scene = scene, .out = out / scene}).report;
-    fmt::print("{}", table_line(report));
-    std::fflush(stdout);
-    for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
-    if (report.outcome == RunOutcome::failed) fmt::print("  failed at {}\n", report.failure);
-    if (report.outcome != RunOutcome::done) return exit_code_of(report.outcome);
+const PictureSize kSize{640, 360};
+constexpr int kEvery = 2;  // frames of the videos
+
+/// A picture of the last frame and a video beside the animation.
+void paint(const FinishedRun& run) {
+  const fs::path folder = run.animation_file.parent_path();
+  const Animation animation = read_glb(run.animation_file);
+  Painter painter(animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
+  painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
+  const fs::path video = folder / "video.mp4";
+  require_ffmpeg(video);
+  painter.write_video(video, kEvery);
+}
+
+/// Pictures are no reason to stop: what prevents them is said once.
+class Pictures {
+ public:
+  void paint(const FinishedRun& run) {
+    if (!trouble_.empty()) return;
+    try {
+      app::paint(run);
+    } catch (const std::runtime_error& error) {
+      trouble_ = error.what();
+    }
   }
-  fmt::print("\nEach scene's animation.glb and report.json are in {}: open the .glb in any glTF viewer.\n",
-             (out / "paper").string());
+
+  void tell() const {
+    if (!trouble_.empty()) fmt::print("\nPictures or videos are missing: {}\n", trouble_);
+  }
+
+ private:
+  std::string trouble_;
+};
+
+int run_demo(const fs::path& out) {
+  fmt::print("The paper's four scenes, and each again with real fabric (_real).\n\n{}", table_head());
+  Pictures pictures;
+  for (const std::string& scene : kScenes) {
+    const FinishedRun run = run_to_files({.scene = scene, .out = out / scene});
+    fmt::print("{}", table_line(run.report));
+    std::fflush(stdout);
+    for (const std::string& warning : run.report.warnings) fmt::print("  warning: {}\n", warning);
+    if (run.report.outcome == RunOutcome::failed) fmt::print("  failed at {}\n", run.report.failure);
+    if (run.report.outcome != RunOutcome::done) return exit_code_of(run.report.outcome);
+    pictures.paint(run);
+  }
+  fmt::print(
+      "\nEach scene's picture.png, video.mp4, animation.glb (for any glTF viewer) and report.json are in "
+      "{}.\n",
+      (out / "paper").string());
+  pictures.tell();
   return kDone;
 }
 
 }  // namespace
 
 void add_demo_command(CLI::App& app, int& exit_code) {
-  auto out = std::make_shared<std::filesystem::path>("out");
+  auto out = std::make_shared<fs::path>("out");
   CLI::App* command = app.add_subcommand("demo", "Simulate the paper's scenes and their real-fabric twins");
   command->add_option("--out", *out, "Folder for the results")->type_name("DIR")->capture_default_str();
   command->callback([out, &exit_code] { exit_code = run_demo(*out); });

@@ -1,15 +1,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "commands.h"
 #include "common.h"
+#include "painter.h"
 #include "progress.h"
+#include "run_command.h"
 #include "weft/core/error.h"
 #include "weft/io/glb_reader.h"
-#include "weft/lab/scene_picture.h"
-#include "weft/render/renderer.h"
 #include "weft/render/video.h"
 #include "weft/run/runner.h"
 #include "weft/scene/scene_library.h"
@@ -20,8 +21,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kSheetGap = 6;  // between the pictures of a contact sheet [pixels]
 
 struct RenderRequest {
   std::string scene;  // a scene, a .glb file, or a folder with animation.glb
@@ -46,6 +45,11 @@ PictureSize parse_size(const std::string& text) {
   return size;
 }
 
+struct Footage {
+  Animation animation;
+  RunOutcome outcome;
+};
+
 /// An animation that was written by `weft run`, or one that is simulated now.
 class Source {
  public:
@@ -65,9 +69,9 @@ class Source {
       throw InputError("--springs needs a scene: " + file_.string() + " does not tell its springs");
   }
 
-  /// At least up to the last frame that is wanted.
-  Animation get() const {
-    if (!scene_) return read_glb(file_);
+  /// At least up to the last frame that is wanted, unless the simulation ends before.
+  Footage get() const {
+    if (!scene_) return {read_glb(file_), RunOutcome::done};
     RunOptions options{.threads = request_.threads > 0 ? request_.threads : num_processors()};
     if (!request_.frames.empty())
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
@@ -82,7 +86,7 @@ class Source {
     for (const std::string& warning : result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (result.report.outcome == RunOutcome::failed)
       fmt::print(stderr, "the simulation failed at {}\n", result.report.failure);
-    return std::move(result.animation);
+    return {std::move(result.animation), result.report.outcome};
   }
 
   std::vector<SpringsToDraw> springs() const {
@@ -100,82 +104,39 @@ class Source {
   fs::path file_;
 };
 
-Camera wanted_view(const RenderRequest& request) {
-  Camera camera;
-  if (request.camera.size() > 0) camera.azimuth_deg = request.camera[0];
-  if (request.camera.size() > 1) camera.elevation_deg = request.camera[1];
-  return camera;
+PaintSettings paint_settings(const RenderRequest& request, std::vector<SpringsToDraw> springs) {
+  PaintSettings settings{.size = parse_size(request.size)};
+  settings.style = {.transparent = request.transparent, .ground = {}, .springs = std::move(springs)};
+  if (request.camera.size() > 0) settings.view.azimuth_deg = request.camera[0];
+  if (request.camera.size() > 1) settings.view.elevation_deg = request.camera[1];
+  if (request.camera.size() > 2) settings.zoom = request.camera[2];
+  if (!(std::abs(settings.view.azimuth_deg) <= 360 && std::abs(settings.view.elevation_deg) < 90 &&
+        settings.zoom > 0)) {
+    throw InputError(
+        "--camera: expected azimuth from -360 to 360, elevation between -90 and 90 (degrees), zoom above 0");
+  }
+  return settings;
 }
 
-class Painter {
- public:
-  Painter(const RenderRequest& request, const Animation& animation, std::vector<SpringsToDraw> springs,
-          std::unique_ptr<Device> device)
-      : request_(request),
-        animation_(animation),
-        size_(parse_size(request.size)),
-        renderer_(std::move(device)),
-        pictures_(animation,
-                  {.transparent = request.transparent, .ground = {}, .springs = std::move(springs)}),
-        last_(num_frames(animation) - 1) {
-    if (last_ < 0) throw InputError("there is no cloth to draw");
-    camera_ = frame_scene(animation, 0, last_, wanted_view(request), size_.aspect());
-    if (request.camera.size() > 2) camera_.zoom(1 / request.camera[2]);
-  }
-
-  void write() {
-    if (is_video(request_.out))
-      write_video();
-    else
-      write_pictures();
-  }
-
- private:
-  Image draw(int frame) { return renderer_.draw(pictures_.at(frame, camera_), size_); }
-
-  void write_pictures() {
-    std::vector<int> frames = request_.frames;
-    if (frames.empty()) frames = {last_};
-    std::vector<Image> images;
-    for (const int frame : frames) {
-      if (frame > last_)
-        throw InputError("there is no frame " + std::to_string(frame) + "; the last one is " +
-                         std::to_string(last_));
-      images.push_back(draw(frame));
-    }
-    const int columns =
-        request_.columns > 0 ? request_.columns : std::min<int>(4, static_cast<int>(images.size()));
-    write_png(request_.out, images.size() == 1 ? images[0] : make_contact_sheet(images, columns, kSheetGap));
-  }
-
-  void write_video() {
-    VideoWriter video(request_.out, size_.width, size_.height, animation_.frames_per_second / request_.every);
-    for (int frame = 0; frame <= last_ && !interrupted(); frame += request_.every) video.add(draw(frame));
-    video.finish();
-  }
-
-  const RenderRequest& request_;
-  const Animation& animation_;
-  PictureSize size_;
-  Renderer renderer_;
-  ScenePictures pictures_;
-  int last_;
-  Camera camera_;
-};
-
-void render(const RenderRequest& request) {
-  parse_size(request.size);
-  if (request.out.extension() != ".png" && !is_video(request.out))
-    throw InputError("--out " + request.out.string() +
-                     ": expected a name that ends in .png, .mp4, .webp or .gif");
+/// Paints what there is, even if the simulation has failed; tells how that ended.
+RunOutcome render(const RenderRequest& request) {
+  require_picture(request.out);
+  paint_settings(request, {});  // throws
   const Source source(request);
   auto device = make_offscreen_device();  // now: no reason to simulate where nothing can be drawn
-  if (request.out.has_parent_path()) fs::create_directories(request.out.parent_path());
+  if (request.out.has_parent_path()) make_folder(request.out.parent_path());
   require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
-  const Animation animation = source.get();
-  Painter(request, animation, source.springs(), std::move(device)).write();
+  const auto [animation, outcome] = source.get();
+  Painter painter(animation, paint_settings(request, source.springs()), std::move(device));
+  if (is_video(request.out)) {
+    painter.write_video(request.out, request.every);
+  } else {
+    const std::vector<int> last = {painter.last_frame()};
+    painter.write_pictures(request.out, request.frames.empty() ? last : request.frames, request.columns);
+  }
   fmt::print("written {}\n", request.out.string());
+  return outcome;
 }
 
 }  // namespace
@@ -187,7 +148,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("SCENE", request->scene, "A scene, or what weft run left: a folder or its animation.glb")
       ->required();
-  command->add_option("--out", request->out, "A .png, .mp4, .webp or .gif file")
+  command->add_option("--out", request->out, "A .png, .jpg, .mp4, .webp or .gif file")
       ->type_name("FILE")
       ->capture_default_str();
   command
@@ -223,10 +184,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  command->callback([request, &exit_code] {
-    render(*request);
-    exit_code = kDone;
-  });
+  command->callback([request, &exit_code] { exit_code = exit_code_of(render(*request)); });
 }
 
 }  // namespace weft::app

@@ -23,13 +23,12 @@ constexpr const char* kReportName = "report.json";
 /// The folder is there and everything can be written, or InputError. Results of an earlier run in the folder
 /// go.
 void prepare_folder(const fs::path& folder, const fs::path& report) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
+  make_folder(folder);
   const std::array results = {folder / kAnimationName, folder / kReportName};
   for (const fs::path& file : results) require_writable(file);
   if (!report.empty()) require_writable(report);
   for (const fs::path& file : results) {
+    std::error_code error;
     fs::remove(file, error);
     if (error) throw InputError(file.string() + " of an earlier run cannot be replaced: " + error.message());
   }

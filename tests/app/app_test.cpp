@@ -1,68 +1,19 @@
 /// The program as a shell sees it: exit codes, words and files.
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 
+#include "tests/app/program.h"
 #include "weft/io/glb_writer.h"
 
+namespace weft {
 namespace {
-
-namespace fs = std::filesystem;
 
 const fs::path kShippedScenes = WEFT_SOURCE_DIR "/scenes";
 const fs::path kBrokenScenes = WEFT_SOURCE_DIR "/tests/scene/broken";
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-nlohmann::json read_json(const fs::path& file) { return nlohmann::json::parse(read_text(file)); }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-/// What a command left behind.
-struct Finished {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-/// Each test runs in an empty folder of its own.
-class App : public testing::Test {
- protected:
-  void SetUp() override {
-    const fs::path folder = fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    fs::current_path(folder);
-  }
-
-  /// Runs a shell command, in which "weft" is the program.
-  static Finished shell(const std::string& command) {
-    const std::string line = "weft() { '" WEFT_PROGRAM "' \"$@\"; }\n{ " + command + "\n} > stdout.txt 2> stderr.txt";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text("stdout.txt"), read_text("stderr.txt")};
-  }
-
-  /// Bad input: exit code 2, nothing on standard output, and these words on standard error.
-  static void expect_bad_input(const std::string& command, const std::string& words) {
-    const Finished done = shell(command);
-    EXPECT_EQ(done.exit_code, 2) << command;
-    EXPECT_EQ(done.out, "") << command;
-    EXPECT_TRUE(contains(done.err, words)) << command << "\nsaid: " << done.err << "expected: " << words;
-  }
-};
 
 TEST_F(App, RunWritesAnimationAndReport) {
   const Finished done = shell("weft run paper/fig6_ball --frames 3 --out results");
@@ -96,17 +47,21 @@ TEST_F(App, RunReplacesTheFilesOfAnEarlierRun) {
 
 TEST_F(App, BadInputLeavesTheFilesOfAnEarlierRun) {
   fs::create_directories("results");
-  for (const char* file : {"results/animation.glb", "results/report.json"}) std::ofstream(file) << "written before";
+  for (const char* file : {"results/animation.glb", "results/report.json"})
+    std::ofstream(file) << "written before";
   expect_bad_input("weft run paper/fig6_ball --out results --set solver.integrator=magic", "magic");
-  expect_bad_input("weft run paper/fig6_ball --out results --report no/such/folder.json", "no/such/folder.json");
+  expect_bad_input("weft run paper/fig6_ball --out results --report no/such/folder.json",
+                   "no/such/folder.json");
   EXPECT_EQ(read_text("results/animation.glb"), "written before");
   EXPECT_EQ(read_text("results/report.json"), "written before");
 }
 
 TEST_F(App, ReportOptionWritesTheReportOnceMore) {
-  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --report results/copy.json").exit_code, 0);
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --report results/copy.json").exit_code,
+            0);
   EXPECT_EQ(read_text("results/copy.json"), read_text("results/report.json"));
-  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --report /dev/stdout | grep -c state_hash").out, "1\n");
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --report /dev/stdout | grep -c state_hash").out,
+            "1\n");
 }
 
 TEST_F(App, SetChangesValuesOfTheScene) {
@@ -119,7 +74,8 @@ TEST_F(App, SetChangesValuesOfTheScene) {
 }
 
 TEST_F(App, ThreadsDoNotChangeTheResult) {
-  EXPECT_EQ(shell("for t in 1 2; do weft run paper/fig6_ball --frames 2 --threads $t --out $t; done").exit_code, 0);
+  EXPECT_EQ(
+      shell("for t in 1 2; do weft run paper/fig6_ball --frames 2 --threads $t --out $t; done").exit_code, 0);
   EXPECT_EQ(read_json("1/report.json")["state_hash"], read_json("2/report.json")["state_hash"]);
   EXPECT_EQ(read_json("2/report.json")["threads"], 2);
 }
@@ -137,7 +93,8 @@ TEST_F(App, FailedSimulationExitsWithOneAndSaysWhichClothWhenAndWhy) {
 
 TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
   const std::string broken = (kBrokenScenes / "typo_in_table_name.toml").string();
-  expect_bad_input("weft run '" + broken + "'", broken + ":5:3: unknown key \"cloht\"; did you mean \"cloth\"?");
+  expect_bad_input("weft run '" + broken + "'",
+                   broken + ":5:3: unknown key \"cloht\"; did you mean \"cloth\"?");
   expect_bad_input("weft run paper/fig6_bal", "did you mean \"paper/fig6_ball\"?");
   expect_bad_input("weft run .", "there is no scene file");
   expect_bad_input("weft run", "SCENE");
@@ -163,7 +120,8 @@ TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
   expect_bad_input(run + "--out file/results", "the folder file/results cannot be made: Not a directory");
   expect_bad_input(run + "--out /proc", "/proc/animation.glb cannot be written: ");
   expect_bad_input(run + "--out results", "results/animation.glb cannot be written: Is a directory");
-  expect_bad_input(run + "--report no/such/report.json", "no/such/report.json cannot be written: No such file");
+  expect_bad_input(run + "--report no/such/report.json",
+                   "no/such/report.json cannot be written: No such file");
   EXPECT_EQ(read_text("file"), "not a folder");
 }
 
@@ -189,7 +147,8 @@ TEST_F(App, InterruptSentTwiceInARowCountsOnce) {
 }
 
 TEST_F(App, InterruptEndsTheDemo) {
-  const Finished done = shell("timeout --preserve-status --signal=INT 1 '" WEFT_PROGRAM "' demo --out results");
+  const Finished done =
+      shell("timeout --preserve-status --signal=INT 1 '" WEFT_PROGRAM "' demo --out results");
   EXPECT_EQ(done.exit_code, 130) << done.err;
   EXPECT_TRUE(contains(done.out, "ms/frame")) << done.out;
 }
@@ -227,7 +186,8 @@ TEST_F(App, EarlyEndOfAPipeIsHarmless) {
 }
 
 TEST_F(App, CheckFindsEveryShippedSceneGood) {
-  const Finished done = shell("for scene in $(weft scenes | cut -d' ' -f1); do weft check $scene || exit 3; done");
+  const Finished done =
+      shell("for scene in $(weft scenes | cut -d' ' -f1); do weft check $scene || exit 3; done");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_FALSE(contains(done.out, "warning")) << done.out;
 }
@@ -286,8 +246,10 @@ TEST_F(App, VerifyFindsPlantedCrossings) {
   weft::write_glb("planted.glb", animation);
   const Finished done = shell("weft verify planted.glb");
   EXPECT_EQ(done.exit_code, 1) << done.err;
-  EXPECT_TRUE(contains(done.out, "3 frames; 1 frame with crossings, at worst 1 pair of triangles in frame 2")) << done.out;
-  EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 crosses cloth \"blade\" triangle 0")) << done.out;
+  EXPECT_TRUE(contains(done.out, "3 frames; 1 frame with crossings, at worst 1 pair of triangles in frame 2"))
+      << done.out;
+  EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 crosses cloth \"blade\" triangle 0"))
+      << done.out;
   EXPECT_EQ(shell("weft verify planted.glb --json | grep -c '\"clean\": false'").out, "1\n");
 }
 
@@ -300,7 +262,8 @@ TEST_F(App, VerifyRefusesWhatIsNoRun) {
 }
 
 TEST_F(App, BenchMeasures) {
-  const Finished done = shell("weft bench integrators --sizes 8 --threads 1 --seconds 0.01 --integrators paper");
+  const Finished done =
+      shell("weft bench integrators --sizes 8 --threads 1 --seconds 0.01 --integrators paper");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(contains(done.out, "paper")) << done.out;
 }
@@ -309,8 +272,10 @@ TEST_F(App, BenchComparesWaysToFindPairs) {
   const Finished done =
       shell("weft bench collision --sizes 200,1000 --cells 4 --threads 1,2 --seconds 0.001");
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
-  for (const char* word : {"rest", "folded", "heap", "sheets"}) EXPECT_TRUE(contains(done.out, word)) << done.out;
+  for (const char* word : {"rest", "folded", "heap", "sheets"})
+    EXPECT_TRUE(contains(done.out, word)) << done.out;
   EXPECT_FALSE(contains(done.out, "ERROR")) << done.out;
 }
 
 }  // namespace
+}  // namespace weft

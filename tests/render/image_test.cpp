@@ -20,7 +20,7 @@ Image make_image(int width, int height, int seed) {
 TEST(Png, ComesBackAsItWasWritten) {
   std::filesystem::create_directories(kFolder);
   const Image image = make_image(37, 11, 3);
-  write_png(kFolder / "round_trip.png", image);
+  write_image(kFolder / "round_trip.png", image);
   const Image back = read_png(kFolder / "round_trip.png");
   EXPECT_EQ(back.width, 37);
   EXPECT_EQ(back.height, 11);
@@ -29,7 +29,7 @@ TEST(Png, ComesBackAsItWasWritten) {
 
 TEST(Png, ThatCannotBeWrittenOrReadIsNamed) {
   try {
-    write_png(kFolder / "no such folder" / "a.png", make_image(2, 2, 0));
+    write_image(kFolder / "no such folder" / "a.png", make_image(2, 2, 0));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("a.png cannot be written: No such file"), std::string::npos)
@@ -38,7 +38,7 @@ TEST(Png, ThatCannotBeWrittenOrReadIsNamed) {
   std::ofstream(kFolder / "text.png") << "no picture";
   EXPECT_THROW(read_png(kFolder / "text.png"), InputError);
   if (std::filesystem::exists("/dev/full")) {
-    EXPECT_THROW(write_png("/dev/full", make_image(64, 64, 0)), InputError) << "a full disk is told";
+    EXPECT_THROW(write_image("/dev/full", make_image(64, 64, 0)), InputError) << "a full disk is told";
   }
 }
 

@@ -198,7 +198,7 @@ TEST_F(Offscreen, TheStillLifeLooksAsItDid) {
   const std::filesystem::path reference = WEFT_SOURCE_DIR "/tests/render/still_life.png";
   const Image image = picture_of(make_still_life(), {480, 270});
   std::filesystem::create_directories(WEFT_OUTPUT_DIR);
-  write_png(WEFT_OUTPUT_DIR "/still_life.png", image);
+  write_image(WEFT_OUTPUT_DIR "/still_life.png", image);
   // Two drivers differ by less than half a step on average; lost shadows make 5.7.
   EXPECT_LT(difference(image, read_png(reference)), 0.5)
       << "look at " << WEFT_OUTPUT_DIR << "/still_life.png, and copy it to " << reference

@@ -40,14 +40,21 @@ Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap)
   return sheet;
 }
 
-void write_png(const std::filesystem::path& file, const Image& image) {
+bool is_picture(const std::filesystem::path& file) {
+  return file.extension() == ".png" || file.extension() == ".jpg";
+}
+
+void write_image(const std::filesystem::path& file, const Image& image) {
+  constexpr int kJpegQuality = 92;
   errno = 0;
   std::ofstream out(file, std::ios::binary);
   const auto write = [](void* stream, void* data, int size) {
     static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(data), size);
   };
-  const bool done = out && stbi_write_png_to_func(write, &out, image.width, image.height, 4,
-                                                  image.rgba.data(), 4 * image.width) != 0;
+  const int done = file.extension() == ".jpg" ? stbi_write_jpg_to_func(write, &out, image.width, image.height,
+                                                                       4, image.rgba.data(), kJpegQuality)
+                                              : stbi_write_png_to_func(write, &out, image.width, image.height,
+                                                                       4, image.rgba.data(), 4 * image.width);
   if (done && out.flush()) return;
   throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
 }

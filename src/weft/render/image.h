@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures in memory, and as PNG files.
+/// Pictures in memory, and as files.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,8 +24,13 @@ struct Image {
 /// Pictures of one size side by side in rows of `columns` (>= 1), `gap` pixels of white apart.
 Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap);
 
-/// Throws InputError if the file cannot be written or is no PNG.
-void write_png(const std::filesystem::path& file, const Image& image);
+/// Whether the file's ending is one that write_image knows: .png, or .jpg, which forgets alpha.
+bool is_picture(const std::filesystem::path& file);
+
+/// Throws InputError if the file cannot be written.
+void write_image(const std::filesystem::path& file, const Image& image);
+
+/// Throws InputError if the file cannot be read or is no PNG.
 Image read_png(const std::filesystem::path& file);
 
 }  // namespace weft

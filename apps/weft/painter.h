@@ -1,0 +1,49 @@
+#pragma once
+/// Animations as picture files; what `weft render` and `weft demo` share.
+
+#include <filesystem>
+#include <vector>
+
+#include "weft/lab/scene_picture.h"
+#include "weft/render/renderer.h"
+
+namespace weft::app {
+
+/// Whether files of this kind can be painted: .png, .jpg, or a video. Throws InputError, naming the kinds, if
+/// not.
+void require_picture(const std::filesystem::path& file);
+
+struct PaintSettings {
+  PictureSize size;
+  Camera view;      // how it is turned; its place follows from the scene
+  double zoom = 1;  // > 1: nearer [1]
+  SceneStyle style;
+};
+
+/// Draws the frames of an animation, which must outlive this, with one camera that sees all of them.
+class Painter {
+ public:
+  /// Throws GraphicsError where nothing can be drawn, InputError for an animation without cloth.
+  Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device);
+
+  /// One frame, or several as a contact sheet with so many columns (0: at most four). Throws InputError for
+  /// frames that do not exist.
+  void write_pictures(const std::filesystem::path& file, const std::vector<int>& frames, int columns);
+
+  /// Every so many frames, until the end or an interrupt.
+  void write_video(const std::filesystem::path& file, int every);
+
+  int last_frame() const { return last_; }
+
+ private:
+  Image draw(int frame);
+
+  const Animation& animation_;
+  PictureSize size_;
+  Renderer renderer_;
+  ScenePictures pictures_;
+  int last_;
+  Camera camera_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,63 @@
+#pragma once
+/// The program as a shell sees it.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace weft {
+
+namespace fs = std::filesystem;
+
+inline std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline nlohmann::json read_json(const fs::path& file) { return nlohmann::json::parse(read_text(file)); }
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// What a command left behind.
+struct Finished {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// Each test runs in an empty folder of its own.
+class App : public testing::Test {
+ protected:
+  void SetUp() override {
+    const fs::path folder =
+        fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::current_path(folder);
+  }
+
+  /// Runs a shell command, in which "weft" is the program.
+  static Finished shell(const std::string& command) {
+    const std::string line =
+        "weft() { '" WEFT_PROGRAM "' \"$@\"; }\n{ " + command + "\n} > stdout.txt 2> stderr.txt";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text("stdout.txt"), read_text("stderr.txt")};
+  }
+
+  /// Bad input: exit code 2, nothing on standard output, and these words on standard error.
+  static void expect_bad_input(const std::string& command, const std::string& words) {
+    const Finished done = shell(command);
+    EXPECT_EQ(done.exit_code, 2) << command;
+    EXPECT_EQ(done.out, "") << command;
+    EXPECT_TRUE(contains(done.err, words)) << command << "\nsaid: " << done.err << "expected: " << words;
+  }
+};
+
+}  // namespace weft

@@ -1,0 +1,97 @@
+/// `weft render` and the pictures of `weft demo`, as a shell sees them.
+
+#include "tests/app/program.h"
+#include "weft/render/device.h"
+#include "weft/render/image.h"
+
+namespace weft {
+namespace {
+
+const std::string kQuick = " --set cloth[0].grid.cells=[8,8] --set solver.steps_per_frame=20";
+
+class Render : public App {
+ protected:
+  void SetUp() override {
+    App::SetUp();
+    try {
+      make_offscreen_device();
+    } catch (const GraphicsError& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+};
+
+TEST_F(Render, DrawsAFrameOfTheSizeThatWasAskedFor) {
+  const Finished done =
+      shell("weft render paper/fig6_ball --frame 4 --size 320x200 --out a/ball.png" + kQuick);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "a/ball.png"));
+  const Image image = read_png("a/ball.png");
+  EXPECT_EQ(image.width, 320);
+  EXPECT_EQ(image.height, 200);
+  EXPECT_EQ(image.pixel(0, 0)[3], 255);
+}
+
+TEST_F(Render, DrawsAContactSheetOfAnEarlierRunWithoutSimulating) {
+  ASSERT_EQ(shell("weft run paper/fig3_horizontal --frames 6 --out done" + kQuick).exit_code, 0);
+  EXPECT_EQ(shell("weft render done --frames 0,3,6 --columns 2 --size 100x80 --transparent --out sheet.png")
+                .exit_code,
+            0);
+  const Image sheet = read_png("sheet.png");
+  EXPECT_GE(sheet.width, 200);
+  EXPECT_LT(sheet.width, 220);
+  EXPECT_GE(sheet.height, 160);
+  EXPECT_EQ(sheet.pixel(0, 0)[3], 0) << "transparent";
+  EXPECT_EQ(shell("weft render done/animation.glb --frame 2 --out b.jpg").exit_code, 0);
+}
+
+TEST_F(Render, MakesAVideo) {
+  if (shell("ffprobe -version").exit_code != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  EXPECT_EQ(shell("weft render paper/fig6_ball --frames 6 --every 2 --size 100x80 --out ball.mp4" + kQuick)
+                .exit_code,
+            0);
+  const Finished probe = shell(
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height,avg_frame_rate -of "
+      "csv=p=0 ball.mp4");
+  EXPECT_EQ(probe.out, "100,80,30/1,4\n") << probe.err;
+}
+
+TEST_F(Render, DrawsSprings) {
+  EXPECT_EQ(shell("weft render paper/fig4_vertical --frame 0 --springs --out springs.png" + kQuick).exit_code,
+            0);
+  EXPECT_TRUE(fs::exists("springs.png"));
+}
+
+TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
+  expect_bad_input("weft render paper/fig6_ball --out film.avi", "film.avi: expected a name that ends in");
+  expect_bad_input("weft render paper/fig6_ball --size big", "--size big: expected WIDTHxHEIGHT");
+  expect_bad_input("weft render paper/fig6_ball --camera 0,95", "elevation between -90 and 90");
+  expect_bad_input("weft render no/such/scene", "no/such/scene");
+  expect_bad_input("mkdir d; weft render d", "d/animation.glb");
+  expect_bad_input("touch f; weft render paper/fig6_ball --out f/a.png", "f");
+  if (fs::exists("/proc/version"))
+    expect_bad_input("weft render paper/fig6_ball --out /proc/a.png", "/proc/a.png");
+}
+
+TEST_F(Render, AFrameThatIsNotThereIsNamed) {
+  ASSERT_EQ(shell("weft run paper/fig3_horizontal --frames 2 --out done" + kQuick).exit_code, 0);
+  expect_bad_input("weft render done --frame 7 --out a.png", "there is no frame 7; the last one is 2");
+  expect_bad_input("weft render done --springs --out a.png", "--springs needs a scene");
+  expect_bad_input("weft render done --set scene.fps=3 --out a.png", "--set has no meaning");
+}
+
+TEST_F(Render, WithoutFfmpegAVideoIsRefusedWithAdvice) {
+  expect_bad_input("PATH=/nowhere weft render paper/fig6_ball --out a.mp4",
+                   "needs the program ffmpeg, which is not installed");
+}
+
+TEST_F(App, RenderWithoutOpenGlSaysWhatToInstall) {
+  const Finished done = shell("__EGL_VENDOR_LIBRARY_DIRS=/nowhere weft render paper/fig6_ball --out a.png");
+  if (done.exit_code == 0) GTEST_SKIP() << "this EGL does not look for vendors";
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_TRUE(contains(done.err, "libgl1-mesa-dri")) << done.err;
+  EXPECT_FALSE(fs::exists("a.png"));
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Makes the pictures of the README and of docs/ (in docs/images) from the scenes that ship.
+#   tools/make_pictures.sh PROGRAM FOLDER
+set -euo pipefail
+weft=$1
+images=$2
+mkdir -p "$images"
+
+# The paper's Figures 1 and 2: springs of the basic and of the simplified model.
+for model in basic simplified; do
+  "$weft" render paper/fig3_horizontal --frame 0 --springs --camera 0,70,0.9 --size 640x480 --out "$images/$model.jpg" \
+    --set 'cloth[0].grid.cells=[5,4]' --set "cloth[0].model=$model"
+done
+
+# Figures 3 to 6, each at the start and twice on the way.
+"$weft" render paper/fig3_horizontal --frames 0,22,45 --columns 3 --size 480x360 --out "$images/fig3_horizontal.jpg"
+"$weft" render paper/fig4_vertical --frames 0,30,90 --columns 3 --size 480x360 --out "$images/fig4_vertical.jpg"
+"$weft" render paper/fig5_falling --frames 0,20,40 --columns 3 --size 480x360 --out "$images/fig5_falling.jpg"
+"$weft" render paper/fig6_ball --frames 0,26,120 --columns 3 --size 480x360 --out "$images/fig6_ball.jpg"
+
+# The moving picture at the top of the README.
+"$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22,1.25 --out "$images/weft.webp"
