@@ -2,12 +2,13 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help demo test scenes build asan tsan fuzz format clean
+.PHONY: help demo test scenes pictures build asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
 	@echo "make test    install what is missing, build, run all tests"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
+	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (minutes)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (minutes)"
 	@echo "make fuzz    fuzz the scene and OBJ readers, FUZZ_SECONDS each (default 60)"
@@ -26,6 +27,9 @@ test: build
 
 scenes: build
 	@tools/check_scenes.sh build/release/bin/weft
+
+pictures: build
+	@tools/make_pictures.sh build/release/bin/weft docs/images
 
 asan tsan:
 	@tools/install_deps.sh
