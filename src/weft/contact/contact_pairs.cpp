@@ -201,7 +201,7 @@ bool ContactSystem::is_close(double distance, double gap, const Constraint& c,
 /// False if nothing of the pair can move.
 bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) const {
   const int first = c.vertex[0], last = c.vertex[3];
-  for (int k = 0; k < 4; ++k) c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+  c.inverse_mass = c.inverse_mass_of(inverse_mass_);
   if (c.inverse_mass == 0) return false;
   const bool is_body = std::max(first, last) >= first_vertex_.back();
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
