@@ -11,7 +11,7 @@ help:
 	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (minutes)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (minutes)"
-	@echo "make fuzz    fuzz the scene and OBJ readers, FUZZ_SECONDS each (default 60)"
+	@echo "make fuzz    fuzz the readers of scenes, OBJ and .glb, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
 
 build:

@@ -7,6 +7,7 @@
 
 #include "tests/support.h"
 #include "weft/geometry/distance.h"
+#include "weft/mesh/clean.h"
 #include "weft/mesh/solid.h"
 #include "weft/world/measures.h"
 
@@ -140,6 +141,49 @@ TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
 INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
                          testing::Values("explicit", "paper_fixed", "implicit_euler"),
                          [](const auto& test) { return std::string(test.param); });
+
+/// The height of a sheet's lowest particle over the top face of a box of 0.4 m around the origin, which is
+/// part of `mesh`, after a second; it starts around `middle`.
+double lowest_over_box(const TriangleMesh& mesh, const Vec3& middle) {
+  World world;
+  world.set_integrator(settings("implicit_euler"));
+  MeshShape shape;
+  shape.mesh = std::make_shared<const TriangleMesh>(mesh);
+  world.add_collider({"body", shape, 0.3, {}});
+  const ClothId cloth = add_sheet(world, middle, 4, 0.1);
+  for (int s = 0; s < 60; ++s) EXPECT_TRUE(world.step(1.0 / 60).ok);
+  double lowest = 1;
+  for (int i = 0; i < world.model(cloth).num_particles(); ++i) {
+    lowest = std::min(lowest, world.state(cloth).position(i).y() - 0.2);
+  }
+  return lowest;
+}
+
+TriangleMesh welded_box(const Vec3& center) {
+  return clean_mesh(make_box_mesh(center, Vec3::Constant(0.2), Mat3::Identity()), {.weld_distance = 1e-9})
+      .mesh;
+}
+
+TEST(ContactSystem, PushesClothOutOfSolidsThatMeetAtAnEdge) {
+  // The edge between them has four triangles. Both are solids all the same, and their outside is known. The
+  // cloth lies on one triangle: of edges no side is known.
+  TriangleMesh two = welded_box(Vec3::Zero());
+  const TriangleMesh other = welded_box({0.4, -0.4, 0});
+  two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
+  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({8 + a, 8 + b, 8 + c});
+  two = clean_mesh(two, {.weld_distance = 1e-9}).mesh;
+  ASSERT_EQ(two.num_vertices(), 14);
+  EXPECT_GT(lowest_over_box(two, {0.1, 0.1997, -0.1}), 0);
+}
+
+TEST(ContactSystem, DoesNotDrawClothInAtATriangleThatFacesTheWrongWay) {
+  // Which side is outside is not known then: cloth is held off where it comes from.
+  for (std::size_t t = 0; t < 12; ++t) {
+    TriangleMesh twisted = welded_box(Vec3::Zero());
+    std::swap(twisted.triangles[t][0], twisted.triangles[t][1]);
+    EXPECT_GT(lowest_over_box(twisted, {0.01, 0.205, 0.01}), 0) << "triangle " << t;
+  }
+}
 
 TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
   // An open roof of two planes under a sheet whose middle row lies exactly along the ridge: the row's

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tests/support.h"
 #include "weft/world/measures.h"
@@ -110,15 +110,16 @@ TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {
   EXPECT_GT(gap, 0.007);  // recovered by a share per step, most of it in 0.3 s
 }
 
-/// Steps up to `most` times or until a step fails; all of it in bounded time.
+/// Steps up to `most` times or until a step fails; all of it in bounded time, that of the
+/// processor: the machine may be busy.
 StepReport run(World& world, double dt, int most) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   StepReport report;
   for (int s = 0; s < most && report.ok; ++s) {
     report = world.step(dt);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(seconds.count(), 60) << "a step that hangs is a fault; the machine may be slow";
-    if (seconds.count() > 60) break;
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    EXPECT_LT(seconds, 60) << "a step that hangs is a fault; sanitizers may make it slow";
+    if (seconds > 60) break;
   }
   return report;
 }

@@ -159,5 +159,43 @@ TEST(GlbReader, NamesTheFileAndWhatIsWrong) {
   EXPECT_NE(changed("\"POSITION\"", "\"POTITION\"").find("no positions"), std::string::npos);
 }
 
+/// What parse_glb says of a file with this text and these numbers behind it.
+std::string complaint_of_parts(std::string text, std::string numbers) {
+  const auto word = [](std::size_t value) {
+    std::string bytes;
+    for (int k = 0; k < 4; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xff);
+    return bytes;
+  };
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  numbers.resize((numbers.size() + 3) / 4 * 4, '\0');
+  const std::string chunks =
+      word(text.size()) + "JSON" + text + word(numbers.size()) + std::string("BIN\0", 4) + numbers;
+  const std::string bytes = "glTF" + word(2) + word(12 + chunks.size()) + chunks;
+  try {
+    parse_glb({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, "made.glb");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GlbReader, NamesWhatIsWrongWithFilesThatNobodyWouldWrite) {
+  const std::string head = R"({"asset":{"version":"2.0"},)";
+  EXPECT_NE(complaint_of_parts(head + R"("buffers":[]})", "1234").find("made.glb: has no cloth"),
+            std::string::npos);
+  // tinygltf throws at an empty buffer, calls itself for each bracket, and reads whatever file it is told to.
+  const std::string outside = testing::TempDir() + "weft_outside.bin";
+  std::ofstream(outside) << "1234";
+  const std::string broken[] = {
+      R"("buffers":[{"byteLength":0}]})",
+      R"("extras":)" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}",
+      R"("buffers":[{"byteLength":4,"uri":")" + outside + R"("}]})"};
+  for (const std::string& tail : broken) {
+    EXPECT_NE(complaint_of_parts(head + tail, "1234").find("made.glb: is no complete .glb file"),
+              std::string::npos)
+        << tail.substr(0, 100);
+  }
+}
+
 }  // namespace
 }  // namespace weft

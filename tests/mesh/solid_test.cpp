@@ -38,13 +38,32 @@ TEST(SurfaceEdges, CountBordersTwistedTrianglesAndFins) {
   TriangleMesh twisted = box(Vec3::Zero(), 1);
   std::swap(twisted.triangles[4][0], twisted.triangles[4][1]);
   EXPECT_EQ(count_surface_edges(twisted).twisted, 3);
-  EXPECT_TRUE(is_closed(count_surface_edges(twisted)));
+  EXPECT_FALSE(is_closed(count_surface_edges(twisted))) << "one triangle's inside is the others' outside";
 
   TriangleMesh finned = box(Vec3::Zero(), 1);
   finned.positions.emplace_back(0, 0, 9);
   finned.triangles.push_back({finned.triangles[0][0], finned.triangles[0][1], 8});
   EXPECT_EQ(count_surface_edges(finned).non_manifold, 1);
   EXPECT_EQ(count_surface_edges(finned).border, 2);
+  EXPECT_FALSE(is_closed(count_surface_edges(finned)));
+}
+
+TEST(SurfaceEdges, OfTwoSolidsThatMeetAtAnEdgeStillClose) {
+  const TriangleMesh two =
+      clean_mesh(join(box(Vec3::Zero(), 1), box(Vec3(2, 2, 0), 1)), {.weld_distance = 0}).mesh;
+  EXPECT_EQ(count_surface_edges(two).non_manifold, 1);
+  EXPECT_TRUE(is_closed(count_surface_edges(two)));
+}
+
+TEST(SurfaceEdges, OfASolidWithAWallInsideDoNotClose) {
+  TriangleMesh walled = box(Vec3::Zero(), 1);
+  const auto [a, b, c] = walled.triangles[0];
+  walled.positions.emplace_back(0, 0, 0);
+  walled.triangles.insert(walled.triangles.end(), {{a, b, 8}, {b, c, 8}, {c, a, 8}});
+  const SurfaceEdges edges = count_surface_edges(walled);
+  EXPECT_EQ(edges.non_manifold, 3);
+  EXPECT_EQ(edges.border + edges.twisted, 0);
+  EXPECT_FALSE(is_closed(edges));
 }
 
 TEST(SignedVolume, IsThatOfTheSolidWhereverItLies) {

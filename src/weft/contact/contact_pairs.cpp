@@ -93,7 +93,8 @@ bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
 /// At the start only with the foot inside the triangle: towards its border the direction would lie sideways
 /// and make cloth sticky. What is beyond is the neighbouring triangles' or the edges' matter.
 bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c) const {
-  const auto [i, j, k] = proximity_.surface().triangles[pair.b];
+  const Triangle& triangle = proximity_.surface().triangles[pair.b];
+  const int i = triangle[0], j = triangle[1], k = triangle[2];
   const std::vector<Vec3>& x = motion_.start;
   c.num_vertices = 4;
   c.vertex = {i, j, k, pair.a};
@@ -128,8 +129,8 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
 }
 
 bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const {
-  const auto [i, j] = proximity_.surface().edges[pair.a];
-  const auto [k, l] = proximity_.surface().edges[pair.b];
+  const std::array<int, 2>&a = proximity_.surface().edges[pair.a], &b = proximity_.surface().edges[pair.b];
+  const int i = a[0], j = a[1], k = b[0], l = b[1];
   const std::vector<Vec3>& x = motion_.start;
   c.num_vertices = 4;
   c.vertex = {i, j, k, l};
@@ -201,7 +202,7 @@ bool ContactSystem::is_close(double distance, double gap, const Constraint& c,
 /// False if nothing of the pair can move.
 bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) const {
   const int first = c.vertex[0], last = c.vertex[3];
-  for (int k = 0; k < 4; ++k) c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+  c.inverse_mass = c.inverse_mass_of(inverse_mass_);
   if (c.inverse_mass == 0) return false;
   const bool is_body = std::max(first, last) >= first_vertex_.back();
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;

@@ -131,9 +131,7 @@ void ContactSystem::take_plane(Constraint& c) const {
   c.weight = nearest.weight;
   c.target = c.normal.dot(nearest.foot) + motion_.half_thickness[c.vertex[0]];
   c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
-  c.inverse_mass = 0;
-  for (int k = 0; k < c.num_vertices; ++k)
-    c.inverse_mass += c.weight[k] * c.weight[k] * inverse_mass_[c.vertex[k]];
+  c.inverse_mass = c.inverse_mass_of(inverse_mass_);
 }
 
 }  // namespace weft

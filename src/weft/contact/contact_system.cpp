@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/mesh/solid.h"
+
 namespace weft {
 namespace {
 
@@ -93,11 +95,8 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     const MeshShape* shape = std::get_if<MeshShape>(&colliders[c].shape);
     if (!shape) continue;
     numbered_meshes_.push_back(shape->mesh);
-    const std::vector<Edge> edges = build_edges(*shape->mesh);
-    const bool is_closed =
-        std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.num_triangles == 2; });
-    bodies_.push_back(
-        {c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(), is_closed});
+    bodies_.push_back({c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(),
+                       is_closed(count_surface_edges(*shape->mesh))});
     surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
   }
   surface.build_fans();
@@ -161,6 +160,7 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
   const Vec3& origin = cloths_[cloth].state->origin;
   const double h = step_.step;
   for (const Constraint& c : constraints_) {
+    if (c.inverse_mass_of(inverse_mass_, begin, end) == 0) continue;
     Contact contact;
     contact.num_particles = 0;
     contact.normal = c.normal;
@@ -168,7 +168,6 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
     contact.grip = h * c.surface_velocity;
     contact.friction = c.friction;
     contact.stiffness = (c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h);
-    double own_inverse_mass = 0;
     for (int k = 0; k < c.num_vertices; ++k) {
       const int v = c.vertex[k];
       const double w = c.weight[k];
@@ -177,13 +176,12 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
         contact.weight[contact.num_particles++] = w;
         contact.offset -= w * c.normal.dot(origin);
         contact.grip += w * (motion_.start[v] - origin);
-        own_inverse_mass += w * w * inverse_mass_[v];
       } else {
         contact.offset -= w * c.normal.dot(motion_.end[v]);
         contact.grip -= w * (motion_.end[v] - motion_.start[v]);
       }
     }
-    if (own_inverse_mass > 0) contacts.push_back(contact);
+    contacts.push_back(contact);
   }
 }
 

@@ -160,61 +160,72 @@ void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPa
   }
 }
 
+/// How near two features must be at the start to become close during the step, but for their travel; v and w
+/// are any vertices of theirs.
+double Proximity::reach_between(const SurfaceMotion& motion, int v, int w) const {
+  return motion.half_thickness[v] + motion.half_thickness[w] + 2 * slack_;
+}
+
+/// distance(x) is that of the two features where vertices are at x. Neighbours on the mesh, in one fan, may
+/// always come nearer than at rest.
+template <class Distance>
+void Proximity::add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
+                         const Distance& distance, std::vector<FeaturePair>& pairs) {
+  if (distance(motion.start).distance_sq > reach * reach) return;
+  if (is_fan) pair.max_gap = kShareOfRest * static_cast<float>(distance(rest_).distance());
+  pairs.push_back(pair);
+}
+
 void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan) {
   if (!vertex_box_[vertex].overlaps(box_of_triangle(triangle))) return;
-  const auto [i, j, k] = surface_.triangles[triangle];
-  const std::vector<Vec3>& x = motion.start;
-  const double reach = motion.half_thickness[vertex] + motion.half_thickness[i] + 2 * slack_ +
-                       travel_[vertex] + std::max({travel_[i], travel_[j], travel_[k]});
-  if (point_triangle_distance(x[vertex], x[i], x[j], x[k]).distance_sq > reach * reach) return;
-  FeaturePair pair{vertex, triangle};
-  if (is_fan) {
-    const double rest = point_triangle_distance(rest_[vertex], rest_[i], rest_[j], rest_[k]).distance();
-    pair.max_gap = kShareOfRest * static_cast<float>(rest);
-  }
-  vertex_triangle_.push_back(pair);
+  const Triangle& t = surface_.triangles[triangle];
+  const double reach = reach_between(motion, vertex, t[0]) + travel_[vertex] +
+                       std::max({travel_[t[0]], travel_[t[1]], travel_[t[2]]});
+  const auto distance = [&](const std::vector<Vec3>& x) {
+    return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
+  };
+  add_pair(motion, {vertex, triangle}, reach, is_fan, distance, vertex_triangle_);
 }
 
 void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan) {
-  const auto [i, j] = surface_.edges[a];
-  const auto [k, l] = surface_.edges[b];
-  if (i == k || i == l || j == k || j == l) return;
-  Aabb box_a = vertex_box_[i], box_b = vertex_box_[k];
-  box_a.merge(vertex_box_[j]);
-  box_b.merge(vertex_box_[l]);
+  const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
+  if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
+  Aabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
+  box_a.merge(vertex_box_[e[1]]);
+  box_b.merge(vertex_box_[f[1]]);
   if (!box_a.overlaps(box_b)) return;
-  const std::vector<Vec3>& x = motion.start;
-  const double reach = motion.half_thickness[i] + motion.half_thickness[k] + 2 * slack_ +
-                       std::max(travel_[i], travel_[j]) + std::max(travel_[k], travel_[l]);
-  if (edge_edge_distance(x[i], x[j], x[k], x[l]).distance_sq > reach * reach) return;
-  FeaturePair pair{a, b};
-  if (is_fan) {
-    const double rest = edge_edge_distance(rest_[i], rest_[j], rest_[k], rest_[l]).distance();
-    pair.max_gap = kShareOfRest * static_cast<float>(rest);
+  const double reach = reach_between(motion, e[0], f[0]) + std::max(travel_[e[0]], travel_[e[1]]) +
+                       std::max(travel_[f[0]], travel_[f[1]]);
+  const auto distance = [&](const std::vector<Vec3>& x) {
+    return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
+  };
+  add_pair(motion, {a, b}, reach, is_fan, distance, edge_edge_);
+}
+
+/// Marks the vertices at which the cloth makes a point, where it is at x.
+void Proximity::mark_sharp(const std::vector<Vec3>& x) {
+  std::vector<Vec3>& normal = fan_normal_;
+  normal.resize(num_cloth_triangles_);
+  for (int t = 0; t < num_cloth_triangles_; ++t) {
+    const auto [i, j, k] = surface_.triangles[t];
+    normal[t] = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
   }
-  edge_edge_.push_back(pair);
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    Vec3 sum = Vec3::Zero();
+    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) sum += normal[surface_.fan[f]];
+    const double length = sum.norm();
+    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
+      if (!(normal[surface_.fan[f]].dot(sum) >= kSharp * length)) is_sharp_[v] = 1;
+    }
+  }
 }
 
 /// Triangles that share a vertex are not reported by the tree. They matter only where the cloth makes a
 /// point.
 void Proximity::add_fans(const SurfaceMotion& motion) {
   is_sharp_.assign(num_cloth_vertices_, 0);
-  std::vector<Vec3>& normal = fan_normal_;
-  for (const std::vector<Vec3>* x : {&motion.start, &motion.end}) {
-    normal.resize(num_cloth_triangles_);
-    for (int t = 0; t < num_cloth_triangles_; ++t) {
-      const auto [i, j, k] = surface_.triangles[t];
-      normal[t] = ((*x)[j] - (*x)[i]).cross((*x)[k] - (*x)[i]).stableNormalized();
-    }
-    for (int v = 0; v < num_cloth_vertices_; ++v) {
-      Vec3 sum = Vec3::Zero();
-      for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) sum += normal[surface_.fan[f]];
-      const double length = sum.norm();
-      for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
-        if (!(normal[surface_.fan[f]].dot(sum) >= kSharp * length)) is_sharp_[v] = 1;
-      }
-    }
-  }
+  mark_sharp(motion.start);
+  mark_sharp(motion.end);
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     if (!is_sharp_[v]) continue;
     for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {

@@ -58,6 +58,11 @@ class Proximity {
   void add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan);
   void add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan);
   void add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan);
+  template <class Distance>
+  void add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
+                const Distance& distance, std::vector<FeaturePair>& pairs);
+  double reach_between(const SurfaceMotion& motion, int v, int w) const;
+  void mark_sharp(const std::vector<Vec3>& x);
   void add_fans(const SurfaceMotion& motion);
   Aabb box_of_triangle(int triangle) const;
 

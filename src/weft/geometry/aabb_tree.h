@@ -111,7 +111,7 @@ class AabbTree {
   /// Calls visit(item) for all items whose boxes overlap `box`.
   template <class Visit>
   void for_each_overlapping(const Aabb& box, const Visit& visit) const {
-    descend([&](const Aabb& node) { return node.overlaps(box); }, visit);
+    descend([&](const Aabb& node) { return node.overlaps(box); }, always_left_first, visit);
   }
 
   /// Calls visit(item) for all items whose boxes the ray may meet: { origin + t direction : 0 <= t <= max_t
@@ -119,7 +119,7 @@ class AabbTree {
   template <class Visit>
   void for_each_along_ray(const Vec3& origin, const Vec3& direction, double max_t, const Visit& visit) const {
     double reach = max_t;
-    descend([&](const Aabb& node) { return meets_ray(node, origin, direction, reach); },
+    descend([&](const Aabb& node) { return meets_ray(node, origin, direction, reach); }, always_left_first,
             [&](int item) { reach = std::min(reach, visit(item)); });
   }
 
@@ -129,13 +129,15 @@ class AabbTree {
   int find_nearest(const Vec3& p, double max_distance_sq, const DistanceSq& distance_sq) const {
     int nearest = -1;
     double best = max_distance_sq;
-    descend_nearest(p, best, [&](int item) {
-      const double d = distance_sq(item);
-      if (d < best || (d == best && nearest >= 0 && item < nearest)) {
-        best = d;
-        nearest = item;
-      }
-    });
+    descend([&](const Aabb& box) { return box.distance_sq(p) <= best; },
+            [&](const Aabb& left, const Aabb& right) { return left.distance_sq(p) <= right.distance_sq(p); },
+            [&](int item) {
+              const double d = distance_sq(item);
+              if (d < best || (d == best && nearest >= 0 && item < nearest)) {
+                best = d;
+                nearest = item;
+              }
+            });
     return nearest;
   }
 
@@ -163,9 +165,10 @@ class AabbTree {
 
   static bool meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direction, double max_t);
 
-  /// Visits the items whose boxes, and all boxes above them, are wanted.
-  template <class IsWanted, class Visit>
-  void descend(const IsWanted& is_wanted, const Visit& visit) const {
+  /// Visits the items whose boxes, and all boxes above them, are wanted; of two parts the left one first
+  /// where is_left_first(left box, right box) says so.
+  template <class IsWanted, class IsLeftFirst, class Visit>
+  void descend(const IsWanted& is_wanted, const IsLeftFirst& is_left_first, const Visit& visit) const {
     if (nodes_.empty()) return;
     int stack[kMaxDepth];
     int depth = 0;
@@ -175,8 +178,9 @@ class AabbTree {
       const Node& node = nodes_[n];
       if (!is_wanted(node.box)) continue;
       if (node.right != 0) {
-        stack[depth++] = node.right;
-        stack[depth++] = n + 1;
+        const bool left_first = is_left_first(nodes_[n + 1].box, nodes_[node.right].box);
+        stack[depth++] = left_first ? node.right : n + 1;
+        stack[depth++] = left_first ? n + 1 : node.right;
         continue;
       }
       const Leaf& leaf = leaves_[node.leaf];
@@ -186,29 +190,7 @@ class AabbTree {
     }
   }
 
-  /// Visits the items whose boxes are no farther from p than `best`, which visit may lower; near boxes first.
-  template <class Visit>
-  void descend_nearest(const Vec3& p, const double& best, const Visit& visit) const {
-    if (nodes_.empty()) return;
-    int stack[kMaxDepth];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const int n = stack[--depth];
-      const Node& node = nodes_[n];
-      if (node.box.distance_sq(p) > best) continue;
-      if (node.right != 0) {
-        const bool left_first = nodes_[n + 1].box.distance_sq(p) <= nodes_[node.right].box.distance_sq(p);
-        stack[depth++] = left_first ? node.right : n + 1;
-        stack[depth++] = left_first ? n + 1 : node.right;
-        continue;
-      }
-      const Leaf& leaf = leaves_[node.leaf];
-      for (int lane = 0; lane < num_items_in(node.leaf); ++lane) {
-        if (box_of_lane(leaf, lane).distance_sq(p) <= best) visit(leaf.item[lane]);
-      }
-    }
-  }
+  static bool always_left_first(const Aabb&, const Aabb&) { return true; }
 
   void build_nodes(int first_leaf, int num_leaves);
   void choose_starts();

@@ -122,7 +122,7 @@ void search_inside(BoxSearch& search) {
   const auto& [h, x, weights, distance] = search;
   const auto along = [&](const Vec3& w0, const Vec3& w1) {
     const Vec3 p = search.point(w0);
-    search.consider(mix(w0, w1, deepest_inside(p, search.point(w1) - p, h)));
+    search.consider(mix(w0, w1, deepest_inside(p, search.point(w1) - p, search.h)));
   };
   for (int i = 0; i < 3; ++i) along(Vec3::Unit(i), Vec3::Unit((i + 1) % 3));
 

@@ -18,7 +18,7 @@ namespace {
 using Pose = RigidMesh::Pose;
 using Value = tinygltf::Value;
 
-/// What is wrong with the file; read_glb adds its name.
+/// What is wrong with the file; parse_glb adds its name.
 [[noreturn]] void fail(const std::string& what) { throw InputError(what); }
 
 template <class T>
@@ -36,17 +36,65 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file)) {
-    fail("cannot be read: " + (errno != 0 ? std::generic_category().message(errno) : "it is a folder"));
+    fail(file.string() +
+         ": cannot be read: " + (errno != 0 ? std::generic_category().message(errno) : "it is a folder"));
   }
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-tinygltf::Model parse(const std::vector<unsigned char>& bytes) {
+/// Whether brackets in the file's text are nested no deeper than tinygltf, which calls itself for each, can
+/// stand.
+bool is_flat_enough(std::span<const unsigned char> bytes) {
+  constexpr int kDeepest = 100;
+  constexpr size_t kHeader = 20, kLengthAt = 12;
+  if (bytes.size() < kHeader) return true;
+  uint32_t length = 0;
+  for (size_t k = 0; k < 4; ++k) length |= uint32_t{bytes[kLengthAt + k]} << (8 * k);
+  int depth = 0;
+  bool is_text = false;
+  const size_t end = std::min(bytes.size(), kHeader + length);
+  for (size_t k = kHeader; k < end; ++k) {
+    const unsigned char c = bytes[k];
+    if (is_text && c == '\\') ++k;
+    if (c == '"') is_text = !is_text;
+    if (is_text) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return false;
+  }
+  return true;
+}
+
+/// Other files and pictures that this one names are not looked at.
+void stay_in_the_file(tinygltf::TinyGLTF& loader) {
+  loader.SetFsCallbacks(
+      {[](const std::string&, void*) { return false; }, [](const std::string& file, void*) { return file; },
+       [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; }, nullptr,
+       nullptr});
+  loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*,
+                           int, void*) { return true; },
+                        nullptr);
+}
+
+/// Fills `model`, or tells in `error` why it cannot.
+bool load(std::span<const unsigned char> bytes, tinygltf::Model& model, std::string& error) {
+  tinygltf::TinyGLTF loader;
+  stay_in_the_file(loader);
+  std::string warning;
+  try {
+    return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
+                                       static_cast<unsigned>(bytes.size()));
+  } catch (const std::exception& exception) {  // an empty buffer, for one
+    error = exception.what();
+    return false;
+  }
+}
+
+tinygltf::Model parse(std::span<const unsigned char> bytes) {
   tinygltf::Model model;
-  std::string error, warning;
-  const bool is_good = bytes.size() >= 12 && bytes.size() <= UINT32_MAX &&
-                       tinygltf::TinyGLTF().LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
-                                                                 static_cast<unsigned>(bytes.size()));
+  std::string error;
+  const bool is_good =
+      bytes.size() >= 12 && bytes.size() <= UINT32_MAX && is_flat_enough(bytes) && load(bytes, model, error);
   if (is_good) return model;
   const auto reason = error.substr(0, error.find('\n'));
   fail("is no complete .glb file" + (reason.empty() ? "" : " (" + reason + ")") +
@@ -73,8 +121,10 @@ std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int co
     fail("accessor " + std::to_string(index) + " reaches beyond its data");
   }
   std::vector<Number> numbers(accessor.count * num_components);
-  std::memcpy(numbers.data(), bytes.data() + view.byteOffset + accessor.byteOffset,
-              numbers.size() * sizeof(Number));
+  if (!numbers.empty()) {
+    std::memcpy(numbers.data(), bytes.data() + view.byteOffset + accessor.byteOffset,
+                numbers.size() * sizeof(Number));
+  }
   return numbers;
 }
 
@@ -288,13 +338,15 @@ class Reader {
 
 }  // namespace
 
-Animation read_glb(const std::filesystem::path& file) {
+Animation parse_glb(std::span<const unsigned char> bytes, const std::string& name) {
   try {
-    const tinygltf::Model model = parse(read_bytes(file));
+    const tinygltf::Model model = parse(bytes);
     return Reader(model).read();
   } catch (const InputError& error) {
-    throw InputError(file.string() + ": " + error.what());
+    throw InputError(name + ": " + error.what());
   }
 }
+
+Animation read_glb(const std::filesystem::path& file) { return parse_glb(read_bytes(file), file.string()); }
 
 }  // namespace weft

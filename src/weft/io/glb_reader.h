@@ -2,6 +2,8 @@
 /// Animations back in: reads the .glb files that write_glb writes.
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "weft/io/glb_writer.h"
 
@@ -14,5 +16,8 @@ namespace weft {
 ///
 /// Throws InputError, naming the file, if it cannot be read, is damaged, or was not written by Weft.
 Animation read_glb(const std::filesystem::path& file);
+
+/// The same from the file's bytes; `name` stands for the file in messages. Never reads another file.
+Animation parse_glb(std::span<const unsigned char> bytes, const std::string& name);
 
 }  // namespace weft

@@ -48,9 +48,11 @@ SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
   };
   SurfaceEdges edges;
   for (const Edge& edge : build_edges(mesh)) {
+    const bool is_balanced = 2 * count(edge.a, edge.b) == edge.num_triangles;
     if (edge.num_triangles == 1) ++edges.border;
-    if (edge.num_triangles == 2 && count(edge.a, edge.b) != 1) ++edges.twisted;
+    if (edge.num_triangles == 2 && !is_balanced) ++edges.twisted;
     if (edge.num_triangles > 2) ++edges.non_manifold;
+    if (!is_balanced) ++edges.unbalanced;
   }
   return edges;
 }

@@ -13,12 +13,15 @@ struct SurfaceEdges {
   int border = 0;        // edges of one triangle
   int non_manifold = 0;  // of more than two
   int twisted = 0;       // of two that run along it in the same direction: one of them faces the wrong way
+  int unbalanced = 0;    // more triangles run along it in one direction than in the other: all but the good
+                       // ones, and those at which several good solids meet
 };
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh);
 
-/// True if no edge is a border: the surface divides space into inside and outside.
-inline bool is_closed(const SurfaceEdges& edges) { return edges.border == 0; }
+/// True if every edge is balanced: the surface divides space into inside and outside, and all of it faces
+/// outwards, or all of it inwards.
+inline bool is_closed(const SurfaceEdges& edges) { return edges.unbalanced == 0; }
 
 /// The volume inside a closed mesh that faces outwards, negative if it faces inwards [m³]:
 ///

@@ -37,7 +37,7 @@ void judge_as_solid(TriangleMesh& mesh, const std::string& who, std::vector<std:
          " between triangles that face opposite ways: inside and outside may be " +
          "mistaken; recalculate the mesh's normals to face outwards");
   }
-  if (!is_closed(edges)) {
+  if (edges.border > 0) {
     warn("has a border of " + count_edges(edges.border) +
          ": cloth is held off on both sides, inside is not defined");
   } else if (compute_signed_volume(mesh) < 0) {
@@ -65,7 +65,7 @@ struct ShapeMaker {
 
 int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
   const TriangleMesh& mesh = *shape.mesh;
-  if (!is_closed(count_surface_edges(mesh))) return 0;
+  if (count_surface_edges(mesh).border > 0) return 0;
   std::vector<Vec3> local;  // in the mesh's own coordinates
   local.reserve(points.size());
   for (const Vec3& p : points) local.push_back(shape.rotation.transpose() * (p - shape.translation));

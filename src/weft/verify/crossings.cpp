@@ -222,7 +222,7 @@ class Sweep {
       int count = 0;
       for (int j = static_cast<int>(i) + 1; j < num_boxes && start[j] <= to; ++j) {
         hits[count] = j;
-        count += (low_y[j] <= hy) & (high_y[j] >= ly) & (low_z[j] <= hz) & (high_z[j] >= lz);
+        count += int{low_y[j] <= hy} & int{high_y[j] >= ly} & int{low_z[j] <= hz} & int{high_z[j] >= lz};
       }
       return count;
     }
