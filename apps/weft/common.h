@@ -2,6 +2,9 @@
 /// What several commands need.
 
 #include <filesystem>
+#include <string>
+
+#include "weft/render/camera.h"
 
 namespace weft::app {
 
@@ -11,5 +14,8 @@ void require_writable(const std::filesystem::path& file);
 
 /// Processors of this machine, at least 1.
 int num_processors();
+
+/// "1280x720" as a size; throws InputError for anything else.
+PictureSize parse_size(const std::string& text);
 
 }  // namespace weft::app

@@ -261,6 +261,8 @@ Image Renderer::draw(const Picture& picture, PictureSize size) {
   return device_->read(compose(picture, size));
 }
 
-void Renderer::show(const Picture& picture, PictureSize size) { device_->show(compose(picture, size)); }
+void Renderer::show(const Picture& picture, PictureSize size, const WindowPart& part) {
+  device_->show(compose(picture, size), part);
+}
 
 }  // namespace weft

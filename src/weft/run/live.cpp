@@ -4,6 +4,7 @@
 #include <future>
 
 #include "weft/core/error.h"
+#include "weft/run/reach.h"
 #include "weft/run/report.h"
 #include "weft/run/runner.h"
 
@@ -38,6 +39,7 @@ LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
       built_(build_world(scene_, jobs_)),
       snapshot_(built_.world.snapshot()) {
   warnings_ = built_.warnings;
+  reach_ = find_reach(built_.world);
   film_.emplace(scene_, built_.world);
   film_->add_frame();
   start_ = film_->animation();

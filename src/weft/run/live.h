@@ -79,6 +79,7 @@ class LiveSimulation {
   const Animation& start() const { return start_; }
   const SceneDesc& scene() const { return start_scene_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<Vec3>& reach() const { return reach_; }  // see find_reach
 
   /// All of these return at once, and take effect before the next step.
   void play();
@@ -126,6 +127,7 @@ class LiveSimulation {
   SceneDesc start_scene_;
   Animation start_;
   std::vector<std::string> warnings_;
+  std::vector<Vec3> reach_;
 
   // Of the simulation's thread.
   SceneDesc scene_;

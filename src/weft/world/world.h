@@ -81,6 +81,7 @@ class World {
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
   const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
+  const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
   const std::vector<Collider>& colliders() const { return colliders_; }
   const Vec3& gravity() const { return environment_.gravity; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
