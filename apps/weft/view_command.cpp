@@ -29,7 +29,7 @@ struct ViewRequest {
 /// by the processor, pictures come late rather than steps.
 void give_way_to_simulation() {
 #ifdef __linux__
-  constexpr int kNiceness = 10;
+  constexpr int kNiceness = 4;
   setpriority(PRIO_PROCESS, 0, kNiceness);  // on Linux: of the calling thread
 #endif
 }
