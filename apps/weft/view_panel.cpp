@@ -27,10 +27,18 @@ void note(Viewer& viewer, const std::string& name) {
   viewer.controls[name] = {a.x, a.y, b.x, b.y};
 }
 
+/// Dear ImGui's own font has no Greek.
+std::string without_greek(std::string words) {
+  constexpr std::string_view kSigma = "Σ";
+  for (std::size_t at; (at = words.find(kSigma)) != std::string::npos;)
+    words.replace(at, kSigma.size(), " sum ");
+  return words;
+}
+
 void say(const ImVec4& color, const std::string& words) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + (kWidth - 24) * scale());
-  ImGui::TextUnformatted(words.c_str());
+  ImGui::TextUnformatted(without_greek(words).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
 }
@@ -116,25 +124,26 @@ void draw_view(Viewer& viewer) {
   note(viewer, "help");
 }
 
-void begin_box(const char* name, float x, float y, float width) {
-  ImGui::SetNextWindowPos({x, y});
+/// `anchor`: which of the box's own points is at (x, y), as shares of its size.
+void begin_box(const char* name, float x, float y, float width, const ImVec2& anchor = {0, 0}) {
+  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, anchor);
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, FLT_MAX});
   ImGui::Begin(name, nullptr, kBox);
 }
 
-/// In the middle of a side's upper edge, where there are two.
+/// In the middle of a side's lower edge, where there are two.
 void draw_side_box(Viewer& viewer, int s) {
   const WindowPart part = viewer.part(s);
-  const float width = kWidth * scale();
-  begin_box(("side " + std::to_string(s)).c_str(),
-            static_cast<float>(part.x + part.size.width) - width - kMargin, kMargin, width);
+  const float x = static_cast<float>(part.x) + 0.5f * static_cast<float>(part.size.width);
+  begin_box(("side " + std::to_string(s)).c_str(), x, static_cast<float>(part.size.height) - kMargin,
+            kWidth * scale(), {0.5f, 1});
   draw_integrator(viewer, s);
   draw_status(viewer.side(s).status());
   ImGui::End();
 }
 
 void draw_main_box(Viewer& viewer) {
-  begin_box("weft", kMargin, kMargin, (viewer.num_sides() == 1 ? kWidth : 0.92f * kWidth) * scale());
+  begin_box("weft", kMargin, kMargin, kWidth * scale());
   ImGui::TextUnformatted(viewer.side(0).live().scene().name.c_str());
   ImGui::Separator();
   draw_play_buttons(viewer);
@@ -148,8 +157,8 @@ void draw_main_box(Viewer& viewer) {
   draw_wind(viewer);
   ImGui::Separator();
   draw_view(viewer);
-  say(kPale, fmt::format("{:.0f} pictures per second{}", viewer.drawn_per_second(),
-                         viewer.window().is_software() ? ", drawn by the processor" : ""));
+  say(kPale, fmt::format("{:.0f} ms per picture{}", viewer.picture_ms(),
+                         viewer.window().is_software() ? ", by the processor" : ""));
   if (!viewer.message().empty()) say(kPale, viewer.message());
   ImGui::End();
 }

@@ -55,6 +55,7 @@ void write_view_report(const std::filesystem::path& file, const Viewer& viewer) 
                {"quality_level", viewer.quality_level()},
                {"drawn_frames", viewer.drawn_frames()},
                {"drawn_per_second", viewer.drawn_per_second()},
+               {"ms_per_picture", viewer.picture_ms()},
                {"pictures", viewer.pictures()},
                {"sides", Json::array()},
                {"controls", viewer.controls}};

@@ -16,7 +16,8 @@ constexpr double kWheelFactor = 0.88;           // of the distance, per click
 constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures where the processor draws them [s]
 constexpr double kIdle = 0.25;                  // how long an unchanged window waits for somebody [s]
 constexpr int kRest = 4;                        // unchanged pictures after which the best one is drawn [1]
-constexpr double kWarmUp = 1;                   // of the picture's frame per second figure [s]
+constexpr double kWindow = 1;                   // over which pictures per second are counted [s]
+constexpr double kNewShare = 0.1;               // of the last picture in the mean of their times [1]
 
 const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
 
@@ -275,9 +276,13 @@ void Viewer::finish_frame() {
     window_.end_frame();
   }
   const Clock::time_point now = Clock::now();
-  if (is_moving) quality_.add(1000 * seconds(now - drawn_at_));
+  if (is_moving) {
+    const double ms = 1000 * seconds(now - drawn_at_);
+    quality_.add(ms);
+    picture_ms_ += kNewShare * (ms - picture_ms_);
+  }
   ++drawn_in_second_;
-  if (const double span = seconds(now - second_began_); span > kWarmUp) {
+  if (const double span = seconds(now - second_began_); span > kWindow) {
     drawn_per_second_ = static_cast<double>(drawn_in_second_) / span;
     drawn_in_second_ = 0;
     second_began_ = now;

@@ -58,6 +58,7 @@ class Viewer {
   int quality_level() const { return quality_.level(); }
   std::int64_t drawn_frames() const { return drawn_frames_; }
   double drawn_per_second() const { return drawn_per_second_; }
+  double picture_ms() const { return picture_ms_; }  // to draw and show one while something moves [ms]
   bool is_grabbing() const { return drag_ == Drag::grab; }
   const std::vector<std::string>& pictures() const { return pictures_; }
   const std::string& message() const { return message_; }
@@ -108,7 +109,7 @@ class Viewer {
   int pictures_at_rest_ = 0;  // since anything has changed
   Clock::time_point drawn_at_, second_began_;
   std::int64_t drawn_frames_ = 0, drawn_in_second_ = 0;
-  double drawn_per_second_ = 0;
+  double drawn_per_second_ = 0, picture_ms_ = 0;
   std::vector<std::string> pictures_;
   std::string message_;
 };
