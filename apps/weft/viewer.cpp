@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kOrbitDegrees = 0.35;          // per pixel of a drag
 constexpr double kWheelFactor = 0.88;           // of the distance, per click
+constexpr double kRoom = 1.1;                   // farther away than needed, for hands and swings [1]
 constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures where the processor draws them [s]
 constexpr double kIdle = 0.25;                  // how long an unchanged window waits for somebody [s]
 constexpr int kRest = 4;                        // unchanged pictures after which the best one is drawn [1]
