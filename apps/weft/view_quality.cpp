@@ -17,11 +17,12 @@ const std::array kLevels = {
     Level{{.samples = 1, .shadow_size = 1024, .occlusion = false}, 1},
     Level{{.samples = 1, .shadow_size = 1024, .occlusion = false}, 0.7},
     Level{{.samples = 1, .shadow_size = 512, .occlusion = false}, 0.5},
+    Level{{.samples = 1, .shadow_size = 512, .occlusion = false}, 0.35},
 };
 
-constexpr int kFirstInSoftware = 1;
+constexpr int kFirstInSoftware = 2;
 constexpr double kTooSlow = 45, kFast = 12;  // [ms]
-constexpr int kSettle = 8;                   // pictures before a change of level is judged [1]
+constexpr int kSettle = 4;                   // pictures before a change of level is judged [1]
 constexpr int kTryAgain = 600;               // pictures after which a better level may be tried again [1]
 
 int pixels(double scale, int side) { return std::max(1, static_cast<int>(scale * side)); }
@@ -44,7 +45,8 @@ void ViewQuality::add(double ms) {
   if (since_ > kTryAgain) best_ = 0;
   const int last = static_cast<int>(kLevels.size()) - 1;
   if (mean_ms_ > kTooSlow && level_ < last) {
-    best_ = ++level_;
+    level_ = std::min(last, level_ + (mean_ms_ > 2 * kTooSlow ? 2 : 1));
+    best_ = level_;
     since_ = 0;
   } else if (mean_ms_ < kFast && level_ > best_) {
     --level_;
