@@ -43,15 +43,22 @@ void Viewer::run() {
   while (!window_.is_closing() && !interrupted()) {
     wait();
     window_.begin_frame(events);
-    for (const auto& side : sides_) has_news_ |= side->update();
-    // A side whose step has failed pauses by itself, and the other one with it.
-    if (is_playing_ &&
-        std::any_of(sides_.begin(), sides_.end(), [](const auto& s) { return !s->status().failure.empty(); }))
-      toggle_play();
+    update();
     draw();
     finish_frame();
   }
   write_report();
+}
+
+/// A side whose step has failed has paused by itself, and the other one pauses with it.
+void Viewer::update() {
+  bool has_failed = false;
+  for (const auto& side : sides_) {
+    if (!side->update()) continue;
+    has_news_ = true;
+    has_failed |= !side->status().failure.empty();
+  }
+  if (has_failed && is_playing_) toggle_play();
 }
 
 // ---- What people do --------------------------------------------------------------------------------------
@@ -243,14 +250,14 @@ void Viewer::wait() {
     if (rest > 0) std::this_thread::sleep_for(std::chrono::duration<double>(rest));
   }
   const bool counts = options_.frames > 0;
-  if (pictures_at_rest_ > kRest && !counts) window_.wait_for_event(kIdle);
+  if (pictures_at_rest_ > kRest && !counts) window_.wait_for_event(is_playing_ ? kSoftwareInterval : kIdle);
 }
 
 void Viewer::draw() {
   drawn_at_ = Clock::now();
   pictures_at_rest_ = has_news_ ? 0 : pictures_at_rest_ + 1;
   has_news_ = false;
-  const bool is_still = pictures_at_rest_ >= kRest || wants_picture_;
+  const bool is_still = (pictures_at_rest_ >= kRest && !is_playing_) || wants_picture_;
   renderer_.set_settings(quality_.settings(is_still));
   for (int s = 0; s < num_sides(); ++s) {
     const WindowPart where = part(s);

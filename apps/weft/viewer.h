@@ -71,6 +71,7 @@ class Viewer {
   enum class Drag { none, orbit, pan, grab };
   using Clock = std::chrono::steady_clock;
 
+  void update();
   WindowEvents make_events();
   void on_key(int key, bool shift);
   void on_press(MouseButton button, double x, double y, bool shift);

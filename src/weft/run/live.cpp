@@ -71,6 +71,7 @@ void LiveSimulation::post(std::function<void()> command) {
 void LiveSimulation::play() {
   post([this] {
     status_.playing = true;
+    status_.failure.clear();
     steps_to_make_ = 0;
   });
 }
