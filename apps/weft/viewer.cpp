@@ -112,7 +112,10 @@ void Viewer::set_wind(const std::optional<Vec3>& velocity) {
   for (const auto& side : sides_) side->live().set_wind(velocity);
 }
 
-void Viewer::frame_scene() { camera_ = frame_points({}, sides_[0]->live().reach(), part(0).size.aspect()); }
+void Viewer::frame_scene() {
+  camera_ = frame_points({}, sides_[0]->live().reach(), part(0).size.aspect());
+  camera_.zoom(kRoom);
+}
 
 WindowEvents Viewer::make_events() {
   const auto news = [this] { has_news_ = true; };
