@@ -11,6 +11,7 @@ enum ExitCode { kDone = 0, kSimulationFailed = 1, kNotClean = 1, kBadInput = 2, 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
 void add_render_command(CLI::App& app, int& exit_code);
+void add_view_command(CLI::App& app, int& exit_code);
 void add_scenes_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <thread>
@@ -30,5 +31,15 @@ void make_folder(const fs::path& folder) {
 }
 
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+PictureSize parse_size(const std::string& text) {
+  PictureSize size;
+  char end = 0;
+  constexpr int kLargest = 16384;
+  const bool is_good = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2 &&
+                       size.width > 0 && size.height > 0 && size.width <= kLargest && size.height <= kLargest;
+  if (!is_good) throw InputError("--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1280x720");
+  return size;
+}
 
 }  // namespace weft::app

@@ -2,6 +2,9 @@
 /// What several commands need.
 
 #include <filesystem>
+#include <string>
+
+#include "weft/render/camera.h"
 
 namespace weft::app {
 
@@ -14,5 +17,8 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Processors of this machine, at least 1.
 int num_processors();
+
+/// "1280x720" as a size; throws InputError for anything else.
+PictureSize parse_size(const std::string& text);
 
 }  // namespace weft::app

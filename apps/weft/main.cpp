@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_demo_command(app, exit_code);
   add_render_command(app, exit_code);
+  add_view_command(app, exit_code);
   add_scenes_command(app, exit_code);
   add_check_command(app, exit_code);
   add_verify_command(app, exit_code);

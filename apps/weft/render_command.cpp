@@ -35,16 +35,6 @@ struct RenderRequest {
   Overrides overrides;
 };
 
-PictureSize parse_size(const std::string& text) {
-  PictureSize size;
-  char end = 0;
-  constexpr int kLargest = 16384;
-  const bool is_good = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2 &&
-                       size.width > 0 && size.height > 0 && size.width <= kLargest && size.height <= kLargest;
-  if (!is_good) throw InputError("--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1280x720");
-  return size;
-}
-
 struct Footage {
   Animation animation;
   RunOutcome outcome;

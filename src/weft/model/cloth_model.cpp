@@ -62,4 +62,12 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
   return model;
 }
 
+std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
+                                                      const std::vector<double>& added) {
+  auto heavier = std::make_shared<ClothModel>(model);
+  heavier->id = next_id();
+  for (std::size_t i = 0; i < added.size(); ++i) heavier->mass[i] += added[i];
+  return heavier;
+}
+
 }  // namespace weft

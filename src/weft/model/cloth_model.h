@@ -80,4 +80,8 @@ struct ClothModel {
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
                                                     const ClothMaterial& material);
 
+/// The same cloth with `added` (num_particles) on its particles' masses [kg].
+std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
+                                                      const std::vector<double>& added);
+
 }  // namespace weft

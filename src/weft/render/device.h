@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "weft/render/camera.h"
 #include "weft/render/image.h"
 #include "weft/render/picture.h"
 
@@ -73,6 +74,12 @@ struct DrawCall {
   std::variant<WholeTarget, GeometryId, Instances> what;
 };
 
+/// From the window's lower left corner [pixels].
+struct WindowPart {
+  int x = 0, y = 0;
+  PictureSize size;
+};
+
 class Device {
  public:
   virtual ~Device() = default;
@@ -94,8 +101,8 @@ class Device {
   /// What is in a colour target of one sample.
   virtual Image read(TargetId target) = 0;
 
-  /// Copies a colour target to the window, where there is one.
-  virtual void show(TargetId target) = 0;
+  /// Copies a colour target to a part of the window, larger or smaller, where there is a window.
+  virtual void show(TargetId target, const WindowPart& part) = 0;
 };
 
 /// OpenGL 3.3 or later in the context that is current on this thread, and stays so. Throws GraphicsError.

@@ -160,7 +160,11 @@ class GlDevice : public Device {
   }
 
   void resolve(TargetId from, TargetId to) override {
-    copy(targets_.at(from.index), targets_.at(to.index).framebuffer, false);
+    const Target &source = targets_.at(from.index), &target = targets_.at(to.index);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, source.framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+    const int w = source.desc.width, h = source.desc.height;
+    glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
 
   Image read(TargetId id) override {
@@ -177,7 +181,16 @@ class GlDevice : public Device {
     return image;
   }
 
-  void show(TargetId id) override { copy(targets_.at(id.index), 0, true); }
+  void show(TargetId id, const WindowPart& part) override {
+    const Target& from = targets_.at(id.index);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glDisable(GL_SCISSOR_TEST);
+    const bool is_scaled = from.desc.width != part.size.width || from.desc.height != part.size.height;
+    glBlitFramebuffer(0, 0, from.desc.width, from.desc.height, part.x, part.y, part.x + part.size.width,
+                      part.y + part.size.height, GL_COLOR_BUFFER_BIT, is_scaled ? GL_LINEAR : GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  }
 
  private:
   struct Target {
@@ -254,14 +267,6 @@ class GlDevice : public Device {
     glDeleteFramebuffers(1, &target.framebuffer);
     glDeleteTextures(1, &target.texture);
     glDeleteRenderbuffers(2, target.renderbuffers);
-  }
-
-  static void copy(const Target& from, GLuint to, bool to_window) {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
-    const int w = from.desc.width, h = from.desc.height;
-    glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    if (to_window) glBindFramebuffer(GL_FRAMEBUFFER, 0);
   }
 
   void set(GLuint program, const Uniform& uniform, int& unit) {

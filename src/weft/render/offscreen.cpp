@@ -82,7 +82,7 @@ class OffscreenDevice : public Device {
   void draw(const DrawCall& call) override { gl().draw(call); }
   void resolve(TargetId from, TargetId to) override { gl().resolve(from, to); }
   Image read(TargetId target) override { return gl().read(target); }
-  void show(TargetId) override {}  // no window
+  void show(TargetId, const WindowPart&) override {}  // no window
 
  private:
   /// Several devices of one thread take turns.

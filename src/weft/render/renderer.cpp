@@ -137,9 +137,10 @@ struct Renderer::Stage {
     if (settings.shadow_size > 0) draw_depths(sun.to_clip.cast<float>(), false);
   }
 
-  /// At half the picture's resolution: occlusion is smooth.
+  /// At half the picture's resolution: occlusion is smooth. One pixel of open sky where it is not wanted.
   void draw_occlusion() {
-    const int width = (size.width + 1) / 2, height = (size.height + 1) / 2;
+    const int width = settings.occlusion ? (size.width + 1) / 2 : 1,
+              height = settings.occlusion ? (size.height + 1) / 2 : 1;
     const Vector2f pixel(1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height));
     depth = device.target("depth", {TargetDesc::Format::depth, width, height});
     const TargetId rough = device.target("rough occlusion", {TargetDesc::Format::gray, width, height});
@@ -262,6 +263,8 @@ Image Renderer::draw(const Picture& picture, PictureSize size) {
   return device_->read(compose(picture, size));
 }
 
-void Renderer::show(const Picture& picture, PictureSize size) { device_->show(compose(picture, size)); }
+void Renderer::show(const Picture& picture, PictureSize size, const WindowPart& part) {
+  device_->show(compose(picture, size), part);
+}
 
 }  // namespace weft

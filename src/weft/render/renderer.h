@@ -28,8 +28,10 @@ class Renderer {
   /// Draws the picture and reads it back.
   Image draw(const Picture& picture, PictureSize size);
 
-  /// Draws the picture to the device's window.
-  void show(const Picture& picture, PictureSize size);
+  /// Draws the picture, and shows it in a part of the device's window.
+  void show(const Picture& picture, PictureSize size, const WindowPart& part);
+
+  void set_settings(const RenderSettings& settings) { settings_ = settings; }
 
  private:
   struct Stage;

@@ -94,23 +94,6 @@ class Recorder {
   RunReport& report_;
 };
 
-/// The paper's Eq. 16 slows gravity the more, the stiffer the cloth is for its step.
-void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
-  if (scene.solver.integrator != "paper") return;
-  const double step = 1 / (scene.fps * scene.steps_per_frame);
-  for (int c = 0; c < world.num_cloths(); ++c) {
-    const double a = compute_stiffness_number(world.model({c}), step);
-    if (a <= 1) continue;
-    char text[256];
-    std::snprintf(
-        text, sizeof text,
-        "cloth \"%s\" is too stiff for the paper's Eq. 16 at this step: a = h²Σk/m reaches %.3g, and from "
-        "rest it falls with %.2g of gravity; use paper_fixed, or raise solver.steps_per_frame",
-        world.name({c}).c_str(), a, gravity_factor(a));
-    warnings.emplace_back(text);
-  }
-}
-
 /// One sentence per kind of trouble, with how often it came.
 class Troubles {
  public:
@@ -211,6 +194,22 @@ class Run {
 };
 
 }  // namespace
+
+void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
+  if (scene.solver.integrator != "paper") return;
+  const double step = 1 / (scene.fps * scene.steps_per_frame);
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const double a = compute_stiffness_number(world.model({c}), step);
+    if (a <= 1) continue;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "cloth \"%s\" is too stiff for the paper's Eq. 16 at this step: a = h²Σk/m reaches %.3g, and from "
+        "rest it falls with %.2g of gravity; use paper_fixed, or raise solver.steps_per_frame",
+        world.name({c}).c_str(), a, gravity_factor(a));
+    warnings.emplace_back(text);
+  }
+}
 
 RunResult run_scene(const SceneDesc& scene, const RunOptions& options, const OnFrame& on_frame) {
   return Run(scene, options).go(on_frame);

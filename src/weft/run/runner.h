@@ -7,6 +7,7 @@
 #include "weft/io/glb_writer.h"
 #include "weft/run/report.h"
 #include "weft/scene/scene_desc.h"
+#include "weft/world/world.h"
 
 namespace weft {
 
@@ -35,5 +36,9 @@ using OnFrame = std::function<bool(const Progress&)>;
 /// Simulates a scene. Throws InputError for bad input; a simulation that fails ends the run and is told by
 /// report.outcome and report.failure.
 RunResult run_scene(const SceneDesc& scene, const RunOptions& options, const OnFrame& on_frame = {});
+
+/// The paper's Eq. 16 slows gravity the more, the stiffer the cloth is for its step: adds a sentence for each
+/// cloth that is too stiff for it.
+void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings);
 
 }  // namespace weft

@@ -111,6 +111,22 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
   cloth.is_pinned = std::move(is_pinned);
 }
 
+void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
+  Cloth& cloth = at(id);
+  for (const Grab& grab : grabs) {
+    for (const int i : grab.particles) {
+      require(i >= 0 && i < cloth.model->num_particles(),
+              "cloth \"" + cloth.name + "\" has no particle " + std::to_string(i) + " to grab");
+    }
+    require(grab.shares.size() == grab.particles.size() && grab.offsets.size() == grab.particles.size(),
+            "a grab needs a share and an offset for each particle");
+    require(std::isfinite(grab.stiffness) && grab.stiffness >= 0 && std::isfinite(grab.damping) &&
+                grab.damping >= 0,
+            "a grab's stiffness and damping must be 0 or more");
+  }
+  cloth.hands.set(std::move(grabs));
+}
+
 void World::set_material(ClothId id, const ClothMaterial& material) {
   Cloth& cloth = at(id);
   validate(material, cloth.name);
@@ -160,6 +176,11 @@ void World::begin_contact(double time, double dt) {
 void World::advance(double time, double dt, StepReport& report) {
   // What moves by prescription.
   for (Cloth& cloth : cloths_) aim_pins(cloth, time);
+  // What is held.
+  for (Cloth& cloth : cloths_) {
+    cloth.held_model =
+        &cloth.hands.begin(cloth.model, cloth.is_pinned, environment_.gravity, dt, cloth.state);
+  }
   if (contact_) begin_contact(time, dt);
   for (int c = 0; c < num_cloths(); ++c) {
     Cloth& cloth = cloths_[c];
@@ -171,7 +192,8 @@ void World::advance(double time, double dt, StepReport& report) {
     }
     // The cloth's own motion.
     const IntegratorReport done =
-        cloth.integrator->advance(*cloth.model, environment_, dt, *jobs_, cloth.state);
+        cloth.integrator->advance(*cloth.held_model, environment_, dt, *jobs_, cloth.state);
+    cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
     report.iterations += done.iterations;
     if (!done.converged) has_converged_[c] = 0;
     if (contact_) contact_system_.end_of(c);
@@ -190,6 +212,7 @@ StepReport World::step(double dt) {
   save(before_);
   has_converged_.assign(cloths_.size(), 1);
   is_wild_.assign(cloths_.size(), 0);
+  for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
   report.substeps = num_substeps(dt);
   for (int s = 1; s <= report.substeps; ++s) {
     advance(time_ + dt * s / report.substeps, dt / report.substeps, report);

@@ -12,6 +12,7 @@
 #include "weft/contact/collider.h"
 #include "weft/contact/contact_system.h"
 #include "weft/integrators/integrator.h"
+#include "weft/world/grab.h"
 
 namespace weft {
 
@@ -60,6 +61,10 @@ class World {
   /// All of these may be called between any two steps; the next step uses the new values.
   void set_pins(ClothId cloth,
                 std::vector<Pin> pins);  // replaces the cloth's pins; throws InputError for bad indices
+  void set_grabs(ClothId cloth, std::vector<Grab> grabs);  // replaces the cloth's; throws InputError likewise
+  void set_grab_target(ClothId cloth, int grab, const Vec3& target) {
+    at(cloth).hands.set_target(grab, target);
+  }
   void set_material(ClothId cloth, const ClothMaterial& material);
   void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
   void set_wind(const Wind& wind) { environment_.wind = wind; }
@@ -75,6 +80,8 @@ class World {
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
+  const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
+  const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
   const std::vector<Collider>& colliders() const { return colliders_; }
   const Vec3& gravity() const { return environment_.gravity; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
@@ -104,6 +111,9 @@ class World {
     std::vector<PinnedParticle> pinned;  // by ascending particle
     PinTargets targets;                  // of a substep
     std::vector<char> is_pinned;         // (num_particles)
+    Hands hands;
+    const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where hands hold it
+    Vec3 grab_impulse = Vec3::Zero();        // of all hands in the last step [N·s]
     std::unique_ptr<Integrator> integrator;
   };
 

@@ -1,0 +1,102 @@
+#include <memory>
+
+#include "commands.h"
+#include "common.h"
+#include "progress.h"
+#include "viewer.h"
+#include "weft/core/error.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
+namespace weft::app {
+namespace {
+
+struct ViewRequest {
+  std::string scene;
+  std::string size = "1280x720";
+  std::vector<std::string> compare;  // integrators, none or two
+  int threads = 0;
+  std::int64_t frames = 0;
+  std::filesystem::path report;
+  Overrides overrides;
+};
+
+/// From now on this thread, and those that it makes, give way to the simulation's: where OpenGL is computed
+/// by the processor, pictures come late rather than steps.
+void give_way_to_simulation() {
+#ifdef __linux__
+  constexpr int kNiceness = 4;
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // on Linux: of the calling thread
+#endif
+}
+
+/// One simulation, or one for each integrator to compare. Processors are shared, but for one that draws.
+std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, SceneDesc scene) {
+  std::vector<std::string> integrators = request.compare;
+  if (integrators.empty()) integrators = {scene.solver.integrator};
+  const int count = static_cast<int>(integrators.size());
+  const int threads = request.threads > 0 ? request.threads : std::max(1, (num_processors() - 1) / count);
+  std::vector<std::unique_ptr<ViewSide>> sides;
+  for (const std::string& name : integrators) {
+    scene.solver.integrator = name;
+    make_integrator(scene.solver);  // throws before anything is built
+    sides.push_back(std::make_unique<ViewSide>(scene, threads));
+  }
+  return sides;
+}
+
+void view(const ViewRequest& request) {
+  const ViewOptions options{
+      .size = parse_size(request.size), .report = request.report, .frames = request.frames};
+  if (!request.report.empty()) require_writable(request.report);
+  const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
+  std::vector<std::unique_ptr<ViewSide>> sides = make_sides(request, scene);
+  for (const std::string& warning : sides[0]->live().warnings())
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  catch_interrupts();
+  give_way_to_simulation();
+  Viewer(std::move(sides), options).run();
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, int& exit_code) {
+  auto request = std::make_shared<ViewRequest>();
+  CLI::App* command = app.add_subcommand("view", "Watch and touch a scene in a window, in real time");
+  command->add_option("SCENE", request->scene, "A scene that ships, or a file")->required();
+  command
+      ->add_option("--compare", request->compare,
+                   "Two integrators side by side, as in --compare paper,paper_fixed")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("A,B");
+  command->add_option("--size", request->size, "Of the window, in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command
+      ->add_option("--threads", request->threads,
+                   "Threads of each simulation (default: the processors, but for one that draws)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T");
+  command->add_option("--frames", request->frames, "Close the window after so many pictures")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+  command
+      ->add_option("--report", request->report,
+                   "Write what the window shows as JSON, at the end and on the key J")
+      ->type_name("FILE");
+  command->add_option("--set", request->overrides, "Change a value, as in --set solver.integrator=desbrun")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->callback([request, &exit_code] {
+    view(*request);
+    exit_code = kDone;
+  });
+}
+
+}  // namespace weft::app

@@ -1,0 +1,243 @@
+#include "view_panel.h"
+
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "viewer.h"
+
+namespace weft::app {
+namespace {
+
+constexpr float kMargin = 14, kWidth = 292, kStrongestWind = 15;  // [pixels], [pixels], [m/s]
+const ImVec4 kInk(0.10f, 0.12f, 0.16f, 1), kPale(0.36f, 0.40f, 0.46f, 1), kAlarm(0.72f, 0.14f, 0.05f, 1);
+constexpr ImGuiWindowFlags kBox = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
+                                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                                  ImGuiWindowFlags_NoNav;
+
+const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
+
+float scale() { return ImGui::GetIO().FontGlobalScale; }
+
+/// Notes where the last control is.
+void note(Viewer& viewer, const std::string& name) {
+  const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+  viewer.controls[name] = {a.x, a.y, b.x, b.y};
+}
+
+/// Dear ImGui's own font has no Greek.
+std::string without_greek(std::string words) {
+  constexpr std::string_view kSigma = "Σ";
+  for (std::size_t at; (at = words.find(kSigma)) != std::string::npos;)
+    words.replace(at, kSigma.size(), " sum ");
+  return words;
+}
+
+void say(const ImVec4& color, const std::string& words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + (kWidth - 24) * scale());
+  ImGui::TextUnformatted(without_greek(words).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+bool draw_button(Viewer& viewer, const char* words, const std::string& name, float share) {
+  const float width = (ImGui::GetContentRegionAvail().x + ImGui::GetStyle().ItemSpacing.x) * share -
+                      ImGui::GetStyle().ItemSpacing.x;
+  const bool is_pressed = ImGui::Button(words, {width, 0});
+  note(viewer, name);
+  return is_pressed;
+}
+
+void draw_play_buttons(Viewer& viewer) {
+  if (draw_button(viewer, viewer.is_playing() ? "Pause" : "Play", "play", 1 / 3.0f)) viewer.toggle_play();
+  ImGui::SameLine();
+  if (draw_button(viewer, "Step", "step", 1 / 2.0f)) viewer.step(1);
+  ImGui::SameLine();
+  if (draw_button(viewer, "Reset", "reset", 1)) viewer.reset();
+}
+
+void draw_integrator(Viewer& viewer, int s) {
+  const std::string now = viewer.side(s).status().integrator;
+  ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+  if (ImGui::BeginCombo("integrator", now.c_str())) {
+    for (const std::string_view name : integrator_names()) {
+      if (ImGui::Selectable(std::string(name).c_str(), name == now))
+        viewer.set_integrator(s, std::string(name));
+      note(viewer, "integrator " + std::to_string(s) + " " + std::string(name));
+    }
+    ImGui::EndCombo();
+  } else {
+    note(viewer, "integrator " + std::to_string(s));
+  }
+}
+
+/// Figures, and what is wrong.
+void draw_status(const LiveStatus& s) {
+  ImGui::TextUnformatted(fmt::format("{:.2f} ms per step", s.ms_per_step).c_str());
+  ImGui::SameLine(kWidth * 0.52f * scale());
+  ImGui::TextUnformatted(fmt::format("{:.0f} steps/s", s.steps_per_second).c_str());
+  ImGui::TextUnformatted(fmt::format("{:.2f} s per second", s.simulated_per_second).c_str());
+  ImGui::SameLine(kWidth * 0.52f * scale());
+  ImGui::TextUnformatted(fmt::format("time {:.2f} s", s.time).c_str());
+  if (s.too_heavy)
+    say(kAlarm, fmt::format("Too heavy for real time: {:.3g} times slower", 1 / s.simulated_per_second));
+  if (!s.failure.empty()) say(kAlarm, "Paused: " + s.failure);
+  for (const std::string& trouble : s.troubles) say(kAlarm, trouble);
+  for (const std::string& warning : s.warnings) say(kAlarm, warning);
+}
+
+void draw_model(Viewer& viewer) {
+  const std::string now = viewer.side(0).status().model;
+  ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+  if (ImGui::BeginCombo("springs", now.c_str())) {
+    for (const SpringModel model : kModels) {
+      if (now != "mesh" && ImGui::Selectable(std::string(to_string(model)).c_str(), to_string(model) == now))
+        viewer.set_model(model);
+    }
+    ImGui::EndCombo();
+  }
+}
+
+void draw_wind(Viewer& viewer) {
+  const Vec3 now = viewer.wind().value_or(viewer.side(0).status().wind.velocity);
+  Eigen::Vector3f wind = now.cast<float>();
+  bool has_changed = false;
+  const char* names[] = {"wind x", "wind y", "wind z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+    has_changed |= ImGui::SliderFloat(names[axis], &wind[axis], -kStrongestWind, kStrongestWind, "%.1f m/s");
+    note(viewer, names[axis]);
+  }
+  if (has_changed) viewer.set_wind(wind.cast<double>());
+  if (viewer.wind() && ImGui::SmallButton("the scene's own wind")) viewer.set_wind(std::nullopt);
+}
+
+void draw_view(Viewer& viewer) {
+  bool springs = viewer.shows_springs();
+  if (ImGui::Checkbox("show springs", &springs)) viewer.toggle_springs();
+  note(viewer, "springs");
+  ImGui::SameLine(kWidth * 0.62f * scale());
+  if (ImGui::SmallButton("help (H)")) viewer.toggle_help();
+  note(viewer, "help");
+}
+
+/// `anchor`: which of the box's own points is at (x, y), as shares of its size.
+void begin_box(const char* name, float x, float y, float width, const ImVec2& anchor = {0, 0}) {
+  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, anchor);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, FLT_MAX});
+  ImGui::Begin(name, nullptr, kBox);
+}
+
+/// In the middle of a side's lower edge, where there are two.
+void draw_side_box(Viewer& viewer, int s) {
+  const WindowPart part = viewer.part(s);
+  const float x = static_cast<float>(part.x) + 0.5f * static_cast<float>(part.size.width);
+  begin_box(("side " + std::to_string(s)).c_str(), x, static_cast<float>(part.size.height) - kMargin,
+            kWidth * scale(), {0.5f, 1});
+  draw_integrator(viewer, s);
+  draw_status(viewer.side(s).status());
+  ImGui::End();
+}
+
+void draw_main_box(Viewer& viewer) {
+  begin_box("weft", kMargin, kMargin, kWidth * scale());
+  ImGui::TextUnformatted(viewer.side(0).live().scene().name.c_str());
+  ImGui::Separator();
+  draw_play_buttons(viewer);
+  if (viewer.num_sides() == 1) {
+    draw_status(viewer.side(0).status());
+    ImGui::Separator();
+    draw_integrator(viewer, 0);
+  }
+  draw_model(viewer);
+  ImGui::Separator();
+  draw_wind(viewer);
+  ImGui::Separator();
+  draw_view(viewer);
+  say(kPale, fmt::format("{:.0f} ms per picture{}", viewer.picture_ms(),
+                         viewer.window().is_software() ? ", by the processor" : ""));
+  if (!viewer.message().empty()) say(kPale, viewer.message());
+  ImGui::End();
+}
+
+constexpr const char* kHelp[][2] = {
+    {"left drag on cloth", "grab it, pull it, let it go"},
+    {"left or right drag", "turn the view"},
+    {"middle or shift drag", "move the view"},
+    {"wheel", "nearer, farther"},
+    {"space", "play, pause"},
+    {". or S", "one step"},
+    {"right arrow, shift+S", "one frame"},
+    {"R", "back to the start"},
+    {"I, shift+I", "next, last integrator"},
+    {"M", "next spring model"},
+    {"G", "cloth or springs"},
+    {"C", "the first view again"},
+    {"P", "save the picture as PNG"},
+    {"J", "write the report (--report)"},
+    {"H, F1", "this help"},
+    {"Q, Esc", "close"},
+};
+
+void draw_help() {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::Begin("keys", nullptr, kBox);
+  if (ImGui::BeginTable("keys and what they do", 2, ImGuiTableFlags_SizingFixedFit)) {
+    for (const auto& [key, meaning] : kHelp) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(key);
+      ImGui::TableNextColumn();
+      ImGui::TextColored(kPale, "  %s", meaning);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+void draw_divider(const Viewer& viewer) {
+  for (int s = 1; s < viewer.num_sides(); ++s) {
+    const float x = static_cast<float>(viewer.part(s).x);
+    ImGui::GetBackgroundDrawList()->AddLine({x, 0}, {x, ImGui::GetIO().DisplaySize.y},
+                                            IM_COL32(255, 255, 255, 200), 2 * scale());
+  }
+}
+
+}  // namespace
+
+void set_panel_style(double window_scale) {
+  const float s = static_cast<float>(window_scale);
+  ImGui::StyleColorsLight();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 8;
+  style.FrameRounding = style.GrabRounding = style.PopupRounding = 5;
+  style.WindowPadding = {12, 10};
+  style.FramePadding = {8, 4};
+  style.ItemSpacing = {8, 6};
+  style.WindowBorderSize = 0;
+  style.GrabMinSize = 14;
+  style.Colors[ImGuiCol_Text] = kInk;
+  style.Colors[ImGuiCol_WindowBg] = {0.97f, 0.975f, 0.98f, 0.86f};
+  style.Colors[ImGuiCol_PopupBg] = {0.98f, 0.985f, 0.99f, 0.98f};
+  style.Colors[ImGuiCol_FrameBg] = style.Colors[ImGuiCol_Button] = {0.80f, 0.83f, 0.87f, 0.75f};
+  style.Colors[ImGuiCol_FrameBgHovered] = style.Colors[ImGuiCol_ButtonHovered] = {0.72f, 0.77f, 0.83f, 0.9f};
+  style.Colors[ImGuiCol_FrameBgActive] = style.Colors[ImGuiCol_ButtonActive] = {0.62f, 0.70f, 0.79f, 1};
+  style.Colors[ImGuiCol_SliderGrab] = {0.24f, 0.38f, 0.56f, 0.9f};
+  style.Colors[ImGuiCol_SliderGrabActive] = style.Colors[ImGuiCol_CheckMark] = {0.12f, 0.28f, 0.50f, 1};
+  style.ScaleAllSizes(s);
+  ImGui::GetIO().FontGlobalScale = s;
+}
+
+void draw_panel(Viewer& viewer) {
+  viewer.controls.clear();
+  draw_divider(viewer);
+  draw_main_box(viewer);
+  for (int s = 0; viewer.num_sides() > 1 && s < viewer.num_sides(); ++s) draw_side_box(viewer, s);
+  if (viewer.shows_help()) draw_help();
+}
+
+}  // namespace weft::app

@@ -1,0 +1,80 @@
+#include "view_report.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "viewer.h"
+#include "weft/core/error.h"
+
+namespace weft::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json to_json(const ViewSide& side) {
+  const LiveStatus& s = side.status();
+  return {{"integrator", s.integrator},
+          {"model", s.model},
+          {"playing", s.playing},
+          {"steps", s.steps},
+          {"frames", s.frames},
+          {"time", s.time},
+          {"wind", {{"velocity", to_json(s.wind.velocity)}, {"drag", s.wind.drag}}},
+          {"held", s.held ? to_json(*s.held) : Json()},
+          {"center", to_json(side.center())},
+          {"ms_per_step", {{"p50", s.ms_per_step}, {"p95", s.ms_per_step_p95}}},
+          {"steps_per_second", s.steps_per_second},
+          {"simulated_per_second", s.simulated_per_second},
+          {"too_heavy", s.too_heavy},
+          {"failure", s.failure.empty() ? Json() : Json(s.failure)},
+          {"troubles", s.troubles},
+          {"warnings", s.warnings}};
+}
+
+Json to_json(const Camera& c) {
+  return {{"azimuth", c.azimuth_deg},
+          {"elevation", c.elevation_deg},
+          {"distance", c.distance},
+          {"target", to_json(c.target)}};
+}
+
+}  // namespace
+
+void write_view_report(const std::filesystem::path& file, const Viewer& viewer) {
+  Json json = {{"scene", viewer.side(0).live().scene().name},
+               {"playing", viewer.is_playing()},
+               {"view", viewer.shows_springs() ? "springs" : "cloth"},
+               {"help", viewer.shows_help()},
+               {"grabbing", viewer.is_grabbing()},
+               {"camera", to_json(viewer.camera())},
+               {"size", {viewer.window().size().width, viewer.window().size().height}},
+               {"driver", viewer.window().driver()},
+               {"software", viewer.window().is_software()},
+               {"quality_level", viewer.quality_level()},
+               {"drawn_frames", viewer.drawn_frames()},
+               {"drawn_per_second", viewer.drawn_per_second()},
+               {"ms_per_picture", viewer.picture_ms()},
+               {"pictures", viewer.pictures()},
+               {"sides", Json::array()},
+               {"controls", viewer.controls}};
+  for (int s = 0; s < viewer.num_sides(); ++s) json["sides"].push_back(to_json(viewer.side(s)));
+  std::filesystem::path part = file;
+  part += ".part";
+  std::ofstream out(part);
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(part, file, error);
+  if (!out || error) throw InputError(file.string() + " cannot be written");
+}
+
+std::filesystem::path name_of_next_picture() {
+  for (int number = 1;; ++number) {
+    std::filesystem::path file = "weft-view-" + std::to_string(number) + ".png";
+    if (!std::filesystem::exists(file)) return file;
+  }
+}
+
+}  // namespace weft::app

@@ -1,0 +1,64 @@
+#include "view_side.h"
+
+#include <algorithm>
+
+namespace weft::app {
+namespace {
+
+constexpr double kGroundBelow = 0.1;  // under all that is expected, as a share of its size [1]
+constexpr Color kHand = {0.95, 0.35, 0.02};
+
+double find_ground(const std::vector<Vec3>& reach) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : reach) box.extend(p);
+  return box.min().y() - kGroundBelow * box.diagonal().norm();
+}
+
+}  // namespace
+
+ViewSide::ViewSide(const SceneDesc& scene, int threads)
+    : live_(scene, {.threads = threads, .playing = false}),
+      animation_(live_.start()),
+      ground_(find_ground(live_.reach())) {
+  update();
+}
+
+bool ViewSide::update() {
+  if (!live_.take_newest(frame_)) return false;
+  for (std::size_t c = 0; c < frame_.cloths.size(); ++c) {
+    AnimatedMesh& cloth = animation_.cloths[c];
+    cloth.frames[0] = frame_.cloths[c];
+    cloth.triangles = frame_.topologies[c]->mesh.triangles;
+  }
+  for (std::size_t b = 0; b < frame_.bodies.size(); ++b) animation_.bodies[b].poses = {frame_.bodies[b]};
+  return true;
+}
+
+Picture ViewSide::draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const {
+  SceneStyle style{.ground = ground_};
+  for (int c = 0; springs && c < static_cast<int>(frame_.topologies.size()); ++c)
+    style.springs.push_back({c, frame_.topologies[c]});
+  Picture picture = ScenePictures(animation_, std::move(style)).at(0, camera);
+  if (const std::optional<Vec3>& held = status().held) {
+    picture.dots.push_back({.positions = {*held}, .color = kHand, .diameter = 11});
+    if (target) picture.lines.push_back({.ends = {*held, *target}, .color = kHand, .width = 2.5});
+  }
+  return picture;
+}
+
+std::optional<ViewSide::ClothHit> ViewSide::pick(const Ray& ray) const {
+  // Cloths come first among the meshes.
+  const Picture picture = ScenePictures(animation_, {.ground = ground_}).at(0, {});
+  const std::optional<Hit> hit = find_first_hit(picture.meshes, ray);
+  if (!hit || hit->mesh >= static_cast<int>(frame_.cloths.size())) return std::nullopt;
+  return ClothHit{{hit->mesh, hit->triangle, hit->weights}, hit->point};
+}
+
+Vec3 ViewSide::center() const {
+  const std::vector<float>& positions = frame_.cloths[0];
+  const Eigen::Map<const Eigen::Matrix3Xf> points(positions.data(), 3,
+                                                  static_cast<Eigen::Index>(positions.size() / 3));
+  return points.cast<double>().rowwise().mean();
+}
+
+}  // namespace weft::app

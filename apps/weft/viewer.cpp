@@ -1,0 +1,318 @@
+#include "viewer.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "progress.h"
+#include "view_panel.h"
+#include "view_report.h"
+#include "weft/core/error.h"
+
+namespace weft::app {
+namespace {
+
+constexpr double kOrbitDegrees = 0.35;          // per pixel of a drag
+constexpr double kWheelFactor = 0.88;           // of the distance, per click
+constexpr double kRoom = 1.1;                   // farther away than needed, for hands and swings [1]
+constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures where the processor draws them [s]
+constexpr double kIdle = 0.25;                  // how long an unchanged window waits for somebody [s]
+constexpr int kRest = 4;                        // unchanged pictures after which the best one is drawn [1]
+constexpr double kWindow = 1;                   // over which pictures per second are counted [s]
+constexpr double kNewShare = 0.1;               // of the last picture in the mean of their times [1]
+
+const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+}  // namespace
+
+Viewer::Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options)
+    : sides_(std::move(sides)),
+      options_(options),
+      window_({.title = "Weft: " + sides_[0]->live().scene().name, .size = options.size}),
+      renderer_(window_.make_device()),
+      quality_(window_.is_software()) {
+  set_panel_style(window_.scale());
+  frame_scene();
+}
+
+void Viewer::run() {
+  const WindowEvents events = make_events();
+  for (const auto& side : sides_) side->live().play();
+  drawn_at_ = second_began_ = Clock::now();
+  while (!window_.is_closing() && !interrupted()) {
+    wait();
+    window_.begin_frame(events);
+    update();
+    draw();
+    finish_frame();
+  }
+  write_report();
+}
+
+/// A side whose step has failed has paused by itself, and the other one pauses with it.
+void Viewer::update() {
+  bool has_failed = false;
+  for (const auto& side : sides_) {
+    if (!side->update()) continue;
+    has_news_ = true;
+    has_failed |= !side->status().failure.empty();
+  }
+  if (has_failed && is_playing_) toggle_play();
+}
+
+// ---- What people do --------------------------------------------------------------------------------------
+
+void Viewer::toggle_play() {
+  is_playing_ = !is_playing_;
+  for (const auto& side : sides_) {
+    if (is_playing_)
+      side->live().play();
+    else
+      side->live().pause();
+  }
+}
+
+void Viewer::step(int count) {
+  is_playing_ = false;
+  for (const auto& side : sides_) side->live().step(count);
+}
+
+void Viewer::step_frame() { step(sides_[0]->live().scene().steps_per_frame); }
+
+void Viewer::reset() {
+  for (const auto& side : sides_) side->live().reset();
+}
+
+void Viewer::set_integrator(int side, const std::string& name) { sides_[side]->live().set_integrator(name); }
+
+void Viewer::cycle_integrator(bool backwards) {
+  const int s = side_at(mouse_x_);
+  const auto& names = integrator_names();
+  const auto now = std::find(names.begin(), names.end(), sides_[s]->status().integrator) - names.begin();
+  const auto count = static_cast<std::ptrdiff_t>(names.size());
+  set_integrator(s, std::string(names[(now + (backwards ? count - 1 : 1)) % count]));
+}
+
+void Viewer::set_model(SpringModel model) {
+  model_ = model;
+  for (const auto& side : sides_) side->live().set_model(model);
+}
+
+void Viewer::cycle_model() {
+  const std::string now = model_ ? std::string(to_string(*model_)) : sides_[0]->status().model;
+  const auto known = std::find_if(std::begin(kModels), std::end(kModels),
+                                  [&](SpringModel m) { return to_string(m) == now; });
+  if (known == std::end(kModels)) return say("these springs are a mesh's edges; there is no other model");
+  set_model(kModels[(known - std::begin(kModels) + 1) % std::size(kModels)]);
+}
+
+void Viewer::set_wind(const std::optional<Vec3>& velocity) {
+  wind_ = velocity;
+  for (const auto& side : sides_) side->live().set_wind(velocity);
+}
+
+void Viewer::frame_scene() {
+  camera_ = frame_points({}, sides_[0]->live().reach(), part(0).size.aspect());
+  camera_.zoom(kRoom);
+}
+
+WindowEvents Viewer::make_events() {
+  const auto news = [this] { has_news_ = true; };
+  return {.on_key = [=, this](int key, bool shift) { news(), on_key(key, shift); },
+          .on_press = [=, this](MouseButton b, double x, double y,
+                                bool shift) { news(), on_press(b, x, y, shift); },
+          .on_release =
+              [=, this](MouseButton b) {
+                news();
+                if (b == drag_button_) release();
+              },
+          .on_move = [=, this](double x, double y) { news(), on_move(x, y); },
+          .on_wheel =
+              [=, this](double clicks) {
+                news();
+                camera_.zoom(std::pow(kWheelFactor, clicks));
+              }};
+}
+
+void Viewer::on_key(int key, bool shift) {
+  switch (key) {
+    case ' ':
+      return toggle_play();
+    case '.':
+      return step(1);
+    case 'S':
+      return shift ? step_frame() : step(1);
+    case kKeyRight:
+      return step_frame();
+    case 'R':
+      return reset();
+    case 'I':
+      return cycle_integrator(shift);
+    case 'M':
+      return cycle_model();
+    case 'G':
+      return toggle_springs();
+    case 'C':
+      return frame_scene();
+    case 'P':
+      return save_picture();
+    case 'J':
+      return write_report();
+    case 'H':
+    case kKeyHelp:
+      return toggle_help();
+    case 'Q':
+    case kKeyEscape:
+      return window_.close();
+    default:
+      break;
+  }
+}
+
+void Viewer::on_press(MouseButton button, double x, double y, bool shift) {
+  if (drag_ != Drag::none) return;
+  mouse_x_ = x;
+  mouse_y_ = y;
+  drag_button_ = button;
+  if (button == MouseButton::middle || shift)
+    drag_ = Drag::pan;
+  else if (button == MouseButton::left && grab(x, y))
+    drag_ = Drag::grab;
+  else
+    drag_ = Drag::orbit;
+}
+
+void Viewer::on_move(double x, double y) {
+  const double dx = x - mouse_x_, dy = y - mouse_y_;
+  mouse_x_ = x;
+  mouse_y_ = y;
+  if (drag_ == Drag::orbit) {
+    camera_.orbit(-kOrbitDegrees * dx, kOrbitDegrees * dy);
+  } else if (drag_ == Drag::pan) {
+    const double height = part(0).size.height;
+    camera_.pan(-dx / height, dy / height);
+  } else if (drag_ == Drag::grab) {
+    drag_grab(x, y);
+  }
+}
+
+/// The same point of the cloth is grabbed on both sides.
+bool Viewer::grab(double x, double y) {
+  grab_side_ = side_at(x);
+  const auto hit = sides_[grab_side_]->pick(ray_at(grab_side_, x, y));
+  if (!hit) return false;
+  grab_place_ = hit->place;
+  grab_target_ = hit->place;
+  for (const auto& side : sides_) side->live().grab(hit->point);
+  return true;
+}
+
+/// In the plane through the grabbed place that faces the camera.
+void Viewer::drag_grab(double x, double y) {
+  const Ray ray = ray_at(grab_side_, x, y);
+  const double along = ray.direction.dot(camera_.forward());
+  const double t = (grab_place_ - ray.origin).dot(camera_.forward()) / along;
+  grab_target_ = ray.origin + t * ray.direction;
+  for (const auto& side : sides_) side->live().move_grab(*grab_target_);
+}
+
+void Viewer::release() {
+  if (drag_ == Drag::grab) {
+    for (const auto& side : sides_) side->live().release();
+  }
+  grab_target_.reset();
+  drag_ = Drag::none;
+}
+
+// ---- Where things are ------------------------------------------------------------------------------------
+
+WindowPart Viewer::part(int side) const {
+  const PictureSize size = window_.size();
+  const int left = side * size.width / num_sides(), right = (side + 1) * size.width / num_sides();
+  return {left, 0, {std::max(right - left, 1), size.height}};
+}
+
+int Viewer::side_at(double x) const {
+  const double share = x / window_.size().width;
+  return std::clamp(static_cast<int>(share * num_sides()), 0, num_sides() - 1);
+}
+
+Ray Viewer::ray_at(int side, double x, double y) const {
+  const WindowPart where = part(side);
+  return camera_.ray(x - where.x, y, where.size);
+}
+
+// ---- Drawing ---------------------------------------------------------------------------------------------
+
+/// Pictures follow each other as fast as the screen shows them, slower where the processor draws them, and
+/// only now and then where nothing changes.
+void Viewer::wait() {
+  if (window_.is_software()) {
+    const double rest = kSoftwareInterval - seconds(Clock::now() - drawn_at_);
+    if (rest > 0) std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+  }
+  const bool counts = options_.frames > 0;
+  if (pictures_at_rest_ > kRest && !counts) window_.wait_for_event(is_playing_ ? kSoftwareInterval : kIdle);
+}
+
+void Viewer::draw() {
+  drawn_at_ = Clock::now();
+  pictures_at_rest_ = has_news_ ? 0 : pictures_at_rest_ + 1;
+  has_news_ = false;
+  const bool is_still = (pictures_at_rest_ >= kRest && !is_playing_) || wants_picture_;
+  renderer_.set_settings(quality_.settings(is_still));
+  for (int s = 0; s < num_sides(); ++s) {
+    const WindowPart where = part(s);
+    const Picture picture = sides_[s]->draw(camera_, shows_springs_, grab_target_);
+    renderer_.show(picture, quality_.scaled(where.size, is_still), where);
+  }
+  draw_panel(*this);
+}
+
+void Viewer::finish_frame() {
+  const bool is_moving = pictures_at_rest_ == 0 && !wants_picture_;
+  if (wants_picture_) {
+    wants_picture_ = false;
+    const Image image = window_.end_frame_and_read();
+    const std::filesystem::path file = name_of_next_picture();
+    try {
+      write_png(file, image);
+      pictures_.push_back(file.string());
+      say("written " + file.string());
+    } catch (const InputError& error) {
+      say(error.what());
+    }
+  } else {
+    window_.end_frame();
+  }
+  const Clock::time_point now = Clock::now();
+  if (is_moving) {
+    const double ms = 1000 * seconds(now - drawn_at_);
+    quality_.add(ms);
+    picture_ms_ += kNewShare * (ms - picture_ms_);
+  }
+  ++drawn_in_second_;
+  if (const double span = seconds(now - second_began_); span > kWindow) {
+    drawn_per_second_ = static_cast<double>(drawn_in_second_) / span;
+    drawn_in_second_ = 0;
+    second_began_ = now;
+  }
+  if (++drawn_frames_ == options_.frames) window_.close();
+}
+
+void Viewer::write_report() {
+  if (options_.report.empty()) return;
+  try {
+    write_view_report(options_.report, *this);
+  } catch (const InputError& error) {
+    say(error.what());
+  }
+}
+
+void Viewer::say(const std::string& message) {
+  message_ = message;
+  has_news_ = true;
+}
+
+}  // namespace weft::app

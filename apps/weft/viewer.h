@@ -1,0 +1,118 @@
+#pragma once
+/// The window of `weft view`: what it shows and what people can do in it.
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "view_quality.h"
+#include "view_side.h"
+#include "weft/render/renderer.h"
+#include "weft/render/window.h"
+
+namespace weft::app {
+
+struct ViewOptions {
+  PictureSize size;
+  std::filesystem::path report;  // JSON of what the window shows, at the end and on the key J; empty: none
+  std::int64_t frames = 0;       // to show, then it closes; 0: until somebody closes it
+};
+
+class Viewer {
+ public:
+  /// `sides`: one or two simulations of one scene, at rest until run(). Throws GraphicsError.
+  Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options);
+
+  /// Until the window is closed.
+  void run();
+
+  // What the keys, the mouse and the panel do.
+  void toggle_play();
+  void step(int count);
+  void step_frame();
+  void reset();
+  void set_integrator(int side, const std::string& name);
+  void cycle_integrator(bool backwards);  // of the side under the mouse
+  void set_model(SpringModel model);
+  void cycle_model();
+  void set_wind(const std::optional<Vec3>& velocity);  // empty: the scene's
+  void toggle_springs() { shows_springs_ = !shows_springs_; }
+  void toggle_help() { shows_help_ = !shows_help_; }
+  void frame_scene();  // the camera of the beginning
+  void save_picture() { wants_picture_ = true; }
+  void write_report();
+
+  // What the panel and the report tell.
+  int num_sides() const { return static_cast<int>(sides_.size()); }
+  ViewSide& side(int s) const { return *sides_[s]; }
+  bool is_playing() const { return is_playing_; }
+  bool shows_springs() const { return shows_springs_; }
+  bool shows_help() const { return shows_help_; }
+  const std::optional<Vec3>& wind() const { return wind_; }
+  const Camera& camera() const { return camera_; }
+  const Window& window() const { return window_; }
+  int quality_level() const { return quality_.level(); }
+  std::int64_t drawn_frames() const { return drawn_frames_; }
+  double drawn_per_second() const { return drawn_per_second_; }
+  double picture_ms() const { return picture_ms_; }  // to draw and show one while something moves [ms]
+  bool is_grabbing() const { return drag_ == Drag::grab; }
+  const std::vector<std::string>& pictures() const { return pictures_; }
+  const std::string& message() const { return message_; }
+  WindowPart part(int side) const;  // of the window that a side is shown in
+
+  /// Where a control was drawn: left, top, right, bottom [pixels].
+  std::map<std::string, std::array<double, 4>> controls;
+
+ private:
+  enum class Drag { none, orbit, pan, grab };
+  using Clock = std::chrono::steady_clock;
+
+  void update();
+  WindowEvents make_events();
+  void on_key(int key, bool shift);
+  void on_press(MouseButton button, double x, double y, bool shift);
+  void on_move(double x, double y);
+  bool grab(double x, double y);
+  void drag_grab(double x, double y);
+  void release();
+  int side_at(double x) const;
+  Ray ray_at(int side, double x, double y) const;
+  void draw();
+  void finish_frame();
+  void wait();
+  void say(const std::string& message);
+
+  std::vector<std::unique_ptr<ViewSide>> sides_;
+  ViewOptions options_;
+  Window window_;
+  Renderer renderer_;
+  ViewQuality quality_;
+
+  Camera camera_;
+  bool is_playing_ = true, shows_springs_ = false, shows_help_ = false, wants_picture_ = false;
+  std::optional<Vec3> wind_;
+  std::optional<SpringModel> model_;  // that was asked for
+
+  // The mouse.
+  Drag drag_ = Drag::none;
+  MouseButton drag_button_ = MouseButton::left;
+  double mouse_x_ = 0, mouse_y_ = 0;
+  int grab_side_ = 0;
+  Vec3 grab_place_ = Vec3::Zero();   // where it was taken, on the side that was clicked [m]
+  std::optional<Vec3> grab_target_;  // [m]
+
+  // Drawing.
+  bool has_news_ = true;      // something has changed since the last picture
+  int pictures_at_rest_ = 0;  // since anything has changed
+  Clock::time_point drawn_at_, second_began_;
+  std::int64_t drawn_frames_ = 0, drawn_in_second_ = 0;
+  double drawn_per_second_ = 0, picture_ms_ = 0;
+  std::vector<std::string> pictures_;
+  std::string message_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,22 @@
+#pragma once
+/// What is under the mouse.
+
+#include <optional>
+#include <span>
+
+#include "weft/render/camera.h"
+#include "weft/render/picture.h"
+
+namespace weft {
+
+struct Hit {
+  int mesh = 0, triangle = 0;   // indices
+  Vec3 weights = Vec3::Zero();  // of the triangle's corners, sum 1 [1]
+  Vec3 point = Vec3::Zero();    // where the ray meets it [m]
+  double distance = 0;          // from the ray's origin [m]
+};
+
+/// The first triangle that the ray meets, from either side; of equally near ones the first.
+std::optional<Hit> find_first_hit(std::span<const DrawnMesh> meshes, const Ray& ray);
+
+}  // namespace weft

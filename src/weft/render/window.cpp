@@ -1,0 +1,241 @@
+#include "weft/render/window.h"
+
+// epoxy comes before GLFW, which else brings OpenGL's own header.
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <variant>
+
+namespace weft {
+namespace {
+
+constexpr const char* kAdvice = "; weft render draws pictures and videos without a window";
+
+struct KeyDown {
+  int key;
+  bool shift;
+};
+struct Press {
+  MouseButton button;
+  double x, y;
+  bool shift;
+};
+struct Release {
+  MouseButton button;
+};
+struct Move {
+  double x, y;
+};
+struct Wheel {
+  double clicks;
+};
+using Event = std::variant<KeyDown, Press, Release, Move, Wheel>;
+
+/// GLFW's letters and digits are ASCII; 0: a key that nobody asks for.
+int to_key(int glfw_key) {
+  switch (glfw_key) {
+    case GLFW_KEY_ESCAPE:
+      return kKeyEscape;
+    case GLFW_KEY_RIGHT:
+      return kKeyRight;
+    case GLFW_KEY_LEFT:
+      return kKeyLeft;
+    case GLFW_KEY_F1:
+      return kKeyHelp;
+    default:
+      return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_Z ? glfw_key : 0;
+  }
+}
+
+std::string last_glfw_error() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words ? words : "no reason given";
+}
+
+bool is_software_driver(const std::string& name) {
+  for (const char* known : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
+    if (name.find(known) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+/// GLFW's and Dear ImGui's part.
+struct Window::System {
+  GLFWwindow* window = nullptr;
+  std::string driver;
+  std::vector<Event> events;
+
+  explicit System(const WindowSettings& settings) {
+#ifndef _WIN32
+    setenv("LP_NUM_THREADS", std::to_string(settings.software_threads).c_str(), 0);
+#endif
+    if (!glfwInit()) throw GraphicsError("there is no display to open a window on" + std::string(kAdvice));
+    open(settings);
+    glfwMakeContextCurrent(window);
+    driver = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    glfwSwapInterval(1);
+    listen();
+    make_controls();
+  }
+
+  ~System() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window);
+    glfwTerminate();
+  }
+
+  void open(const WindowSettings& settings) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures are drawn elsewhere and copied
+    window =
+        glfwCreateWindow(settings.size.width, settings.size.height, settings.title.c_str(), nullptr, nullptr);
+    if (window) return;
+    const std::string reason = last_glfw_error();
+    glfwTerminate();
+    throw GraphicsError("no window with OpenGL 3.3 can be opened here (" + reason + ")" + kAdvice);
+  }
+
+  /// Callbacks only take notes: whether the controls want an event is known when they have seen it too.
+  void listen() {
+    glfwSetWindowUserPointer(window, this);
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
+      if (action != GLFW_RELEASE && to_key(key) != 0)
+        of(w).push_back(KeyDown{to_key(key), (mods & GLFW_MOD_SHIFT) != 0});
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
+      if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+      const MouseButton which = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
+                                : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
+                                                                    : MouseButton::middle;
+      if (action == GLFW_RELEASE) {
+        of(w).push_back(Release{which});
+        return;
+      }
+      double x = 0, y = 0;
+      glfwGetCursorPos(w, &x, &y);
+      of(w).push_back(Press{which, x, y, (mods & GLFW_MOD_SHIFT) != 0});
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).push_back(Move{x, y}); });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).push_back(Wheel{y}); });
+  }
+
+  static std::vector<Event>& of(GLFWwindow* w) {
+    return static_cast<System*>(glfwGetWindowUserPointer(w))->events;
+  }
+
+  void make_controls() {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+  }
+
+  /// Pixels per unit of the places that GLFW tells.
+  double pixels() const {
+    int width = 1, height = 1, wide = 1, high = 1;
+    glfwGetWindowSize(window, &width, &height);
+    glfwGetFramebufferSize(window, &wide, &high);
+    return static_cast<double>(wide) / std::max(width, 1);
+  }
+
+  void tell(const Event& event, const WindowEvents& to) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (const KeyDown* key = std::get_if<KeyDown>(&event)) {
+      if (!io.WantTextInput) to.on_key(key->key, key->shift);
+    } else if (const Press* press = std::get_if<Press>(&event)) {
+      if (!io.WantCaptureMouse)
+        to.on_press(press->button, pixels() * press->x, pixels() * press->y, press->shift);
+    } else if (const Release* release = std::get_if<Release>(&event)) {
+      to.on_release(release->button);
+    } else if (const Move* move = std::get_if<Move>(&event)) {
+      to.on_move(pixels() * move->x, pixels() * move->y);
+    } else if (!io.WantCaptureMouse) {
+      to.on_wheel(std::get<Wheel>(event).clicks);
+    }
+  }
+
+  void draw_controls() {
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+
+  Image read() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    Image image(width, height);
+    std::vector<std::uint8_t> rows(image.rgba.size());
+    glReadBuffer(GL_BACK);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+    const std::size_t row = 4 * static_cast<std::size_t>(width);
+    for (int y = 0; y < height; ++y)
+      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(row * (height - 1 - y)), row, image.pixel(0, y));
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+  }
+};
+
+Window::Window(const WindowSettings& settings) : system_(std::make_unique<System>(settings)) {}
+Window::~Window() = default;
+
+std::unique_ptr<Device> Window::make_device() { return make_gl_device(); }
+
+PictureSize Window::size() const {
+  PictureSize size;
+  glfwGetFramebufferSize(system_->window, &size.width, &size.height);
+  return {std::max(size.width, 1), std::max(size.height, 1)};
+}
+
+double Window::scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(system_->window, &x, &y);
+  return std::max(1.0f, x);
+}
+
+bool Window::is_software() const { return is_software_driver(system_->driver); }
+const std::string& Window::driver() const { return system_->driver; }
+bool Window::is_closing() const { return glfwWindowShouldClose(system_->window); }
+void Window::close() { glfwSetWindowShouldClose(system_->window, GLFW_TRUE); }
+
+void Window::wait_for_event(double seconds) { glfwWaitEventsTimeout(seconds); }
+
+void Window::begin_frame(const WindowEvents& events) {
+  glfwPollEvents();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  std::vector<Event> happened;
+  happened.swap(system_->events);
+  for (const Event& event : happened) system_->tell(event, events);
+}
+
+void Window::end_frame() {
+  system_->draw_controls();
+  glfwSwapBuffers(system_->window);
+}
+
+Image Window::end_frame_and_read() {
+  system_->draw_controls();
+  Image image = system_->read();
+  glfwSwapBuffers(system_->window);
+  return image;
+}
+
+}  // namespace weft

@@ -1,0 +1,339 @@
+#include "weft/run/live.h"
+
+#include <algorithm>
+#include <future>
+
+#include "weft/core/error.h"
+#include "weft/run/reach.h"
+#include "weft/run/report.h"
+#include "weft/run/runner.h"
+
+namespace weft {
+namespace {
+
+constexpr double kPatience = 0.05;    // how far play may fall behind real time before time slows [s]
+constexpr double kWindow = 1;         // over which the pace is measured [s]
+constexpr double kSlow = 0.95;        // of real time: slower is too heavy [1]
+constexpr std::size_t kSteps = 512;   // that medians are taken over
+constexpr std::size_t kTroubles = 4;  // that are told at most
+constexpr double kDrag = 0.25;        // of wind in scenes that have none of their own [N·s/m³]
+
+constexpr const char* kNoModel = "mesh";
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+/// The first grid's model: meshes have none.
+std::string name_of_model(const SceneDesc& scene) {
+  for (const ClothSceneDesc& cloth : scene.cloths) {
+    if (std::holds_alternative<Grid>(cloth.shape)) return std::string(to_string(cloth.model));
+  }
+  return kNoModel;
+}
+
+}  // namespace
+
+LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
+    : start_scene_(std::move(scene)),
+      scene_(start_scene_),
+      jobs_(make_jobs(settings.threads)),
+      built_(build_world(scene_, jobs_)),
+      snapshot_(built_.world.snapshot()) {
+  warnings_ = built_.warnings;
+  reach_ = find_reach(built_.world);
+  film_.emplace(scene_, built_.world);
+  film_->add_frame();
+  start_ = film_->animation();
+  status_.playing = settings.playing;
+  status_.integrator = scene_.solver.integrator;
+  status_.model = name_of_model(scene_);
+  judge_solver();
+  publish();
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveSimulation::~LiveSimulation() {
+  {
+    const std::lock_guard lock(commands_mutex_);
+    is_ending_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void LiveSimulation::post(std::function<void()> command) {
+  {
+    const std::lock_guard lock(commands_mutex_);
+    commands_.push_back(std::move(command));
+  }
+  wake_.notify_all();
+}
+
+void LiveSimulation::play() {
+  post([this] {
+    status_.playing = true;
+    status_.failure.clear();
+    steps_to_make_ = 0;
+  });
+}
+
+void LiveSimulation::pause() {
+  post([this] {
+    status_.playing = false;
+    steps_to_make_ = 0;
+  });
+}
+
+void LiveSimulation::step(int count) {
+  post([this, count] {
+    status_.playing = false;
+    steps_to_make_ += count;
+  });
+}
+
+void LiveSimulation::reset() {
+  post([this] {
+    held_.reset();
+    hold();
+    built_.world.restore(snapshot_);
+    status_.steps = status_.frames = 0;
+    status_.failure.clear();
+    status_.troubles.clear();
+    steps_to_make_ = 0;
+    is_paced_ = false;
+  });
+}
+
+void LiveSimulation::set_integrator(const std::string& name) {
+  make_integrator({.integrator = name});  // throws on the caller's side
+  post([this, name] {
+    scene_.solver.integrator = name;
+    built_.world.set_integrator(scene_.solver);
+    status_.integrator = name;
+    judge_solver();
+  });
+}
+
+void LiveSimulation::set_model(SpringModel model) {
+  post([this, model] { change_model(model); });
+}
+
+void LiveSimulation::set_wind(std::optional<Vec3> velocity) {
+  post([this, velocity] { wind_ = velocity; });
+}
+
+void LiveSimulation::grab(const ClothPoint& point) {
+  post([this, point] {
+    held_ = point;
+    hold();
+  });
+}
+
+void LiveSimulation::move_grab(const Vec3& target) {
+  post([this, target] {
+    if (held_) built_.world.set_grab_target({held_->cloth}, 0, target);
+  });
+}
+
+void LiveSimulation::release() {
+  post([this] {
+    held_.reset();
+    hold();
+  });
+}
+
+bool LiveSimulation::take_newest(LiveFrame& frame) {
+  const std::lock_guard lock(frame_mutex_);
+  if (!is_fresh_) return false;
+  std::swap(frame, frame_);
+  is_fresh_ = false;
+  return true;
+}
+
+std::uint64_t LiveSimulation::state_hash() {
+  std::promise<std::uint64_t> answer;
+  post([&] { answer.set_value(built_.world.state_hash()); });
+  return answer.get_future().get();
+}
+
+bool LiveSimulation::is_between_frames() const { return status_.steps % scene_.steps_per_frame == 0; }
+
+/// Waits for something to do. False: the end.
+bool LiveSimulation::run_commands() {
+  std::vector<std::function<void()>> commands;
+  {
+    std::unique_lock lock(commands_mutex_);
+    const auto has_news = [this] { return is_ending_ || !commands_.empty(); };
+    if (!status_.playing && steps_to_make_ == 0) {
+      is_paced_ = false;
+      wake_.wait(lock, has_news);
+    } else if (steps_to_make_ == 0 && is_paced_ && is_between_frames()) {
+      wake_.wait_until(lock, due_, has_news);
+    }
+    if (is_ending_) return false;
+    commands.swap(commands_);
+  }
+  for (const auto& command : commands) {
+    try {
+      command();
+    } catch (const InputError& error) {
+      status_.failure = error.what();
+      status_.playing = false;
+    }
+  }
+  if (!commands.empty()) publish();
+  return true;
+}
+
+void LiveSimulation::run() {
+  while (run_commands()) {
+    if (steps_to_make_ > 0) {
+      --steps_to_make_;
+      if (take_step() && is_between_frames()) status_.frames = status_.steps / scene_.steps_per_frame;
+      publish();
+    } else if (status_.playing) {
+      start_pace();
+      if (is_between_frames() && Clock::now() < due_) continue;
+      if (!take_step())
+        publish();
+      else if (is_between_frames())
+        end_frame();
+    }
+  }
+}
+
+/// Makes a step. False: it failed, and everything is as before.
+bool LiveSimulation::take_step() {
+  World& world = built_.world;
+  Wind wind = wind_at(scene_.wind, world.time());
+  if (wind_) wind = {*wind_, scene_.wind.drag > 0 ? scene_.wind.drag : kDrag};
+  world.set_wind(wind);
+  status_.wind = wind;
+  const Clock::time_point start = Clock::now();
+  const StepReport report = world.step(1 / (scene_.fps * scene_.steps_per_frame));
+  step_ms_.push_back(1000 * seconds(Clock::now() - start));
+  if (step_ms_.size() > kSteps) step_ms_.pop_front();
+  tell(report);
+  return report.ok;
+}
+
+void LiveSimulation::tell(const StepReport& report) {
+  status_.substeps = report.substeps;
+  status_.iterations = report.iterations;
+  status_.failure.clear();
+  for (const Trouble& trouble : report.troubles) {
+    const std::string sentence = "cloth \"" + trouble.cloth + "\": " + trouble.sentence;
+    if (!report.ok) {
+      status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + sentence;
+      continue;
+    }
+    std::vector<std::string>& told = status_.troubles;
+    if (std::find(told.begin(), told.end(), sentence) != told.end()) continue;
+    if (told.size() == kTroubles) told.erase(told.begin());
+    told.push_back(sentence);
+  }
+  if (report.ok) {
+    ++status_.steps;
+    return;
+  }
+  status_.playing = false;
+  steps_to_make_ = 0;
+}
+
+void LiveSimulation::start_pace() {
+  if (is_paced_) return;
+  is_paced_ = true;
+  due_ = Clock::now();
+  milestones_.clear();
+  milestones_.push_back({due_, status_.steps, built_.world.time()});
+}
+
+/// Lets the next frame be due one frame's time after this one was; time slows when play has fallen behind.
+void LiveSimulation::end_frame() {
+  status_.frames = status_.steps / scene_.steps_per_frame;
+  const Clock::time_point now = Clock::now();
+  due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / scene_.fps));
+  if (seconds(now - due_) > kPatience) due_ = now;
+  milestones_.push_back({now, status_.steps, built_.world.time()});
+  while (milestones_.size() > 2 && seconds(now - milestones_[1].wall) > kWindow) milestones_.pop_front();
+  publish();
+}
+
+void LiveSimulation::change_model(SpringModel model) {
+  if (status_.model == kNoModel) return;
+  SceneDesc scene = scene_;
+  for (ClothSceneDesc& cloth : scene.cloths) cloth.model = model;
+  // Pins hang on the start, so the new world is built there, and then taken to where the old one is.
+  const World::Snapshot now = built_.world.snapshot();
+  built_ = build_world(scene, jobs_);
+  scene_ = std::move(scene);
+  built_.world.restore(now);
+  film_.emplace(scene_, built_.world);
+  hold();
+  status_.model = to_string(model);
+  judge_solver();
+}
+
+/// Something else computes the steps from now on: what was said of the last ones is no longer true.
+void LiveSimulation::judge_solver() {
+  status_.warnings.clear();
+  warn_about_paper(scene_, built_.world, status_.warnings);
+  status_.failure.clear();
+  status_.troubles.clear();
+  step_ms_.clear();
+  is_paced_ = false;
+}
+
+/// Takes hold of what is to be held, where it is, and of nothing else.
+void LiveSimulation::hold() {
+  World& world = built_.world;
+  for (int c = 0; c < world.num_cloths(); ++c) world.set_grabs({c}, {});
+  if (!held_) return;
+  const ClothId cloth{held_->cloth};
+  world.set_grabs(cloth,
+                  {make_grab(world.model(cloth), world.state(cloth), held_->triangle, held_->weights)});
+}
+
+LiveStatus LiveSimulation::measure() const {
+  LiveStatus status = status_;
+  const World& world = built_.world;
+  status.time = world.time();
+  const std::vector<double> ms(step_ms_.begin(), step_ms_.end());
+  status.ms_per_step = quantile(ms, 0.5);
+  status.ms_per_step_p95 = quantile(ms, 0.95);
+  if (milestones_.size() > 1) {
+    const Milestone &first = milestones_.front(), &last = milestones_.back();
+    const double wall = std::max(seconds(last.wall - first.wall), 1e-9);
+    status.steps_per_second = static_cast<double>(last.steps - first.steps) / wall;
+    status.simulated_per_second = (last.time - first.time) / wall;
+    status.too_heavy = status.playing && wall > kWindow / 2 && status.simulated_per_second < kSlow;
+  }
+  if (held_) {
+    const ClothId cloth{held_->cloth};
+    const Triangle& t = world.model(cloth).topology->mesh.triangles[held_->triangle];
+    Vec3 point = Vec3::Zero();
+    for (int corner = 0; corner < 3; ++corner)
+      point += held_->weights[corner] * world.state(cloth).position(t[corner]);
+    status.held = point;
+  }
+  return status;
+}
+
+void LiveSimulation::publish() {
+  film_->clear();
+  film_->add_frame();
+  const Animation& now = film_->animation();
+  next_.status = measure();
+  next_.cloths.resize(now.cloths.size());
+  next_.topologies.resize(now.cloths.size());
+  for (std::size_t c = 0; c < now.cloths.size(); ++c) {
+    next_.cloths[c] = now.cloths[c].frames[0];
+    next_.topologies[c] = built_.world.model({static_cast<int>(c)}).topology;
+  }
+  next_.bodies.clear();
+  for (const RigidMesh& body : now.bodies) next_.bodies.push_back(body.poses[0]);
+  const std::lock_guard lock(frame_mutex_);
+  std::swap(next_, frame_);
+  is_fresh_ = true;
+}
+
+}  // namespace weft

@@ -1,0 +1,209 @@
+#include "weft/run/live.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "weft/core/error.h"
+#include "weft/run/runner.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft {
+namespace {
+
+SceneDesc shipped(const std::string& name, Overrides overrides = {}) {
+  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
+}
+
+/// 13 x 13 particles over a ball, six steps a frame, soft enough for every integrator.
+SceneDesc small_scene(const std::string& integrator = "paper_fixed") {
+  return shipped("paper/fig6_ball", {"cloth[0].grid.cells=[12, 12]", "solver.steps_per_frame=6",
+                                     "solver.integrator=" + integrator});
+}
+
+/// Looks until the frame is as wanted. Generous: other work may keep the processors busy.
+LiveFrame wait_for(LiveSimulation& live, const std::function<bool(const LiveFrame&)>& is_wanted) {
+  LiveFrame frame;
+  const auto start = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
+    if (live.take_newest(frame) && is_wanted(frame)) return frame;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ADD_FAILURE() << "nothing came; the last frame has step " << frame.status.steps << ", "
+                << frame.status.failure;
+  return frame;
+}
+
+LiveFrame wait_for_steps(LiveSimulation& live, std::int64_t steps) {
+  return wait_for(live, [&](const LiveFrame& f) { return f.status.steps >= steps; });
+}
+
+std::uint64_t hash_of_run(const SceneDesc& scene, int frames) {
+  const RunResult result = run_scene(scene, {.frames = frames, .record_animation = false});
+  return std::stoull(result.report.state_hash, nullptr, 16);
+}
+
+double mean_height(const LiveFrame& frame) {
+  double sum = 0;
+  for (std::size_t i = 1; i < frame.cloths[0].size(); i += 3) sum += frame.cloths[0][i];
+  return 3 * sum / static_cast<double>(frame.cloths[0].size());
+}
+
+TEST(Live, PlaysInRealTimeAndHasTheBitsOfARunHoweverOftenItIsPausedAndLookedAt) {
+  const SceneDesc scene = small_scene();
+  LiveSimulation live(scene);
+  wait_for_steps(live, 30);
+  live.pause();
+  LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return !f.status.playing; });
+  live.play();
+  wait_for_steps(live, frame.status.steps + 12);
+  live.pause();
+  frame = wait_for(live, [](const LiveFrame& f) { return !f.status.playing; });
+  constexpr int kFrames = 60;
+  ASSERT_LT(frame.status.steps, 6 * kFrames) << "it has not raced ahead of the clock";
+  live.step(6 * kFrames - static_cast<int>(frame.status.steps));
+  frame = wait_for_steps(live, 6 * kFrames);
+  EXPECT_EQ(frame.status.frames, kFrames);
+  EXPECT_NEAR(frame.status.time, 1, 1e-9);
+  EXPECT_EQ(live.state_hash(), hash_of_run(scene, kFrames));
+}
+
+TEST(Live, StandsStillUntilToldToPlay) {
+  LiveSimulation live(small_scene(), {.playing = false});
+  const LiveFrame frame = wait_for(live, [](const LiveFrame&) { return true; });
+  EXPECT_EQ(frame.status.steps, 0);
+  EXPECT_FALSE(frame.status.playing);
+  EXPECT_EQ(frame.cloths[0].size(), 3u * 13 * 13);
+  EXPECT_EQ(frame.bodies.size(), 1u);
+  EXPECT_EQ(live.start().cloths[0].frames[0], frame.cloths[0]);
+}
+
+TEST(Live, MakesSingleStepsAndPausesForThem) {
+  LiveSimulation live(small_scene());
+  wait_for_steps(live, 6);
+  live.step();
+  const LiveFrame paused = wait_for(live, [](const LiveFrame& f) { return !f.status.playing; });
+  const LiveFrame before = paused;
+  live.step();
+  const LiveFrame after = wait_for_steps(live, before.status.steps + 1);
+  EXPECT_FALSE(after.status.playing);
+  live.step(3);
+  EXPECT_EQ(wait_for_steps(live, after.status.steps + 3).status.steps, after.status.steps + 3);
+}
+
+TEST(Live, ResetGoesBackToTheStartBitByBit) {
+  LiveSimulation live(small_scene(), {.playing = false});
+  const std::uint64_t start = live.state_hash();
+  live.step(20);
+  wait_for_steps(live, 20);
+  const std::uint64_t later = live.state_hash();
+  EXPECT_NE(later, start);
+  live.reset();
+  EXPECT_EQ(live.state_hash(), start);
+  wait_for(live, [](const LiveFrame& f) { return f.status.steps == 0; });
+  live.step(20);
+  wait_for_steps(live, 20);
+  EXPECT_EQ(live.state_hash(), later);
+}
+
+TEST(Live, EveryIntegratorTakesOverFromEveryOther) {
+  LiveSimulation live(small_scene(), {.playing = false});
+  std::int64_t steps = 0;
+  for (const std::string_view name : integrator_names()) {
+    live.set_integrator(std::string(name));
+    live.step(3);
+    const LiveFrame frame = wait_for_steps(live, steps += 3);
+    EXPECT_EQ(frame.status.integrator, name);
+    EXPECT_EQ(frame.status.failure, "");
+  }
+  EXPECT_THROW(live.set_integrator("verlet"), InputError);
+}
+
+TEST(Live, SpringModelsChangeWhereTheClothIs) {
+  LiveSimulation live(small_scene(), {.playing = false});
+  live.step(30);
+  const LiveFrame before = wait_for_steps(live, 30);
+  EXPECT_EQ(before.status.model, "simplified");
+  live.set_model(SpringModel::basic);
+  const LiveFrame after = wait_for(live, [](const LiveFrame& f) { return f.status.model == "basic"; });
+  EXPECT_EQ(after.cloths, before.cloths);
+  EXPECT_GT(after.topologies[0]->springs.size(), before.topologies[0]->springs.size());
+  live.step(30);
+  EXPECT_EQ(wait_for_steps(live, 60).status.failure, "");
+}
+
+TEST(Live, WindBlowsWhileItIsSet) {
+  // A sheet that nothing else moves sideways.
+  SceneDesc scene = shipped("paper/fig5_falling", {"cloth[0].grid.cells=[8, 8]", "scene.gravity=[0, 0, 0]",
+                                                   "solver.integrator=paper_fixed"});
+  scene.colliders.clear();
+  LiveSimulation live(scene, {.playing = false});
+  live.set_wind(Vec3(4, 0, 0));
+  live.step(60);
+  const LiveFrame blown = wait_for_steps(live, 60);
+  EXPECT_EQ(blown.status.wind.velocity.x(), 4);
+  EXPECT_GT(blown.status.wind.drag, 0) << "the scene has no drag of its own";
+  EXPECT_GT(blown.cloths[0][0], live.start().cloths[0].frames[0][0]);
+  live.set_wind(std::nullopt);
+  live.step();
+  EXPECT_EQ(wait_for_steps(live, 61).status.wind.drag, 0);
+}
+
+TEST(Live, ClothThatIsGrabbedFollowsAndFallsWhenItIsLetGo) {
+  LiveSimulation live(small_scene(), {.playing = false});
+  live.grab({.cloth = 0, .triangle = 144});
+  const LiveFrame start = wait_for(live, [](const LiveFrame& f) { return f.status.held.has_value(); });
+  const Vec3 target = *start.status.held + Vec3(0, 1, 0);
+  live.move_grab(target);
+  live.step(6 * 90);
+  const LiveFrame held = wait_for_steps(live, 6 * 90);
+  EXPECT_LT((*held.status.held - target).norm(), 0.05) << "the spring sags by about 1 cm";
+  EXPECT_GT(mean_height(held), mean_height(start) + 0.3);
+  live.release();
+  live.step(6 * 12);
+  const LiveFrame free = wait_for_steps(live, 6 * 102);
+  EXPECT_FALSE(free.status.held.has_value());
+  EXPECT_LT(mean_height(free), mean_height(held) - 0.1) << "a fifth of a second's fall is 20 cm";
+}
+
+TEST(Live, AStepThatFailsPausesTellsWhyAndKeepsTheLastGoodState) {
+  SceneDesc scene =
+      shipped("paper/fig3_horizontal_real", {"solver.integrator=explicit", "solver.explicit.substeps=1",
+                                             "cloth[0].name=sail", "cloth[0].grid.cells=[12, 12]"});
+  LiveSimulation live(scene);
+  const LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return !f.status.failure.empty(); });
+  EXPECT_FALSE(frame.status.playing);
+  EXPECT_NE(frame.status.failure.find("sail"), std::string::npos);
+  EXPECT_NE(frame.status.failure.find("substeps"), std::string::npos);
+  for (const float x : frame.cloths[0]) ASSERT_TRUE(std::isfinite(x));
+  // Another integrator goes on from there.
+  live.set_integrator("implicit_euler");
+  live.reset();
+  live.step(2);
+  EXPECT_EQ(wait_for(live, [](const LiveFrame& f) { return f.status.steps == 2; }).status.failure, "");
+}
+
+TEST(Live, TooHeavyClothSlowsTimeAndSaysSo) {
+  // A frame of so many steps takes far longer than a sixtieth of a second on any machine.
+  LiveSimulation live(shipped("paper/fig6_ball", {"solver.steps_per_frame=5000"}));
+  const LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return f.status.too_heavy; });
+  EXPECT_LT(frame.status.simulated_per_second, 0.95);
+  EXPECT_GT(frame.status.simulated_per_second, 0);
+  EXPECT_GT(frame.status.steps_per_second, 0);
+  EXPECT_GT(frame.status.ms_per_step, 0);
+}
+
+TEST(Live, WarnsOfThePapersFrozenCloth) {
+  LiveSimulation live(shipped("paper/fig3_horizontal_real"), {.playing = false});
+  live.set_integrator("paper");
+  const LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return f.status.integrator == "paper"; });
+  ASSERT_FALSE(frame.status.warnings.empty());
+  EXPECT_NE(frame.status.warnings[0].find("of gravity"), std::string::npos);
+}
+
+TEST(Live, EndsInTheMiddleOfPlay) {
+  for (int i = 0; i < 20; ++i) LiveSimulation live(small_scene());
+}
+
+}  // namespace
+}  // namespace weft

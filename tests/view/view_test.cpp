@@ -1,0 +1,381 @@
+/// `weft view` as a person uses it: mouse and keys on a screen of its own (Xvfb, xdotool), judged by what the
+/// window reports and by a picture of it. Waits for states, never for times: machines may be slow.
+/// Exit code 77 where Xvfb or xdotool is missing.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "weft/render/camera.h"
+#include "weft/render/image.h"
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr PictureSize kSize = {760, 480};
+constexpr int kPatience = 60;  // [s]; all of it is only ever used up by a failure
+
+bool is_program(const std::string& name) {
+  return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+void pause_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+
+/// A program under way, which ends with this.
+class Program {
+ public:
+  /// `open`: a file descriptor that it may keep.
+  explicit Program(const std::vector<std::string>& words, int open = -1,
+                   const std::string& err = "/dev/null") {
+    process_ = fork();
+    if (process_ != 0) return;
+    if (open >= 0) fcntl(open, F_SETFD, 0);
+    const int log = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(log, 1);
+    dup2(log, 2);
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+  }
+
+  ~Program() {
+    if (has_ended()) return;
+    kill(process_, SIGTERM);
+    waitpid(process_, nullptr, 0);
+  }
+
+  bool has_ended() {
+    int status = 0;
+    if (process_ < 0 || waitpid(process_, &status, WNOHANG) != process_) return process_ < 0;
+    process_ = -1;
+    exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return true;
+  }
+
+  int exit_code() const { return exit_code_; }
+
+ private:
+  pid_t process_ = -1;
+  int exit_code_ = -1;
+};
+
+/// A screen that nobody sees, for all tests.
+class Screen : public testing::Environment {
+ public:
+  void SetUp() override {
+    int ends[2];
+    ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+    server_ =
+        std::make_unique<Program>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]),
+                                                           "-screen", "0", "1280x720x24", "-nolisten", "tcp"},
+                                  ends[1]);
+    close(ends[1]);
+    std::string number;
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    close(ends[0]);
+    ASSERT_FALSE(number.empty()) << "Xvfb does not start";
+    setenv("DISPLAY", (":" + number).c_str(), 1);
+  }
+
+  void TearDown() override { server_.reset(); }
+
+ private:
+  std::unique_ptr<Program> server_;
+};
+
+void xdotool(const std::string& words) { ASSERT_EQ(std::system(("xdotool " + words).c_str()), 0) << words; }
+
+/// A window of `weft view`, and a hand and an eye for it.
+class View : public testing::Test {
+ protected:
+  void open(std::vector<std::string> more = {}) {
+    const fs::path folder =
+        fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::current_path(folder);
+    // Small, soft and cheap, so that it goes in real time on a busy machine.
+    std::vector<std::string> words = {WEFT_PROGRAM,
+                                      "view",
+                                      "paper/fig6_ball",
+                                      "--report",
+                                      "view.json",
+                                      "--size",
+                                      std::to_string(kSize.width) + "x" + std::to_string(kSize.height),
+                                      "--set",
+                                      "cloth[0].grid.cells=[12, 12]",
+                                      "--set",
+                                      "solver.steps_per_frame=6",
+                                      "--set",
+                                      "solver.integrator=paper_fixed"};
+    words.insert(words.end(), more.begin(), more.end());
+    program_ = std::make_unique<Program>(words, -1, "words.txt");
+    // Whoever has the mouse gets the keys: no window manager is here.
+    xdotool("mousemove 700 440");
+    until("the window is there", [](const Json& j) { return j["controls"].contains("wind x"); });
+  }
+
+  /// Presses J until the window has reported something that is wanted.
+  Json until(const std::string& what, const std::function<bool(const Json&)>& is_wanted) {
+    const auto start = std::chrono::steady_clock::now();
+    Json state;
+    while (std::chrono::steady_clock::now() - start < std::chrono::seconds(kPatience)) {
+      if (program_->has_ended()) {
+        ADD_FAILURE() << "the program has ended before " << what << ": " << words();
+        return state;
+      }
+      if (std::system("xdotool key j 2> /dev/null") != 0) break;
+      pause_for(30);
+      std::ifstream in("view.json");
+      const Json now = Json::parse(in, nullptr, false);
+      if (now.is_discarded()) continue;
+      state = now;
+      if (is_wanted(state)) return state;
+    }
+    ADD_FAILURE() << "waited in vain until " << what << "; the last state is " << state.dump(1);
+    return state;
+  }
+
+  /// As it is after all that was done up to now has been seen and drawn.
+  Json state() {
+    std::int64_t first = -1;
+    return until("pictures are drawn", [&](const Json& j) {
+      if (first < 0) first = j["drawn_frames"];
+      return j["drawn_frames"] > first + 2;
+    });
+  }
+
+  Json paused() {
+    if (state()["playing"]) xdotool("key space");
+    return until("it is paused", [](const Json& j) { return !j["sides"][0]["playing"]; });
+  }
+
+  void drag(const std::string& button, int x, int y, int to_x, int to_y) {
+    move(x, y);
+    xdotool("mousedown " + button);
+    state();
+    move((x + to_x) / 2, (y + to_y) / 2);
+    move(to_x, to_y);
+    state();
+    xdotool("mouseup " + button);
+  }
+
+  static void move(int x, int y) { xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y)); }
+
+  void close_by(const std::string& key) {
+    xdotool("key " + key);
+    const auto start = std::chrono::steady_clock::now();
+    while (!program_->has_ended() &&
+           std::chrono::steady_clock::now() - start < std::chrono::seconds(kPatience))
+      pause_for(10);
+    EXPECT_EQ(program_->exit_code(), 0) << words();
+  }
+
+  static std::string words() {
+    std::ifstream in("words.txt");
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  static Vec3 vector(const Json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
+
+  static Camera camera(const Json& state) {
+    const Json& c = state["camera"];
+    return {.target = vector(c["target"]),
+            .distance = c["distance"],
+            .azimuth_deg = c["azimuth"],
+            .elevation_deg = c["elevation"]};
+  }
+
+  /// Where a point is in the window.
+  static Eigen::Vector2i pixel(const Camera& camera, const Vec3& p) {
+    const Eigen::Vector4d clip =
+        Camera::projection(camera.fov_deg, kSize.aspect(), 0.1, 100) * camera.view() * p.homogeneous();
+    return {static_cast<int>((1 + clip.x() / clip.w()) / 2 * kSize.width),
+            static_cast<int>((1 - clip.y() / clip.w()) / 2 * kSize.height)};
+  }
+
+  std::unique_ptr<Program> program_;
+};
+
+TEST_F(View, TurnsMovesAndZooms) {
+  open();
+  const Json start = paused();
+  // On empty space: the lower right corner, below the cloth.
+  drag("1", 700, 440, 600, 400);
+  const Json turned = until("the view has turned", [&](const Json& j) {
+    return j["camera"]["azimuth"] != start["camera"]["azimuth"] &&
+           j["camera"]["elevation"] != start["camera"]["elevation"];
+  });
+  EXPECT_EQ(turned["camera"]["target"], start["camera"]["target"]);
+  EXPECT_TRUE(turned["sides"][0]["held"].is_null());
+  drag("3", 600, 400, 640, 400);
+  EXPECT_NE(state()["camera"]["azimuth"], turned["camera"]["azimuth"]) << "the right button turns as well";
+  xdotool("keydown shift");
+  drag("1", 700, 440, 660, 420);
+  xdotool("keyup shift");
+  const Json moved = until("the view has moved",
+                           [&](const Json& j) { return j["camera"]["target"] != start["camera"]["target"]; });
+  xdotool("click 4");
+  until("the view is nearer", [&](const Json& j) {
+    return j["camera"]["distance"].get<double>() < 0.95 * moved["camera"]["distance"].get<double>();
+  });
+  xdotool("key c");
+  until("the view is as at the start", [&](const Json& j) { return j["camera"] == start["camera"]; });
+  EXPECT_EQ(state()["sides"][0]["steps"], start["sides"][0]["steps"]) << "nothing has moved but the eye";
+  close_by("q");
+}
+
+TEST_F(View, PausesStepsResetsAndSwitches) {
+  open();
+  until("it plays", [](const Json& j) { return j["sides"][0]["steps"] > 12; });
+  const Json before = paused();
+  const std::int64_t steps = before["sides"][0]["steps"];
+  EXPECT_EQ(state()["sides"][0]["steps"], steps) << "paused";
+  const auto has_steps = [](std::int64_t n) {
+    return [n](const Json& j) { return j["sides"][0]["steps"] == n; };
+  };
+  xdotool("key period");
+  until("there is one more step", has_steps(steps + 1));
+  xdotool("key s");
+  until("there are two more steps", has_steps(steps + 2));
+  xdotool("key Right");
+  until("there is a frame more", has_steps(steps + 8));
+  xdotool("key i");
+  until("the next integrator is in use",
+        [](const Json& j) { return j["sides"][0]["integrator"] == "desbrun"; });
+  xdotool("key shift+i");
+  until("it is the first one again",
+        [](const Json& j) { return j["sides"][0]["integrator"] == "paper_fixed"; });
+  xdotool("key m");
+  until("other springs are in use", [](const Json& j) { return j["sides"][0]["model"] == "alternating"; });
+  xdotool("key g");
+  until("springs are shown", [](const Json& j) { return j["view"] == "springs"; });
+  xdotool("key r");
+  until("it is at the start", has_steps(0));
+  EXPECT_EQ(state()["sides"][0]["time"], 0);
+  xdotool("key space");
+  until("it plays again", [](const Json& j) { return j["sides"][0]["steps"] > 0; });
+  close_by("Escape");
+  std::ifstream in("view.json");
+  EXPECT_GT(Json::parse(in)["drawn_frames"], 0) << "the report is written at the end";
+}
+
+TEST_F(View, GrabsClothPullsItUpAndLetsItGo) {
+  open();
+  const Json near = paused();
+  xdotool("click --repeat 5 5");  // to have room above the cloth
+  xdotool("key r");
+  const Json start = until("it is at the start, farther away", [&](const Json& j) {
+    return j["sides"][0]["steps"] == 0 &&
+           j["camera"]["distance"].get<double>() > 1.8 * near["camera"]["distance"].get<double>();
+  });
+  const Vec3 center = vector(start["sides"][0]["center"]);
+  const Eigen::Vector2i at = pixel(camera(start), center);
+  move(at.x(), at.y());
+  xdotool("mousedown 1");
+  const Json held = until("cloth is held", [](const Json& j) { return !j["sides"][0]["held"].is_null(); });
+  // A pixel is 5 mm, and three times that along the cloth that is seen from 20 degrees above.
+  EXPECT_LT((vector(held["sides"][0]["held"]) - center).norm(), 0.04);
+  EXPECT_EQ(held["camera"], start["camera"]) << "a grab does not turn the view";
+  xdotool("key space");
+  const Eigen::Vector2i up = pixel(camera(start), center + Vec3(0, 0.35, 0));
+  move(up.x(), (at.y() + up.y()) / 2);
+  move(up.x(), up.y());
+  until("the hand is up", [&](const Json& j) {
+    return j["sides"][0]["held"][1] > center.y() + 0.25 && j["sides"][0]["time"] > 1.5;
+  });
+  xdotool("mouseup 1");
+  until("it is let go", [](const Json& j) { return j["sides"][0]["held"].is_null() && !j["grabbing"]; });
+  until("it falls", [&](const Json& j) { return j["sides"][0]["center"][1] < center.y() - 0.15; });
+  close_by("q");
+}
+
+TEST_F(View, WindOfTheSliderBlowsClothAway) {
+  open();
+  const Json start = paused();
+  const Json& slider = start["controls"]["wind x"];
+  const int left = slider[0], right = slider[2], y = (slider[1].get<int>() + slider[3].get<int>()) / 2;
+  drag("1", left + (right - left) / 4, y, left + 10, y);
+  xdotool("key period");
+  const Json blown = until("the wind blows", [](const Json& j) {
+    return j["sides"][0]["wind"]["velocity"][0] < 0 && j["sides"][0]["wind"]["drag"] > 0;
+  });
+  EXPECT_EQ(blown["camera"], start["camera"]) << "the slider has the mouse, the view has not";
+  xdotool("key space");
+  until("the cloth is blown to the left", [&](const Json& j) {
+    return j["sides"][0]["center"][0] < start["sides"][0]["center"][0].get<double>() - 0.05;
+  });
+  close_by("q");
+}
+
+TEST_F(View, ComparesTwoIntegratorsAndSavesThePicture) {
+  open({"--compare", "paper,paper_fixed"});
+  const Json state = paused();
+  ASSERT_EQ(state["sides"].size(), 2u);
+  EXPECT_EQ(state["sides"][0]["integrator"], "paper");
+  EXPECT_EQ(state["sides"][1]["integrator"], "paper_fixed");
+  xdotool("key h");
+  until("help is shown", [](const Json& j) { return j["help"] == true; });
+  xdotool("key h");
+  until("help is away", [](const Json& j) { return j["help"] == false; });
+  xdotool("key p");
+  const Json saved = until("the picture is saved", [](const Json& j) { return !j["pictures"].empty(); });
+  const Image image = read_png(saved["pictures"][0].get<std::string>());
+  ASSERT_EQ(image.width, kSize.width);
+  ASSERT_EQ(image.height, kSize.height);
+  // Both halves show red cloth and something that is not red.
+  for (const int half : {0, 1}) {
+    int red = 0, other = 0;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = half * kSize.width / 2; x < (half + 1) * kSize.width / 2; ++x) {
+        const std::uint8_t* p = image.pixel(x, y);
+        ++(p[0] > p[1] + 40 && p[0] > p[2] + 40 ? red : other);
+      }
+    }
+    EXPECT_GT(red, 1000) << "half " << half;
+    EXPECT_GT(other, 1000) << "half " << half;
+  }
+  close_by("q");
+}
+
+TEST_F(View, SaysWhatToDoWhereThereIsNoDisplay) {
+  fs::create_directories(WEFT_OUTPUT_DIR);
+  fs::current_path(WEFT_OUTPUT_DIR);
+  const int status = std::system("env -u DISPLAY -u WAYLAND_DISPLAY '" WEFT_PROGRAM
+                                 "' view paper/fig6_ball > words.txt 2>&1");
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_NE(words().find("no display"), std::string::npos) << words();
+  EXPECT_NE(words().find("weft render"), std::string::npos) << words();
+}
+
+}  // namespace
+}  // namespace weft
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  for (const char* name : {"Xvfb", "xdotool"}) {
+    if (weft::is_program(name)) continue;
+    std::printf("skipped: there is no %s\n", name);
+    return 77;
+  }
+  testing::AddGlobalTestEnvironment(new weft::Screen);
+  return RUN_ALL_TESTS();
+}
