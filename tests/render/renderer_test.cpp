@@ -84,7 +84,7 @@ TEST(Renderer, ShowsInsteadOfReadingInAWindow) {
   auto device = std::make_unique<MockDevice>();
   const MockDevice& mock = *device;
   Renderer renderer(std::move(device));
-  renderer.show(make_still_life(), {64, 64});
+  renderer.show(make_still_life(), {64, 64}, {0, 0, {64, 64}});
   EXPECT_EQ(mock.log().back(), "show picture");
 }
 

@@ -152,6 +152,9 @@ Image MockDevice::read(TargetId target) {
   return Image(t.desc.width, t.desc.height);
 }
 
-void MockDevice::show(TargetId target) { log_.push_back("show " + at(target).name); }
+void MockDevice::show(TargetId target, const WindowPart& part) {
+  require(part.size.width > 0 && part.size.height > 0, "a part of the window needs pixels");
+  log_.push_back("show " + at(target).name);
+}
 
 }  // namespace weft

@@ -26,7 +26,7 @@ class MockDevice : public Device {
   void draw(const DrawCall& call) override;
   void resolve(TargetId from, TargetId to) override;
   Image read(TargetId target) override;  // all zeros
-  void show(TargetId target) override;
+  void show(TargetId target, const WindowPart& part) override;
 
  private:
   struct Target {
