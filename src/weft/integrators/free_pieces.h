@@ -1,0 +1,26 @@
+#pragma once
+/// Private to integrators/: the pieces of a cloth that no pin holds.
+
+#include <vector>
+
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+/// Pieces of cloth that hang together by springs, without a pinned particle among them.
+class FreePieces {
+ public:
+  void find(const ClothModel& model, const std::vector<int>& pinned);
+
+  /// Takes from the displacements of each piece their mean, weighted by `weight` (laid out by `rows`).
+  void remove_mean(const PaddedRows& rows, const std::vector<float>& weight, Vec3Array& displacement);
+
+ private:
+  std::vector<int> piece_;  // of each particle, -1: pinned or tied to a pin; empty if there are no free pieces
+  std::vector<Vec3> moment_;
+  std::vector<double> weight_;
+};
+
+}  // namespace weft

@@ -1,0 +1,242 @@
+/// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
+/// V-cycle on the paper's constant matrix. A step minimises the incremental potential
+///
+///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and gravity
+///
+/// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
+///
+/// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
+/// it is more than a fifth of E; a potential that rises makes the step shorter.
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/forces/potential.h"
+#include "weft/integrators/common.h"
+#include "weft/integrators/effort.h"
+#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/newton_kernels.h"
+#include "weft/integrators/scalar_preconditioner.h"
+#include "weft/solvers/conjugate_gradients.h"
+
+namespace weft {
+namespace {
+
+constexpr double kMissedShare = 0.2;  // of the energy: if the model missed more, one more Newton step
+constexpr int kMaxHalvings = 8;       // of a Newton step after which the potential is higher than before
+
+class NewtonIntegrator final : public Integrator {
+ public:
+  explicit NewtonIntegrator(const NewtonSettings& settings) : settings_(settings) {}
+
+  IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
+                           JobSystem& jobs, ClothState& state) override {
+    fit(model, environment.pins);
+    if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
+    const StepScheme scheme = choose_scheme(model, environment, step, state.history);
+    prepare_matrices(model, environment.wind, scheme, jobs);
+    begin_step(model, environment.pins, scheme, jobs, state);
+    const IntegratorReport report = minimise(choose_effort(settings_, model, step), jobs);
+    finish_step(environment.pins, scheme, jobs, state);
+    return report;
+  }
+
+ private:
+  /// What the matrices depend on.
+  struct Key {
+    std::uint64_t model_id = 0;
+    double step = 0, beta = 0, drag = 0;
+    bool operator==(const Key&) const = default;
+  };
+
+  void fit(const ClothModel& model, const PinTargets& pins) {
+    if (model.topology != topology_) {
+      topology_ = model.topology;
+      rows_ = padded_rows_of(*topology_);
+      for (Vec3Array* field : {&x_, &trial_, &force_, &direction_, &correction_}) *field = Vec3Array(rows_.size());
+      key_ = {};
+    }
+    if (model.id == key_.model_id && pins.particle == pinned_) return;
+    pinned_ = pins.particle;
+    free_pieces_.find(model, pinned_);
+    key_ = {};
+  }
+
+  /// The past of cloth that has been moving with its present velocity, and falling freely as far as pins do
+  /// not hold it: x₋₁ = x − h v + ½ h² a, v₋₁ = v − h a. It halves the error of a plain first step.
+  void invent_history(const ClothModel& model, const Vec3& gravity, double step, JobSystem& jobs,
+                      ClothState& state) {
+    MotionHistory& history = state.history;
+    if (history.displacement.size() != state.x.size()) {
+      history.displacement.resize(state.x.size());
+      history.velocity.resize(state.x.size());
+    }
+    const Vec3 a = free_share(model, gravity, jobs, state) * gravity;
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 v = state.v.get(i);
+      history.displacement.set(i, step * v - 0.5 * step * step * a);
+      history.velocity.set(i, v - step * a);
+    }
+    history.step = step;
+    history.had_contact = false;
+  }
+
+  /// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1.
+  double free_share(const ClothModel& model, const Vec3& gravity, JobSystem& jobs, const ClothState& state) {
+    const double gravity_sq = gravity.squaredNorm();
+    if (pinned_.empty() || gravity_sq == 0) return 1;
+    for (int i = 0; i < model.num_particles(); ++i) x_.set(rows_.index(i), state.x.get(i));
+    potential_.fit(model, 0);
+    potential_.target = x_;
+    potential_.linearise(x_, jobs, force_);
+    set_at_pins(Vec3::Zero(), force_);
+    double mass = 0, carried = 0;
+    for (int i = 0; i < model.num_particles(); ++i) {
+      mass += model.mass[i];
+      carried -= force_.get(rows_.index(i)).dot(gravity) / gravity_sq;
+    }
+    for (const int p : pinned_) mass -= model.mass[p];
+    return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
+  }
+
+  StepScheme choose_scheme(const ClothModel& model, const Environment& environment, double step,
+                           const MotionHistory& history) const {
+    StepScheme scheme = make_bdf2(step, history.step);
+    const double time = step / scheme.beta, wind = time * environment.wind.drag / model.material.density;
+    scheme.keep = 1 / (1 + wind);
+    scheme.gain = scheme.keep * (time * environment.gravity + wind * environment.wind.velocity);
+    return scheme;
+  }
+
+  void prepare_matrices(const ClothModel& model, const Wind& wind, const StepScheme& scheme,
+                        JobSystem& jobs) {
+    const Key key{model.id, scheme.step, scheme.beta, wind.drag};
+    const double rate = scheme.beta / scheme.step;
+    potential_.fit(model, rate);
+    if (key == key_) return;
+    key_ = key;
+    const double per_mass = rate * (rate + wind.drag / model.material.density);
+    for (int i = 0; i < model.num_particles(); ++i)
+      potential_.weight[rows_.index(i)] = static_cast<float>(per_mass * model.mass[i]);
+    preconditioner_.build(model, rows_, rate * model.material.damping, potential_.weight, pinned_, jobs);
+  }
+
+  /// x = y, and the work space of the step.
+  void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
+    noise_ = energy_noise(model, state);
+    pin_motion_.prepare(pins, scheme.step, state);
+    predict(scheme, rows_, jobs, state, potential_.target);
+    for (std::size_t p = 0; p < pinned_.size(); ++p) {
+      potential_.target.set(rows_.index(pinned_[p]), pins.position[p] - state.origin);
+      state.v.set(pinned_[p], pin_motion_.velocity()[p]);
+      state.history.displacement.set(pinned_[p], scheme.step * pin_motion_.velocity()[p]);
+    }
+    if (potential_.is_damped()) copy_lag(scheme, state);
+    x_ = potential_.target;
+    std::fill_n(correction_.x(), correction_.size(), 0.0f);
+    std::fill_n(correction_.y(), correction_.size(), 0.0f);
+    std::fill_n(correction_.z(), correction_.size(), 0.0f);
+  }
+
+  /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
+  /// place of the cloth's size.
+  double energy_noise(const ClothModel& model, const ClothState& state) const {
+    constexpr double kHalfUnit = 6e-8;
+    const double size = kHalfUnit * (state.x.get(0).norm() + 1);
+    double stiffness = 0;
+    for (const double k : model.stiffness_sum) stiffness += k;
+    return stiffness * size * size;
+  }
+
+  /// The velocities that go with y, as the potential wants them.
+  void copy_lag(const StepScheme& scheme, const ClothState& state) {
+    const double time = scheme.step / scheme.beta;
+    for (std::size_t i = 0; i < state.v.size(); ++i)
+      potential_.lag.set(rows_.index(static_cast<int>(i)), time * state.v.get(i));
+  }
+
+  /// Newton steps from x = y; afterwards correction_ holds x − y.
+  IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
+    IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
+    double before = 0, after = 0;
+    for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
+      before = potential_.linearise(x_, jobs, force_);
+      set_at_pins(Vec3::Zero(), force_);
+      const CgReport linear = solve(effort, jobs);
+      *report.linear_iterations += linear.iterations;
+      double share = 1;
+      after = try_step(share, jobs);
+      for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
+        ++*report.guard_events;
+        share /= 2;
+        after = try_step(share, jobs);
+      }
+      take_step(share, jobs);
+      const double predicted = share * (2 - share) * linear.decrease;
+      const bool missed = after - (before - predicted) > kMissedShare * after + noise_;
+      if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
+        ++asked;
+        ++*report.guard_events;
+      }
+    }
+    return report;
+  }
+
+  CgReport solve(const Effort& effort, JobSystem& jobs) {
+    const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
+      const double dot = potential_.multiply(p, jobs, q);
+      set_at_pins(Vec3::Zero(), q);
+      return dot;
+    };
+    const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
+      return preconditioner_.apply(r, jobs, z);
+    };
+    return gradients_.solve(multiply, precondition, force_, effort.linear, jobs, direction_);
+  }
+
+  /// The potential at x + share · direction [J].
+  double try_step(double share, JobSystem& jobs) {
+    add_scaled(x_, share, direction_, jobs, trial_);
+    return potential_.energy(trial_, jobs);
+  }
+
+  /// correction += share · direction, and x after it. Springs do not move the middle of a free piece of cloth:
+  /// what an unfinished solve has moved it by is taken back.
+  void take_step(double share, JobSystem& jobs) {
+    add_scaled(correction_, share, direction_, jobs, correction_);
+    free_pieces_.remove_mean(rows_, potential_.weight, correction_);
+    add_scaled(potential_.target, 1, correction_, jobs, x_);
+  }
+
+  void finish_step(const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
+    correct(scheme, rows_, correction_, jobs, state);
+    pin_motion_.finish(pins, state);
+    state.history.step = scheme.step;
+    state.history.had_contact = false;
+  }
+
+  void set_at_pins(const Vec3& value, Vec3Array& field) const {
+    for (const int p : pinned_) field.set(rows_.index(p), value);
+  }
+
+  NewtonSettings settings_;
+  std::shared_ptr<const ClothTopology> topology_;
+  PaddedRows rows_;
+  std::vector<int> pinned_;
+  FreePieces free_pieces_;
+  Key key_;
+  IncrementalPotential potential_;
+  ScalarPreconditioner preconditioner_;
+  ConjugateGradients gradients_;
+  PinMotion pin_motion_;
+  double noise_ = 0;  // of energies, from the rounding of positions [J]
+  Vec3Array x_, trial_, force_, direction_, correction_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_newton(const NewtonSettings& settings) {
+  return std::make_unique<NewtonIntegrator>(settings);
+}
+
+}  // namespace weft

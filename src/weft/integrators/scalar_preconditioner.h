@@ -1,0 +1,33 @@
+#pragma once
+/// Private to integrators/: the paper's constant approximate matrix (Eq. 11) as preconditioner of `newton`.
+
+#include <memory>
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/core/padded_rows.h"
+#include "weft/model/cloth_model.h"
+#include "weft/solvers/grid_multigrid.h"
+
+namespace weft {
+
+/// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved roughly by one multigrid
+/// V-cycle. On grids bending springs count as four times their stiffness along the structural springs.
+class ScalarPreconditioner {
+ public:
+  /// Rebuilds the values; the hierarchy itself only for another cloth. `diagonal` is D, laid out by `rows`;
+  /// `damping` is added to every stiffness [N/m]. Pinned particles drop out of the matrix.
+  void build(const ClothModel& model, const PaddedRows& rows, double damping,
+             const std::vector<float>& diagonal, const std::vector<int>& pinned, JobSystem& jobs);
+
+  /// z ≈ A⁻¹ r, zero at pinned particles. Returns r·z.
+  double apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
+
+ private:
+  void fill_grid(const ClothModel& model, double damping);
+  void pin_grid(const std::vector<int>& pinned);
+
+  GridMultigrid grid_;
+};
+
+}  // namespace weft
