@@ -7,11 +7,42 @@ namespace weft {
 void ScalarPreconditioner::build(const ClothModel& model, const PaddedRows& rows, double damping,
                                  const std::vector<float>& diagonal, const std::vector<int>& pinned,
                                  JobSystem& jobs) {
+  is_grid_ = model.topology->grid.has_value();
+  first_ = rows.row(0);
+  if (!is_grid_) return build_mesh(model, damping, diagonal.data() + first_, pinned);
   grid_.resize(rows);
   fill_grid(model, damping);
   std::copy(diagonal.begin(), diagonal.end(), grid_.finest().excess.begin());
   pin_grid(pinned);
   grid_.build(jobs);
+}
+
+void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping, const float* diagonal,
+                                      const std::vector<int>& pinned) {
+  const NeighbourTable& table = model.topology->table;
+  const int n = model.num_particles();
+  std::vector<char> is_pinned(n, 0);
+  for (const int p : pinned) is_pinned[p] = 1;
+  SparseMatrix couplings;
+  couplings.num_columns = n;
+  std::vector<double> excess(diagonal, diagonal + n);
+  for (int i = 0; i < n; ++i) {
+    constexpr int kLanes = NeighbourTable::kLanes;
+    const int slice = i / kLanes;
+    if (is_pinned[i]) excess[i] = 0;
+    for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1] && !is_pinned[i]; ++row) {
+      const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
+      if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
+      const double c = model.stiffness(model.topology->springs[spring].kind) + damping;
+      if (is_pinned[table.neighbour[entry]]) {
+        excess[i] += c;
+      } else if (c > 0) {
+        couplings.add_entry(table.neighbour[entry], c);
+      }
+    }
+    couplings.end_row();
+  }
+  mesh_.build(couplings, excess);
 }
 
 void ScalarPreconditioner::fill_grid(const ClothModel& model, double damping) {
@@ -58,7 +89,7 @@ void ScalarPreconditioner::pin_grid(const std::vector<int>& pinned) {
 }
 
 double ScalarPreconditioner::apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
-  return grid_.apply(r, jobs, z);
+  return is_grid_ ? grid_.apply(r, jobs, z) : mesh_.apply(r, first_, jobs, z);
 }
 
 }  // namespace weft
