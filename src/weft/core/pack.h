@@ -43,28 +43,28 @@ struct Pack {
   float& operator[](int l) { return lane[l]; }
 };
 
-#define WEFT_PACK_OPERATOR(op)                               \
-  template <int W>                                           \
-  Pack<W> operator op(const Pack<W>& a, const Pack<W>& b) {  \
-    Pack<W> r;                                               \
-    for (int l = 0; l < W; ++l) r[l] = a[l] op b[l];         \
-    return r;                                                \
-  }                                                          \
-  template <int W>                                           \
-  Pack<W> operator op(const Pack<W>& a, float b) {           \
-    Pack<W> r;                                               \
-    for (int l = 0; l < W; ++l) r[l] = a[l] op b;            \
-    return r;                                                \
-  }                                                          \
-  template <int W>                                           \
-  Pack<W> operator op(float a, const Pack<W>& b) {           \
-    Pack<W> r;                                               \
-    for (int l = 0; l < W; ++l) r[l] = a op b[l];            \
-    return r;                                                \
-  }                                                          \
-  template <int W>                                           \
-  Pack<W>& operator op##=(Pack<W>& a, const Pack<W>& b) {    \
-    return a = a op b;                                       \
+#define WEFT_PACK_OPERATOR(op)                              \
+  template <int W>                                          \
+  Pack<W> operator op(const Pack<W>& a, const Pack<W>& b) { \
+    Pack<W> r;                                              \
+    for (int l = 0; l < W; ++l) r[l] = a[l] op b[l];        \
+    return r;                                               \
+  }                                                         \
+  template <int W>                                          \
+  Pack<W> operator op(const Pack<W>& a, float b) {          \
+    Pack<W> r;                                              \
+    for (int l = 0; l < W; ++l) r[l] = a[l] op b;           \
+    return r;                                               \
+  }                                                         \
+  template <int W>                                          \
+  Pack<W> operator op(float a, const Pack<W>& b) {          \
+    Pack<W> r;                                              \
+    for (int l = 0; l < W; ++l) r[l] = a op b[l];           \
+    return r;                                               \
+  }                                                         \
+  template <int W>                                          \
+  Pack<W>& operator op##=(Pack<W>& a, const Pack<W>& b) {   \
+    return a = a op b;                                      \
   }
 WEFT_PACK_OPERATOR(+)
 WEFT_PACK_OPERATOR(-)
@@ -164,21 +164,21 @@ WEFT_ALWAYS_INLINE void for_packs(int count, const Body& body) {
 // WEFT_MULTIVERSION_PACKS(name, (parameters), (arguments)): as WEFT_MULTIVERSION, for a body that is a
 // template over the width of its packs.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define WEFT_MULTIVERSION_PACKS(name, parameters, arguments)                                           \
-  [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body<8> arguments; }   \
-  [[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] static void name##_avx512 parameters {     \
-    name##_body<16> arguments;                                                                         \
-  }                                                                                                    \
-  static void name##_baseline parameters { name##_body<4> arguments; }                                 \
-  static void name parameters {                                                                        \
-    switch (::weft::simd_level()) {                                                                    \
-      case ::weft::SimdLevel::avx512:                                                                  \
-        return name##_avx512 arguments;                                                                \
-      case ::weft::SimdLevel::avx2:                                                                    \
-        return name##_avx2 arguments;                                                                  \
-      case ::weft::SimdLevel::baseline:                                                                \
-        return name##_baseline arguments;                                                              \
-    }                                                                                                  \
+#define WEFT_MULTIVERSION_PACKS(name, parameters, arguments)                                         \
+  [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body<8> arguments; } \
+  [[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] static void name##_avx512 parameters {   \
+    name##_body<16> arguments;                                                                       \
+  }                                                                                                  \
+  static void name##_baseline parameters { name##_body<4> arguments; }                               \
+  static void name parameters {                                                                      \
+    switch (::weft::simd_level()) {                                                                  \
+      case ::weft::SimdLevel::avx512:                                                                \
+        return name##_avx512 arguments;                                                              \
+      case ::weft::SimdLevel::avx2:                                                                  \
+        return name##_avx2 arguments;                                                                \
+      case ::weft::SimdLevel::baseline:                                                              \
+        return name##_baseline arguments;                                                            \
+    }                                                                                                \
   }
 #else
 #define WEFT_MULTIVERSION_PACKS(name, parameters, arguments) \

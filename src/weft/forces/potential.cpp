@@ -28,7 +28,7 @@ void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
     topology_ = model.topology;
     rows_ = padded_rows_of(*topology_);
     weight.assign(rows_.size(), 0.0f);
-    for (Vec3Array* field : {&target, &lag, &damped_}) *field = Vec3Array(rows_.size());
+    for (Vec3Array* field : {&target, &lag, &x_, &damped_}) *field = Vec3Array(rows_.size());
     hessian_.clear();
     slope_.clear();
   }
@@ -65,17 +65,19 @@ void IncrementalPotential::fit_mesh(const ClothModel& model) {
   parts_.assign(table.num_slices(), 0.0);
 }
 
-void IncrementalPotential::compute_damping_field(const Vec3Array& x, JobSystem& jobs) {
-  if (!is_damped()) return;
-  const int size = static_cast<int>(rows_.size());
-  const auto combine = [&](const float* at, const float* y, const float* lagging, float* z) {
-    parallel_for(jobs, size, 4 * kGrain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) z[i] = (at[i] - y[i]) + lagging[i];
-    });
+/// x = y + e, and z = e + lag.
+void IncrementalPotential::place(const Vec3Array& e, JobSystem& jobs) {
+  const auto add = [&](const float* a, const float* b, float* sum) {
+    parallel_for(jobs, static_cast<int>(rows_.size()), 4 * kGrain,
+                 [&](int begin, int end) { kernels::add(a, b, sum, begin, end); });
   };
-  combine(x.x(), target.x(), lag.x(), damped_.x());
-  combine(x.y(), target.y(), lag.y(), damped_.y());
-  combine(x.z(), target.z(), lag.z(), damped_.z());
+  add(target.x(), e.x(), x_.x());
+  add(target.y(), e.y(), x_.y());
+  add(target.z(), e.z(), x_.z());
+  if (!is_damped()) return;
+  add(e.x(), lag.x(), damped_.x());
+  add(e.y(), lag.y(), damped_.y());
+  add(e.z(), lag.z(), damped_.z());
 }
 
 double IncrementalPotential::sum_parts(int count) const {
@@ -84,7 +86,7 @@ double IncrementalPotential::sum_parts(int count) const {
   return sum;
 }
 
-kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& x) {
+kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
   return {.rows = rows_,
           .num_families = num_families_,
           .alternates = topology_->spring_model == SpringModel::alternating,
@@ -93,14 +95,14 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& x) {
           .damping = damping_,
           .is_projected = is_projected_,
           .weight = weight.data(),
-          .x = kernels::rows(x),
-          .target = kernels::rows(std::as_const(target)),
+          .x = kernels::rows(std::as_const(x_)),
+          .offset = kernels::rows(e),
           .damped = kernels::rows(std::as_const(damped_)),
           .hessian = hessian_.data(),
           .slope = slope_.data()};
 }
 
-kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& x) {
+kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& e) {
   return {.table = &topology_->table,
           .first = rows_.row(0),
           .num_particles = topology_->num_particles(),
@@ -108,21 +110,20 @@ kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& x) {
           .damping = damping_,
           .is_projected = is_projected_,
           .weight = weight.data(),
-          .x = kernels::rows(x),
-          .target = kernels::rows(std::as_const(target)),
+          .x = kernels::rows(std::as_const(x_)),
+          .offset = kernels::rows(e),
           .damped = kernels::rows(std::as_const(damped_)),
           .hessian = hessian_.data()};
 }
 
-double IncrementalPotential::compute(const Vec3Array& x, JobSystem& jobs, Vec3Array* force) {
-  compute_damping_field(x, jobs);
+double IncrementalPotential::compute(const Vec3Array& e, JobSystem& jobs, Vec3Array* force) {
+  place(e, jobs);
   const bool store = force != nullptr;
   double* parts = parts_.data();
   if (topology_->grid) {
-    kernels::GridPotential g = grid_view(x);
-    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_), [&](int begin, int end) {
-      kernels::grid_springs(g, store, begin, end, parts);
-    });
+    kernels::GridPotential g = grid_view(e);
+    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
+                 [&](int begin, int end) { kernels::grid_springs(g, store, begin, end, parts); });
     if (store) {
       g.force = kernels::rows(*force);
       parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
@@ -130,7 +131,7 @@ double IncrementalPotential::compute(const Vec3Array& x, JobSystem& jobs, Vec3Ar
     }
     return sum_parts(rows_.num_rows);
   }
-  kernels::MeshPotential m = mesh_view(x);
+  kernels::MeshPotential m = mesh_view(e);
   if (store) m.force = kernels::rows(*force);
   const int num_slices = topology_->table.num_slices();
   parallel_for(jobs, num_slices, kGrain / NeighbourTable::kLanes,
@@ -138,10 +139,10 @@ double IncrementalPotential::compute(const Vec3Array& x, JobSystem& jobs, Vec3Ar
   return sum_parts(num_slices);
 }
 
-double IncrementalPotential::energy(const Vec3Array& x, JobSystem& jobs) { return compute(x, jobs, nullptr); }
+double IncrementalPotential::energy(const Vec3Array& e, JobSystem& jobs) { return compute(e, jobs, nullptr); }
 
-double IncrementalPotential::linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force) {
-  return compute(x, jobs, &force);
+double IncrementalPotential::linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force) {
+  return compute(e, jobs, &force);
 }
 
 double IncrementalPotential::multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) {
@@ -150,9 +151,8 @@ double IncrementalPotential::multiply(const Vec3Array& p, JobSystem& jobs, Vec3A
   double* parts = parts_.data();
   if (topology_->grid) {
     const kernels::GridPotential g = grid_view(p);
-    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_), [&](int begin, int end) {
-      kernels::grid_multiply(g, in, out, begin, end, parts);
-    });
+    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
+                 [&](int begin, int end) { kernels::grid_multiply(g, in, out, begin, end, parts); });
     return sum_parts(rows_.num_rows);
   }
   const kernels::MeshPotential m = mesh_view(p);

@@ -1,7 +1,8 @@
 #pragma once
 /// The incremental potential of an implicit step, in floats, for the fast solver:
 ///
-///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring, if damping is projected)
+///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring, if damping is
+///     projected)
 ///
 /// y is where the particles would go without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with
 /// the velocity v_y that goes with y, and c = b β/h: the dissipation of spring damping at the new velocity
@@ -45,11 +46,11 @@ class IncrementalPotential {
   Vec3Array target;           // y [m]
   Vec3Array lag;              // (h/β) v_y; only used with damping [m]
 
-  /// E(x) [J].
-  double energy(const Vec3Array& x, JobSystem& jobs);
+  /// E(y + e) [J]. Offsets from y, for they are small: in floats x − y would lose them where steps are small.
+  double energy(const Vec3Array& e, JobSystem& jobs);
 
-  /// E(x) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
-  double linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force);
+  /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
+  double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
 
   /// q = A p with the Hessian A of linearise(), and p·q. p must be zero where no particle is.
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
@@ -57,24 +58,25 @@ class IncrementalPotential {
  private:
   void fit_grid(const ClothModel& model);
   void fit_mesh(const ClothModel& model);
-  kernels::GridPotential grid_view(const Vec3Array& x);
-  kernels::MeshPotential mesh_view(const Vec3Array& x);
-  double compute(const Vec3Array& x, JobSystem& jobs, Vec3Array* force);
-  void compute_damping_field(const Vec3Array& x, JobSystem& jobs);
+  kernels::GridPotential grid_view(const Vec3Array& e);
+  kernels::MeshPotential mesh_view(const Vec3Array& e);
+  double compute(const Vec3Array& e, JobSystem& jobs, Vec3Array* force);
+  void place(const Vec3Array& e, JobSystem& jobs);
   double sum_parts(int count) const;
 
   std::shared_ptr<const ClothTopology> topology_;
   std::uint64_t model_id_ = 0;
   PaddedRows rows_;
-  int num_families_ = 0;           // of equal springs on a grid
-  float stiffness_[6] = {};        // of each family [N/m]
-  float rest_length_[6] = {};      // of each family [m]
+  int num_families_ = 0;               // of equal springs on a grid
+  float stiffness_[6] = {};            // of each family [N/m]
+  float rest_length_[6] = {};          // of each family [m]
   std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
-  float damping_ = 0;              // c [N/m]
+  float damping_ = 0;                  // c [N/m]
   bool is_projected_ = true;
 
   std::vector<float> hessian_;  // t, wx, wy, wz of each spring
   std::vector<float> slope_;    // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
+  Vec3Array x_;                 // y + e
   Vec3Array damped_;            // z
   std::vector<double> parts_;   // sums of rows or slices
 };

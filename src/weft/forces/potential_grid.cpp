@@ -13,7 +13,8 @@ template <int W>
 WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, int i, int j) {
   const int step = kFamilyOffsets[family].columns;
   const Pack<W> column = count_from<W>(i), zero = broadcast<W>(0), one = broadcast<W>(1);
-  const float begin = step < 0 ? 1.0f : 0.0f, end = static_cast<float>(g.rows.row_length - (step > 0 ? step : 0));
+  const float begin = step < 0 ? 1.0f : 0.0f,
+              end = static_cast<float>(g.rows.row_length - (step > 0 ? step : 0));
   Pack<W> exists = select_less(column, broadcast<W>(begin), zero, one);
   exists = select_less(column, broadcast<W>(end), exists, zero);
   if (g.alternates && (family == 2 || family == 5)) {
@@ -80,9 +81,7 @@ WEFT_ALWAYS_INLINE void inertia_row(const GridPotential& g, int j, LaneSums<W>& 
   const int first = g.rows.row(j);
   for_packs<W>(g.rows.row_length, [&](int i, int part) WEFT_INLINE_LAMBDA {
     const int p = first + i;
-    const V ex = load<W>(g.x.x + p) - load<W>(g.target.x + p);
-    const V ey = load<W>(g.x.y + p) - load<W>(g.target.y + p);
-    const V ez = load<W>(g.x.z + p) - load<W>(g.target.z + p);
+    const V ex = load<W>(g.offset.x + p), ey = load<W>(g.offset.y + p), ez = load<W>(g.offset.z + p);
     energy.add(part, 0.5f * load<W>(g.weight + p) * (ex * ex + ey * ey + ez * ez));
   });
 }
@@ -117,7 +116,7 @@ WEFT_MULTIVERSION_PACKS(springs,
 
 /// One component of the forces on row j.
 template <int W>
-WEFT_ALWAYS_INLINE void force_row(const GridPotential& g, int j, const float* x, const float* target,
+WEFT_ALWAYS_INLINE void force_row(const GridPotential& g, int j, const float* x, const float* moved,
                                   const float* damped, float* force) {
   using V = Pack<W>;
   const int first = g.rows.row(j);
@@ -125,7 +124,7 @@ WEFT_ALWAYS_INLINE void force_row(const GridPotential& g, int j, const float* x,
   for_packs<W>(g.rows.row_length, [&](int i, int) WEFT_INLINE_LAMBDA {
     const int p = first + i;
     const V here = load<W>(x + p);
-    V f = load<W>(g.weight + p) * (load<W>(target + p) - here);
+    V f = 0.0f - load<W>(g.weight + p) * load<W>(moved + p);
     for (int family = 0; family < g.num_families; ++family) {
       const FamilyOffset o = kFamilyOffsets[family];
       const int offset = o.rows * g.rows.stride() + o.columns;
@@ -153,14 +152,21 @@ WEFT_ALWAYS_INLINE void force_row(const GridPotential& g, int j, const float* x,
 template <int W>
 WEFT_ALWAYS_INLINE void forces_body(const GridPotential& g, int row_begin, int row_end) {
   for (int j = row_begin; j < row_end; ++j) {
-    force_row<W>(g, j, g.x.x, g.target.x, g.damped.x, g.force.x);
-    force_row<W>(g, j, g.x.y, g.target.y, g.damped.y, g.force.y);
-    force_row<W>(g, j, g.x.z, g.target.z, g.damped.z, g.force.z);
+    force_row<W>(g, j, g.x.x, g.offset.x, g.damped.x, g.force.x);
+    force_row<W>(g, j, g.x.y, g.offset.y, g.damped.y, g.force.y);
+    force_row<W>(g, j, g.x.z, g.offset.z, g.damped.z, g.force.z);
   }
 }
 
-WEFT_MULTIVERSION_PACKS(forces, (const GridPotential& g, int row_begin, int row_end),
-                        (g, row_begin, row_end))
+WEFT_MULTIVERSION_PACKS(forces, (const GridPotential& g, int row_begin, int row_end), (g, row_begin, row_end))
+
+WEFT_ALWAYS_INLINE void add_multi_body(const float* a, const float* b, float* sum, int begin, int end) {
+  WEFT_IVDEP
+  for (int i = begin; i < end; ++i) sum[i] = a[i] + b[i];
+}
+
+WEFT_MULTIVERSION(add_multi, (const float* a, const float* b, float* sum, int begin, int end),
+                  (a, b, sum, begin, end))
 
 template <int W>
 struct Three {
@@ -233,6 +239,8 @@ WEFT_MULTIVERSION_PACKS(multiply,
                         (g, p, q, row_begin, row_end, dot))
 
 }  // namespace
+
+void add(const float* a, const float* b, float* sum, int begin, int end) { add_multi(a, b, sum, begin, end); }
 
 void grid_springs(const GridPotential& g, bool store, int row_begin, int row_end, double* energy) {
   springs(g, store, row_begin, row_end, energy);

@@ -21,14 +21,14 @@ inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2
 /// Everything that the kernels of a grid read and write.
 struct GridPotential {
   PaddedRows rows;
-  int num_families = 5;  // 5, or 6 with both diagonals
-  bool alternates = false;  // diagonals start only where row + column is even
+  int num_families = 5;                // 5, or 6 with both diagonals
+  bool alternates = false;             // diagonals start only where row + column is even
   const float* stiffness = nullptr;    // of each family
   const float* rest_length = nullptr;  // of each family
   float damping = 0;
   bool is_projected = true;
   const float* weight = nullptr;
-  ConstRows x{}, target{}, damped{};
+  ConstRows x{}, offset{}, damped{};
   float* hessian = nullptr;
   float* slope = nullptr;
   Rows force{};
@@ -42,10 +42,11 @@ struct GridPotential {
                rows.stride() +
            2 * kPackLanes;
   }
-  int slope_row(int j, int family) const {
-    return family * static_cast<int>(rows.size()) + rows.row(j);
-  }
+  int slope_row(int j, int family) const { return family * static_cast<int>(rows.size()) + rows.row(j); }
 };
+
+/// sum = a + b.
+void add(const float* a, const float* b, float* sum, int begin, int end);
 
 /// Energies of the rows, springs counted where they start. With `store`, Hessian and slopes as well.
 void grid_springs(const GridPotential& g, bool store, int row_begin, int row_end, double* energy);
@@ -58,13 +59,13 @@ void grid_multiply(const GridPotential& g, ConstRows p, Rows q, int row_begin, i
 
 struct MeshPotential {
   const NeighbourTable* table = nullptr;
-  int first = 0;          // index of particle 0
+  int first = 0;  // index of particle 0
   int num_particles = 0;
   const float* stiffness = nullptr;  // of each entry
   float damping = 0;
   bool is_projected = true;
   const float* weight = nullptr;
-  ConstRows x{}, target{}, damped{};
+  ConstRows x{}, offset{}, damped{};
   float* hessian = nullptr;  // (entry rows · 4 · 16): t, wx, wy, wz of sixteen entries each
   Rows force{};
 };

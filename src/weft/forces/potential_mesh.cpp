@@ -52,7 +52,7 @@ WEFT_ALWAYS_INLINE void springs_of_pack(const MeshPotential& m, int slice, int l
                                         LaneSums<W>& energy) {
   using V = Pack<W>;
   const int p = m.first + slice * kLanes + lane;
-  const Three<W> x = load3<W>(m.x, p), y = load3<W>(m.target, p), e = minus<W>(x, y);
+  const Three<W> x = load3<W>(m.x, p), e = load3<W>(m.offset, p);
   const V weight = load<W>(m.weight + p);
   energy.add(part, 0.5f * weight * dot<W>(e, e));
   Three<W> force{0.0f - weight * e.x, 0.0f - weight * e.y, 0.0f - weight * e.z};
@@ -61,7 +61,8 @@ WEFT_ALWAYS_INLINE void springs_of_pack(const MeshPotential& m, int slice, int l
     const int* neighbour = m.table->neighbour.data() + entry;
     const Three<W> d = minus<W>(gather3<W>(m.x, m.first, neighbour), x);
     const V length = square_root(larger(dot<W>(d, d), broadcast<W>(kMinLengthSq))), inverse = 1.0f / length;
-    const V k = load<W>(m.stiffness + entry), extension = length - load<W>(m.table->rest_length.data() + entry);
+    const V k = load<W>(m.stiffness + entry),
+            extension = length - load<W>(m.table->rest_length.data() + entry);
     const V elastic = k * extension * inverse;
     V slope = elastic, axial = broadcast<W>(0), plain = broadcast<W>(0);
     energy.add(part, 0.25f * k * extension * extension);
@@ -135,7 +136,8 @@ WEFT_ALWAYS_INLINE void multiply_body(const MeshPotential& m, ConstRows p, Rows 
       const V weight = load<W>(m.weight + c);
       Three<W> out{weight * a.x, weight * a.y, weight * a.z};
       for (int row = m.table->slice_begin[slice]; row < m.table->slice_begin[slice + 1]; ++row) {
-        const Three<W> d = minus<W>(a, gather3<W>(p, m.first, m.table->neighbour.data() + row * kLanes + lane));
+        const Three<W> d =
+            minus<W>(a, gather3<W>(p, m.first, m.table->neighbour.data() + row * kLanes + lane));
         const float* h = m.hessian + 4 * row * kLanes + lane;
         const V t = load<W>(h);
         const Three<W> w{load<W>(h + kLanes), load<W>(h + 2 * kLanes), load<W>(h + 3 * kLanes)};

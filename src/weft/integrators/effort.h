@@ -12,8 +12,12 @@ struct Effort {
   CgSettings linear;
 };
 
-/// From the settings, and where they leave it open from how far a step lets waves run through the cloth: the
-/// stiffness number a = h² Σk/m over the number of particles does not depend on the mesh.
-Effort choose_effort(const NewtonSettings& settings, const ClothModel& model, double step);
+/// From the settings, and where they leave it open from how far waves run through the cloth within a step:
+/// `reach` is the mean of the stiffness number a = h² Σk/m, over the number of particles. It does not depend
+/// on the mesh.
+Effort choose_effort(const NewtonSettings& settings, double reach);
+
+/// reach = h² · (this) [1/s²].
+double compute_reach_rate(const ClothModel& model);
 
 }  // namespace weft

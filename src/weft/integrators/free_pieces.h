@@ -18,7 +18,8 @@ class FreePieces {
   void remove_mean(const PaddedRows& rows, const std::vector<float>& weight, Vec3Array& displacement);
 
  private:
-  std::vector<int> piece_;  // of each particle, -1: pinned or tied to a pin; empty if there are no free pieces
+  std::vector<int>
+      piece_;  // of each particle, -1: pinned or tied to a pin; empty if there are no free pieces
   std::vector<Vec3> moment_;
   std::vector<double> weight_;
 };

@@ -5,8 +5,8 @@
 namespace weft {
 
 const std::vector<std::string_view>& integrator_names() {
-  static const std::vector<std::string_view> names = {"explicit", "paper", "paper_fixed", "desbrun",
-                                                      "implicit_euler", "newton"};
+  static const std::vector<std::string_view> names = {"explicit", "paper",          "paper_fixed",
+                                                      "desbrun",  "implicit_euler", "newton"};
   return names;
 }
 

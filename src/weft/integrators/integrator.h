@@ -6,7 +6,8 @@
 ///   paper_fixed     the same with gravity outside the filter, h·H·v kept, and pinned neighbours prescribed
 ///   desbrun         Eq. 12 with h·H·v: implicit Euler with a constant approximate Jacobian, solved exactly
 ///   implicit_euler  implicit Euler with the true Jacobian, Newton's method to a tolerance: slow and right
-///   newton          BDF2, one Newton step, conjugate gradients with a multigrid preconditioner: fast and right
+///   newton          BDF2, one Newton step, conjugate gradients with a multigrid preconditioner: fast and
+///   right
 
 #include <memory>
 #include <optional>
@@ -54,9 +55,9 @@ struct ImplicitEulerSettings {
 enum class NewtonQuality { fast, normal, high };
 
 struct NewtonSettings {
-  /// Of conjugate gradients, per Newton step; 0: chosen from stiffness, step and mesh (about 5 for soft cloth,
-  /// 10 for 2000 N/m and 60 steps per second, 20 for 20000 N/m). More is slower and closer to the exact
-  /// solution [1].
+  /// Of conjugate gradients, per Newton step; 0: chosen from stiffness, step and mesh (about 5 for soft
+  /// cloth, 10 for 2000 N/m and 60 steps per second, 20 for 20000 N/m). More is slower and closer to the
+  /// exact solution [1].
   int iterations = 0;
   NewtonQuality quality = NewtonQuality::normal;  // only without fixed iterations
 };
@@ -71,8 +72,8 @@ struct IntegratorSettings {
 
 /// What one call of advance() has to tell.
 struct IntegratorReport {
-  bool converged = true;  // false: the result is finite, but less exact than asked for
-  int iterations = 0;     // of the nonlinear solver, summed [1]
+  bool converged = true;                 // false: the result is finite, but less exact than asked for
+  int iterations = 0;                    // of the nonlinear solver, summed [1]
   std::optional<int> linear_iterations;  // of the linear solver inside it, summed [1]
   std::optional<int> guard_events;       // how often the guard stepped in: see newton [1]
 };

@@ -1,7 +1,8 @@
 /// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
 /// V-cycle on the paper's constant matrix. A step minimises the incremental potential
 ///
-///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and gravity
+///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and
+///     gravity
 ///
 /// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
 ///
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "weft/forces/potential.h"
 #include "weft/integrators/common.h"
@@ -36,7 +38,7 @@ class NewtonIntegrator final : public Integrator {
     const StepScheme scheme = choose_scheme(model, environment, step, state.history);
     prepare_matrices(model, environment.wind, scheme, jobs);
     begin_step(model, environment.pins, scheme, jobs, state);
-    const IntegratorReport report = minimise(choose_effort(settings_, model, step), jobs);
+    const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
     finish_step(environment.pins, scheme, jobs, state);
     return report;
   }
@@ -53,12 +55,13 @@ class NewtonIntegrator final : public Integrator {
     if (model.topology != topology_) {
       topology_ = model.topology;
       rows_ = padded_rows_of(*topology_);
-      for (Vec3Array* field : {&x_, &trial_, &force_, &direction_, &correction_}) *field = Vec3Array(rows_.size());
+      for (Vec3Array* field : {&trial_, &force_, &direction_, &correction_}) *field = Vec3Array(rows_.size());
       key_ = {};
     }
     if (model.id == key_.model_id && pins.particle == pinned_) return;
     pinned_ = pins.particle;
     free_pieces_.find(model, pinned_);
+    reach_rate_ = compute_reach_rate(model);
     key_ = {};
   }
 
@@ -85,10 +88,10 @@ class NewtonIntegrator final : public Integrator {
   double free_share(const ClothModel& model, const Vec3& gravity, JobSystem& jobs, const ClothState& state) {
     const double gravity_sq = gravity.squaredNorm();
     if (pinned_.empty() || gravity_sq == 0) return 1;
-    for (int i = 0; i < model.num_particles(); ++i) x_.set(rows_.index(i), state.x.get(i));
     potential_.fit(model, 0);
-    potential_.target = x_;
-    potential_.linearise(x_, jobs, force_);
+    for (int i = 0; i < model.num_particles(); ++i) potential_.target.set(rows_.index(i), state.x.get(i));
+    clear(correction_);
+    potential_.linearise(correction_, jobs, force_);
     set_at_pins(Vec3::Zero(), force_);
     double mass = 0, carried = 0;
     for (int i = 0; i < model.num_particles(); ++i) {
@@ -121,8 +124,9 @@ class NewtonIntegrator final : public Integrator {
     preconditioner_.build(model, rows_, rate * model.material.damping, potential_.weight, pinned_, jobs);
   }
 
-  /// x = y, and the work space of the step.
-  void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
+  /// The prediction y, which the solve corrects.
+  void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs,
+                  ClothState& state) {
     noise_ = energy_noise(model, state);
     pin_motion_.prepare(pins, scheme.step, state);
     predict(scheme, rows_, jobs, state, potential_.target);
@@ -132,10 +136,7 @@ class NewtonIntegrator final : public Integrator {
       state.history.displacement.set(pinned_[p], scheme.step * pin_motion_.velocity()[p]);
     }
     if (potential_.is_damped()) copy_lag(scheme, state);
-    x_ = potential_.target;
-    std::fill_n(correction_.x(), correction_.size(), 0.0f);
-    std::fill_n(correction_.y(), correction_.size(), 0.0f);
-    std::fill_n(correction_.z(), correction_.size(), 0.0f);
+    clear(correction_);
   }
 
   /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
@@ -155,12 +156,12 @@ class NewtonIntegrator final : public Integrator {
       potential_.lag.set(rows_.index(static_cast<int>(i)), time * state.v.get(i));
   }
 
-  /// Newton steps from x = y; afterwards correction_ holds x − y.
+  /// Newton steps from x = y.
   IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     double before = 0, after = 0;
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
-      before = potential_.linearise(x_, jobs, force_);
+      before = potential_.linearise(correction_, jobs, force_);
       set_at_pins(Vec3::Zero(), force_);
       const CgReport linear = solve(effort, jobs);
       *report.linear_iterations += linear.iterations;
@@ -171,7 +172,7 @@ class NewtonIntegrator final : public Integrator {
         share /= 2;
         after = try_step(share, jobs);
       }
-      take_step(share, jobs);
+      std::swap(correction_, trial_);
       const double predicted = share * (2 - share) * linear.decrease;
       const bool missed = after - (before - predicted) > kMissedShare * after + noise_;
       if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
@@ -194,18 +195,12 @@ class NewtonIntegrator final : public Integrator {
     return gradients_.solve(multiply, precondition, force_, effort.linear, jobs, direction_);
   }
 
-  /// The potential at x + share · direction [J].
+  /// The potential after the given share of the step [J]. Springs do not move the middle of a free piece of
+  /// cloth: what an unfinished solve has moved it by is taken back.
   double try_step(double share, JobSystem& jobs) {
-    add_scaled(x_, share, direction_, jobs, trial_);
+    add_scaled(correction_, share, direction_, jobs, trial_);
+    free_pieces_.remove_mean(rows_, potential_.weight, trial_);
     return potential_.energy(trial_, jobs);
-  }
-
-  /// correction += share · direction, and x after it. Springs do not move the middle of a free piece of cloth:
-  /// what an unfinished solve has moved it by is taken back.
-  void take_step(double share, JobSystem& jobs) {
-    add_scaled(correction_, share, direction_, jobs, correction_);
-    free_pieces_.remove_mean(rows_, potential_.weight, correction_);
-    add_scaled(potential_.target, 1, correction_, jobs, x_);
   }
 
   void finish_step(const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
@@ -213,6 +208,10 @@ class NewtonIntegrator final : public Integrator {
     pin_motion_.finish(pins, state);
     state.history.step = scheme.step;
     state.history.had_contact = false;
+  }
+
+  static void clear(Vec3Array& field) {
+    for (float* component : {field.x(), field.y(), field.z()}) std::fill_n(component, field.size(), 0.0f);
   }
 
   void set_at_pins(const Vec3& value, Vec3Array& field) const {
@@ -224,13 +223,15 @@ class NewtonIntegrator final : public Integrator {
   PaddedRows rows_;
   std::vector<int> pinned_;
   FreePieces free_pieces_;
+  double reach_rate_ = 0;
   Key key_;
   IncrementalPotential potential_;
   ScalarPreconditioner preconditioner_;
   ConjugateGradients gradients_;
   PinMotion pin_motion_;
   double noise_ = 0;  // of energies, from the rounding of positions [J]
-  Vec3Array x_, trial_, force_, direction_, correction_;
+  Vec3Array force_, direction_, trial_;
+  Vec3Array correction_;  // x − y [m]
 };
 
 }  // namespace

@@ -93,9 +93,8 @@ void correct(const StepScheme& scheme, const PaddedRows& rows, const Vec3Array& 
              ClothState& state) {
   const auto rate = static_cast<float>(scheme.beta / scheme.step);
   const auto run = [&](const float* by, float* x, float* v, float* s) {
-    for_runs(jobs, rows, [&](int p, int place, int count) {
-      correct_run(rate, count, by + place, x + p, v + p, s + p);
-    });
+    for_runs(jobs, rows,
+             [&](int p, int place, int count) { correct_run(rate, count, by + place, x + p, v + p, s + p); });
   };
   Vec3Array& s = state.history.displacement;
   run(d.x(), state.x.x(), state.v.x(), s.x());

@@ -9,10 +9,10 @@ namespace weft {
 
 /// What the step before has left for an integrator of second order. Any other may leave it alone.
 struct MotionHistory {
-  double step = 0;            // length of the step before, 0: there is none to go by [s]
-  bool had_contact = false;   // contact took part in it
-  Vec3Array displacement;     // x now − x before it (num_particles) [m]
-  Vec3Array velocity;         // v before it (num_particles) [m/s]
+  double step = 0;           // length of the step before, 0: there is none to go by [s]
+  bool had_contact = false;  // contact took part in it
+  Vec3Array displacement;    // x now − x before it (num_particles) [m]
+  Vec3Array velocity;        // v before it (num_particles) [m/s]
 };
 
 /// Positions are float offsets from a double origin, so that cloth far from the world's origin keeps its

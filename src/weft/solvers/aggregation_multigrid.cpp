@@ -132,8 +132,7 @@ WEFT_ALWAYS_INLINE void transfer_body(const SlicedMatrix& a, In3 u, float keep, 
     }
   }
 }
-WEFT_MULTIVERSION_PACKS(transfer,
-                        (const SlicedMatrix& a, In3 u, float keep, Out3 out, int begin, int end),
+WEFT_MULTIVERSION_PACKS(transfer, (const SlicedMatrix& a, In3 u, float keep, Out3 out, int begin, int end),
                         (a, u, keep, out, begin, end))
 
 In3 inputs(const Vec3Array& a) { return {a.x(), a.y(), a.z()}; }

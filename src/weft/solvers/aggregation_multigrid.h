@@ -5,8 +5,8 @@
 ///     (A u)_i = excess_i u_i + Σ_j c_ij (u_i − u_j)            c_ij, excess_i >= 0
 ///
 /// Neighbours are joined to aggregates, each of which becomes one particle of the next level. Its value is
-/// spread over the aggregate and smoothed once by Jacobi's method; plain aggregates would need more cycles the
-/// larger the mesh is.
+/// spread over the aggregate and smoothed once by Jacobi's method; plain aggregates would need more cycles
+/// the larger the mesh is.
 
 #include <vector>
 
@@ -16,8 +16,8 @@
 
 namespace weft {
 
-/// A matrix for vector registers (sliced ELLPACK): sixteen rows side by side, as many entry rows as the longest
-/// of them has entries.
+/// A matrix for vector registers (sliced ELLPACK): sixteen rows side by side, as many entry rows as the
+/// longest of them has entries.
 struct SlicedMatrix {
   std::vector<int> slice_begin;  // (num_slices + 1) first entry row of each slice
   std::vector<int> column;       // (num_entry_rows · 16), 0 where unused
@@ -42,8 +42,8 @@ class AggregationMultigrid {
  private:
   struct Level {
     int size = 0;
-    SlicedMatrix couplings;            // without the diagonal
-    SlicedMatrix prolong, restriction;  // from and to the next level
+    SlicedMatrix couplings;                // without the diagonal
+    SlicedMatrix prolong, restriction;     // from and to the next level
     std::vector<float> diagonal, inverse;  // Jacobi's weight / diagonal, 0 where that is 0
     Vec3Array right_side, value, residual, smoothed;
   };

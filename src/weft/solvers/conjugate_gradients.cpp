@@ -18,7 +18,7 @@ WEFT_MULTIVERSION(turn_multi, (float beta, const float* z, float* p, int begin, 
                   (beta, z, p, begin, end))
 
 WEFT_ALWAYS_INLINE void advance_multi_body(float alpha, const float* p, const float* q, float* x, float* r,
-                                     int begin, int end) {
+                                           int begin, int end) {
   WEFT_IVDEP
   for (int i = begin; i < end; ++i) {
     x[i] += alpha * p[i];

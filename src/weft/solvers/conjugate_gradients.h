@@ -46,9 +46,9 @@ class ConjugateGradients {
   }
 
  private:
-  void begin(const Vec3Array& b, Vec3Array& x);                    // r = b, x = p = 0
-  void turn(double beta, JobSystem& jobs);                         // p = z + β p
-  void advance(double alpha, JobSystem& jobs, Vec3Array& x);       // x += α p, r −= α A p
+  void begin(const Vec3Array& b, Vec3Array& x);               // r = b, x = p = 0
+  void turn(double beta, JobSystem& jobs);                    // p = z + β p
+  void advance(double alpha, JobSystem& jobs, Vec3Array& x);  // x += α p, r −= α A p
 
   Vec3Array residual_, preconditioned_, direction_, product_;
 };

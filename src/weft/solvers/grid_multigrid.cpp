@@ -9,8 +9,8 @@
 namespace weft {
 namespace {
 
-constexpr int kGrain = 4096;      // particles per chunk of work
-constexpr int kCoarsest = 25;     // particles at most of the grid that is solved directly
+constexpr int kGrain = 4096;   // particles per chunk of work
+constexpr int kCoarsest = 25;  // particles at most of the grid that is solved directly
 
 /// body(row_begin, row_end) over chunks of rows.
 template <class Body>
@@ -36,8 +36,8 @@ void GridMultigrid::resize(const PaddedRows& rows) {
   narrowed_.clear();
   while (levels_.back().rows.num_particles() > kCoarsest) {
     const PaddedRows fine = levels_.back().rows;
-    narrowed_.emplace_back(PaddedRows{(fine.row_length + 1) / 2, fine.num_rows});
-    levels_.emplace_back(PaddedRows{(fine.row_length + 1) / 2, (fine.num_rows + 1) / 2});
+    narrowed_.emplace_back(PaddedRows{coarse_length(fine.row_length), fine.num_rows});
+    levels_.emplace_back(PaddedRows{coarse_length(fine.row_length), coarse_length(fine.num_rows)});
   }
   dots_.assign(rows.num_rows, 0.0);
 }
@@ -123,8 +123,7 @@ void GridMultigrid::cycle(std::size_t l, const Vec3Array& right_side, Vec3Array&
   const ConstComponent3 correction = components(std::as_const(coarse.smoothed));
   for_rows(jobs, fine.rows, [&](int begin, int end) { prolong(coarse, correction, fine, x, begin, end); });
   const Component3 result = components(out);
-  for_rows(jobs, fine.rows,
-           [&](int begin, int end) { smooth(fine, b, now, result, begin, end, dots); });
+  for_rows(jobs, fine.rows, [&](int begin, int end) { smooth(fine, b, now, result, begin, end, dots); });
 }
 
 }  // namespace weft

@@ -17,6 +17,11 @@
 
 namespace weft {
 
+/// Particles per row (or rows) of the grid that is coarser than n: every second one. Of an even number the
+/// last one is kept as well, in its place; two become one.
+constexpr int coarse_length(int n) { return n == 2 ? 1 : n / 2 + 1; }
+static_assert(coarse_length(1) == 1 && coarse_length(5) == 3 && coarse_length(6) == 4);
+
 /// A matrix, laid out by `rows`, with zeros where no particle is.
 struct GridMatrix {
   PaddedRows rows;

@@ -15,8 +15,8 @@ WEFT_ALWAYS_INLINE Pack<W> couple(const GridLevel& a, const float* u, int i, int
   const float *right = a.right.data() + i, *down = a.down.data() + i, *main = a.down_right.data() + i;
   Pack<W> sum = load<W>(right - 1) * load<W>(u + i - 1) + load<W>(right) * load<W>(u + i + 1);
   sum += load<W>(down - stride) * load<W>(u + i - stride) + load<W>(down) * load<W>(u + i + stride);
-  sum += load<W>(main - stride - 1) * load<W>(u + i - stride - 1) +
-         load<W>(main) * load<W>(u + i + stride + 1);
+  sum +=
+      load<W>(main - stride - 1) * load<W>(u + i - stride - 1) + load<W>(main) * load<W>(u + i + stride + 1);
   if (kDownLeft) {
     const float* anti = a.down_left.data() + i;
     sum += load<W>(anti - stride + 1) * load<W>(u + i - stride + 1) +
@@ -47,37 +47,48 @@ WEFT_ALWAYS_INLINE void finish_body(GridLevel& a, int row_begin, int row_end) {
 
 WEFT_MULTIVERSION_PACKS(finish, (GridLevel & a, int row_begin, int row_end), (a, row_begin, row_end))
 
-/// What a coarse particle gets of its fine neighbours. Where the last fine particle has no coarse one behind
-/// it, it follows the one before it with all its weight.
+/// What a coarse particle gets of its fine neighbours, and what the one after it gives to the next coarse
+/// one.
 struct Shares {
-  float before, after;
+  float before = 0.5f, after = 0.5f, next = 0.5f;
 };
 
-/// One coarse particle of a row, from the fine particle q in its place and those beside it. The fine particle
-/// after it gives `next` of its value to the coarse particle behind.
-WEFT_ALWAYS_INLINE void narrow_one(const GridMatrix& f, int q, GridMatrix& n, int out, Shares s, float next) {
-  const float *d = f.diagonal.data() + q, *e = f.excess.data() + q, *r = f.right.data() + q,
-              *c = f.down.data() + q, *dr = f.down_right.data() + q, *dl = f.down_left.data() + q;
-  const float after2 = s.after * s.after, before2 = s.before * s.before, shared = s.after * next;
-  n.excess[out] = e[0] + s.after * e[1] + s.before * e[-1];
-  n.diagonal[out] =
-      d[0] - 2 * (s.after * r[0] + s.before * r[-1]) + (after2 * d[1] + before2 * d[-1]);
-  n.right[out] = (s.after * r[1] + next * r[0]) - shared * d[1];
-  n.down[out] = c[0] + s.after * (dr[0] + dl[1]) + s.before * (dl[0] + dr[-1]) +
-                (after2 * c[1] + before2 * c[-1]);
-  n.down_right[out] = shared * c[1] + (s.after * dr[1] + next * dr[0]);
-  n.down_left[out] = 0.25f * c[-1] + 0.5f * (dl[-1] + dl[0]);
+/// Of coarse particle q where the fine ones are n: see coarse_length().
+WEFT_ALWAYS_INLINE Shares shares_at(int q, int n) {
+  if (n == 2) return {0, 1, 0};
+  if (n % 2 == 0 && q == n / 2 - 1) return {0.5f, 0, 1};
+  if (n % 2 == 0 && q == n / 2) return {1, 0, 0};
+  return {};
 }
 
-WEFT_ALWAYS_INLINE void narrow_multi_body(const GridMatrix& fine, GridMatrix& narrow, int row_begin, int row_end) {
-  const int columns = narrow.rows.row_length;
-  const bool is_odd = fine.rows.row_length % 2 == 1;
-  const int regular = is_odd ? columns : columns - 1;
+/// One coarse particle of a row, from the fine particle q in its place and those beside it. `given_before` is
+/// what the fine particle before it gives to the coarse one before.
+WEFT_ALWAYS_INLINE void narrow_one(const GridMatrix& f, int q, GridMatrix& n, int out, Shares s,
+                                   float given_before) {
+  const float *d = f.diagonal.data() + q, *e = f.excess.data() + q, *r = f.right.data() + q,
+              *c = f.down.data() + q, *dr = f.down_right.data() + q, *dl = f.down_left.data() + q;
+  const float after2 = s.after * s.after, before2 = s.before * s.before, shared = s.after * s.next;
+  n.excess[out] = e[0] + s.after * e[1] + s.before * e[-1];
+  n.diagonal[out] = d[0] - 2 * (s.after * r[0] + s.before * r[-1]) + (after2 * d[1] + before2 * d[-1]);
+  n.right[out] = (s.after * r[1] + s.next * r[0]) - shared * d[1];
+  n.down[out] =
+      c[0] + s.after * (dr[0] + dl[1]) + s.before * (dl[0] + dr[-1]) + (after2 * c[1] + before2 * c[-1]);
+  n.down_right[out] = shared * c[1] + (s.after * dr[1] + s.next * dr[0]);
+  n.down_left[out] = s.before * given_before * c[-1] + (s.before * dl[-1] + given_before * dl[0]);
+}
+
+WEFT_ALWAYS_INLINE void narrow_multi_body(const GridMatrix& fine, GridMatrix& narrow, int row_begin,
+                                          int row_end) {
+  const int columns = narrow.rows.row_length, length = fine.rows.row_length;
+  const int regular = length % 2 == 1 ? columns : std::max(columns - 2, 0);
   for (int j = row_begin; j < row_end; ++j) {
     const int in = fine.rows.row(j), out = narrow.rows.row(j);
     WEFT_IVDEP
-    for (int q = 0; q < regular; ++q) narrow_one(fine, in + 2 * q, narrow, out + q, {0.5f, 0.5f}, 0.5f);
-    if (!is_odd) narrow_one(fine, in + 2 * regular, narrow, out + regular, {0.5f, 1.0f}, 0.0f);
+    for (int q = 0; q < regular; ++q) narrow_one(fine, in + 2 * q, narrow, out + q, Shares{}, 0.5f);
+    for (int q = regular; q < columns; ++q) {
+      const Shares here = shares_at(q, length), before = shares_at(q - 1, length);
+      narrow_one(fine, in + 2 * q, narrow, out + q, here, before.after);
+    }
   }
 }
 
@@ -87,13 +98,11 @@ WEFT_MULTIVERSION(narrow_multi, (const GridMatrix& fine, GridMatrix& narrow, int
 template <int W>
 WEFT_ALWAYS_INLINE void merge_body(const GridMatrix& n, GridMatrix& coarse, int row_begin, int row_end) {
   using V = Pack<W>;
-  const int s = n.rows.stride(), last = coarse.rows.num_rows - 1;
-  const bool is_odd = n.rows.num_rows % 2 == 1;
+  const int s = n.rows.stride();
   const float *e = n.excess.data(), *d = n.diagonal.data(), *r = n.right.data(), *c = n.down.data(),
               *dr = n.down_right.data(), *dl = n.down_left.data();
   for (int row = row_begin; row < row_end; ++row) {
-    const bool is_folded = row == last && !is_odd;
-    const float before = 0.5f, after = is_folded ? 1.0f : 0.5f, next = is_folded ? 0.0f : 0.5f;
+    const auto [before, after, next] = shares_at(row, n.rows.num_rows);
     const float after2 = after * after, before2 = before * before, shared = after * next;
     const int in = n.rows.row(2 * row), out = coarse.rows.row(row);
     for_packs<W>(coarse.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
@@ -103,8 +112,8 @@ WEFT_ALWAYS_INLINE void merge_body(const GridMatrix& n, GridMatrix& coarse, int 
       const V r0 = load<W>(r + i), r1 = load<W>(r + i + s), r2 = load<W>(r + i - s);
       const V dr0 = load<W>(dr + i), dr2 = load<W>(dr + i - s), dr1 = load<W>(dr + i + s);
       const V dl0 = load<W>(dl + i + 1), dl2 = load<W>(dl + i + 1 - s);
-      store(coarse.right.data() + o, r0 + after * (dr0 + dl0) + before * (dl2 + dr2) +
-                                         (after2 * r1 + before2 * r2));
+      store(coarse.right.data() + o,
+            r0 + after * (dr0 + dl0) + before * (dl2 + dr2) + (after2 * r1 + before2 * r2));
       const V c0 = load<W>(c + i), c1 = load<W>(c + i + s), d1 = load<W>(d + i + s);
       store(coarse.down.data() + o, (after * c1 + next * c0) - shared * d1);
       store(coarse.down_right.data() + o, shared * r1 + (after * dr1 + next * dr0));
@@ -120,7 +129,7 @@ WEFT_MULTIVERSION_PACKS(merge, (const GridMatrix& n, GridMatrix& coarse, int row
 
 template <int W>
 WEFT_ALWAYS_INLINE void smooth_from_zero_multi_body(const GridLevel& a, ConstComponent3 b, Component3 x,
-                                              int row_begin, int row_end) {
+                                                    int row_begin, int row_end) {
   for (int j = row_begin; j < row_end; ++j) {
     const int first = a.rows.row(j);
     for_packs<W>(a.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
@@ -164,8 +173,8 @@ WEFT_ALWAYS_INLINE void smooth_rows(const GridLevel& a, ConstComponent3 b, Const
 }
 
 template <int W>
-WEFT_ALWAYS_INLINE void smooth_multi_body(const GridLevel& a, ConstComponent3 b, ConstComponent3 x, Component3 out,
-                                    int row_begin, int row_end, double* dots) {
+WEFT_ALWAYS_INLINE void smooth_multi_body(const GridLevel& a, ConstComponent3 b, ConstComponent3 x,
+                                          Component3 out, int row_begin, int row_end, double* dots) {
   if (a.has_down_left) return smooth_rows<W, true>(a, b, x, out, row_begin, row_end, dots);
   smooth_rows<W, false>(a, b, x, out, row_begin, row_end, dots);
 }
@@ -210,11 +219,15 @@ WEFT_ALWAYS_INLINE void residual_row(const GridLevel& a, ConstComponent3 b, Cons
   });
 }
 
-/// out[q] = in[2q] + ½ (in[2q−1] + in[2q+1]), the last one of an even row with all of its neighbour.
+/// out[q] = in[2q] + ½ (in[2q−1] + in[2q+1]); see coarse_length() for the end of an even row.
 WEFT_ALWAYS_INLINE void halve(float* in, int fine_length, float* out, int coarse_length) {
-  if (fine_length % 2 == 0) in[fine_length - 1] *= 2;
+  const float last = in[fine_length - 1];
+  const bool is_even = fine_length % 2 == 0, is_pair = fine_length == 2;
+  if (is_even) in[fine_length - 1] = is_pair ? 2 * last : 0;
+  const int inner = is_even && !is_pair ? coarse_length - 1 : coarse_length;
   WEFT_IVDEP
-  for (int q = 0; q < coarse_length; ++q) out[q] = in[2 * q] + 0.5f * (in[2 * q - 1] + in[2 * q + 1]);
+  for (int q = 0; q < inner; ++q) out[q] = in[2 * q] + 0.5f * (in[2 * q - 1] + in[2 * q + 1]);
+  if (inner < coarse_length) out[inner] = last;
 }
 
 template <int W, bool kDownLeft>
@@ -222,15 +235,19 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
                                       const GridLevel& coarse, Component3 out, int row_begin, int row_end,
                                       ResidualRows& rows) {
   using V = Pack<W>;
-  const int length = fine.rows.row_length, last = fine.rows.num_rows - 1;
-  if (row_begin > 0) residual_row<W, kDownLeft>(fine, b, x, 2 * row_begin - 1, rows.row(2 * row_begin - 1));
+  const int length = fine.rows.row_length, num_rows = fine.rows.num_rows;
+  const auto compute = [&](int j) WEFT_INLINE_LAMBDA {
+    const Component3 row = rows.row(j);
+    if (j >= 0 && j < num_rows) return residual_row<W, kDownLeft>(fine, b, x, j, row);
+    for (float* component : {row.x, row.y, row.z}) std::fill_n(component, length, 0.0f);
+  };
+  compute(2 * row_begin - 1);
   for (int j = row_begin; j < row_end; ++j) {
     const Component3 before = rows.row(2 * j - 1), here = rows.row(2 * j), after = rows.row(2 * j + 1);
-    residual_row<W, kDownLeft>(fine, b, x, 2 * j, here);
-    const bool has_after = 2 * j + 1 <= last;
-    if (has_after) residual_row<W, kDownLeft>(fine, b, x, 2 * j + 1, after);
-    const float weight_before = j > 0 ? 0.5f : 0.0f;
-    const float weight_after = has_after ? (2 * j + 1 == last ? 1.0f : 0.5f) : 0.0f;
+    compute(2 * j);
+    compute(2 * j + 1);
+    const Shares shares = shares_at(j, num_rows);
+    const float weight_before = shares.before, weight_after = shares.after;
     const auto combine = [&](float* at, const float* up, const float* down, float* to) WEFT_INLINE_LAMBDA {
       for_packs<W>(length, [&](int i, int) WEFT_INLINE_LAMBDA {
         const V sum = load<W>(at + i) + weight_before * load<W>(up + i) + weight_after * load<W>(down + i);
@@ -246,10 +263,9 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
 
 template <int W>
 WEFT_ALWAYS_INLINE void restrict_multi_body(const GridLevel& fine, ConstComponent3 b, ConstComponent3 x,
-                                      const GridLevel& coarse, Component3 out, int row_begin, int row_end,
-                                      ResidualRows& rows) {
-  if (fine.has_down_left)
-    return restrict_rows<W, true>(fine, b, x, coarse, out, row_begin, row_end, rows);
+                                            const GridLevel& coarse, Component3 out, int row_begin,
+                                            int row_end, ResidualRows& rows) {
+  if (fine.has_down_left) return restrict_rows<W, true>(fine, b, x, coarse, out, row_begin, row_end, rows);
   restrict_rows<W, false>(fine, b, x, coarse, out, row_begin, row_end, rows);
 }
 
@@ -263,24 +279,27 @@ template <bool kBetween>
 WEFT_ALWAYS_INLINE void prolong_row(const float* e0, const float* e1, int coarse_length, int fine_length,
                                     float* x) {
   const auto at = [&](int q) WEFT_INLINE_LAMBDA { return kBetween ? 0.5f * (e0[q] + e1[q]) : e0[q]; };
-  const int inner = std::min(coarse_length - 1, fine_length / 2);
+  const bool is_even = fine_length % 2 == 0;
+  const int inner = is_even && fine_length > 2 ? coarse_length - 2 : coarse_length - 1;
   WEFT_IVDEP
   for (int q = 0; q < inner; ++q) {
     x[2 * q] += at(q);
     x[2 * q + 1] += 0.5f * (at(q) + at(q + 1));
   }
   x[2 * inner] += at(inner);
-  if (fine_length % 2 == 0) x[2 * inner + 1] += at(inner);
+  if (is_even) x[2 * inner + 1] += at(coarse_length - 1);
 }
 
 WEFT_ALWAYS_INLINE void prolong_multi_body(const GridLevel& coarse, ConstComponent3 e, const GridLevel& fine,
-                                     Component3 x, int row_begin, int row_end) {
+                                           Component3 x, int row_begin, int row_end) {
   const int coarse_length = coarse.rows.row_length, fine_length = fine.rows.row_length;
+  const int last = fine.rows.num_rows - 1;
   for (int j = row_begin; j < row_end; ++j) {
-    const int row = j / 2, next = std::min(row + 1, coarse.rows.num_rows - 1);
-    const int in = coarse.rows.row(row), in1 = coarse.rows.row(next), out = fine.rows.row(j);
+    const bool is_between = j % 2 == 1 && j < last;
+    const int row = j == last ? coarse.rows.num_rows - 1 : j / 2;
+    const int in = coarse.rows.row(row), in1 = coarse.rows.row(row + 1), out = fine.rows.row(j);
     const auto add = [&](const float* from, float* to) WEFT_INLINE_LAMBDA {
-      if (j % 2 == 1) {
+      if (is_between) {
         prolong_row<true>(from + in, from + in1, coarse_length, fine_length, to + out);
       } else {
         prolong_row<false>(from + in, from + in, coarse_length, fine_length, to + out);
