@@ -25,9 +25,16 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
   piece_.clear();
   moment_.resize(count);
   weight_.resize(count);
+  is_held_.assign(count, 0);
   if (count == 0) return;
   for (int i = 0; i < n; ++i) piece_.push_back(number[root(i)]);
 }
+
+void FreePieces::hold(int particle) {
+  if (!piece_.empty() && piece_[particle] >= 0) is_held_[piece_[particle]] = 1;
+}
+
+void FreePieces::release() { std::fill(is_held_.begin(), is_held_.end(), char{0}); }
 
 void FreePieces::remove_mean(const PaddedRows& rows, const std::vector<float>& weight,
                              Vec3Array& displacement) {
@@ -42,7 +49,7 @@ void FreePieces::remove_mean(const PaddedRows& rows, const std::vector<float>& w
     moment_[piece_[i]] += static_cast<double>(weight[at]) * displacement.get(at);
   }
   for (int i = 0; i < n; ++i) {
-    if (piece_[i] < 0) continue;
+    if (piece_[i] < 0 || is_held_[piece_[i]]) continue;
     const int at = rows.index(i);
     displacement.set(at, displacement.get(at) - moment_[piece_[i]] / weight_[piece_[i]]);
   }

@@ -14,7 +14,11 @@ class FreePieces {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);
 
-  /// Takes from the displacements of each piece their mean, weighted by `weight` (laid out by `rows`).
+  /// Something outside pushes the piece of this particle, until release(): its mean is left alone.
+  void hold(int particle);
+  void release();
+
+  /// Takes from the displacements of each free piece their mean, weighted by `weight` (laid out by `rows`).
   void remove_mean(const PaddedRows& rows, const std::vector<float>& weight, Vec3Array& displacement);
 
  private:
@@ -22,6 +26,7 @@ class FreePieces {
       piece_;  // of each particle, -1: pinned or tied to a pin; empty if there are no free pieces
   std::vector<Vec3> moment_;
   std::vector<double> weight_;
+  std::vector<char> is_held_;
 };
 
 }  // namespace weft

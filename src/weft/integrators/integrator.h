@@ -63,7 +63,7 @@ struct NewtonSettings {
 };
 
 struct IntegratorSettings {
-  std::string integrator = "implicit_euler";  // one of integrator_names()
+  std::string integrator = "newton";  // one of integrator_names()
   ExplicitSettings explicit_euler;
   PaperSettings paper;
   ImplicitEulerSettings implicit_euler;

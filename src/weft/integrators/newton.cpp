@@ -15,6 +15,7 @@
 
 #include "weft/forces/potential.h"
 #include "weft/integrators/common.h"
+#include "weft/integrators/contact_terms.h"
 #include "weft/integrators/effort.h"
 #include "weft/integrators/free_pieces.h"
 #include "weft/integrators/newton_kernels.h"
@@ -31,11 +32,14 @@ class NewtonIntegrator final : public Integrator {
  public:
   explicit NewtonIntegrator(const NewtonSettings& settings) : settings_(settings) {}
 
+  bool resolves_contacts() const override { return true; }
+
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
     fit(model, environment.pins);
+    contacts_.begin(environment.contacts, model, environment.pins, step);
     if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
-    const StepScheme scheme = choose_scheme(model, environment, step, state.history);
+    const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
     prepare_matrices(model, environment.wind, scheme, jobs);
     begin_step(model, environment.pins, scheme, jobs, state);
     const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
@@ -102,13 +106,32 @@ class NewtonIntegrator final : public Integrator {
     return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
   }
 
+  /// BDF2; implicit Euler while contact takes part in this step or did in the one before, for BDF2 remembers
+  /// velocities from before an impact and would bounce a part of them back.
   StepScheme choose_scheme(const ClothModel& model, const Environment& environment, double step,
-                           const MotionHistory& history) const {
-    StepScheme scheme = make_bdf2(step, history.step);
-    const double time = step / scheme.beta, wind = time * environment.wind.drag / model.material.density;
+                           JobSystem& jobs, ClothState& state) {
+    StepScheme euler{.step = step};
+    add_outside(model, environment, euler);
+    if (state.history.had_contact || meets_contact(euler, jobs, state)) return euler;
+    StepScheme bdf2 = make_bdf2(step, state.history.step);
+    add_outside(model, environment, bdf2);
+    return bdf2;
+  }
+
+  static void add_outside(const ClothModel& model, const Environment& environment, StepScheme& scheme) {
+    const double time = scheme.step / scheme.beta;
+    const double wind = time * environment.wind.drag / model.material.density;
     scheme.keep = 1 / (1 + wind);
     scheme.gain = scheme.keep * (time * environment.gravity + wind * environment.wind.velocity);
-    return scheme;
+  }
+
+  /// Whether implicit Euler without springs would run into a contact.
+  bool meets_contact(const StepScheme& euler, JobSystem& jobs, const ClothState& state) {
+    if (contacts_.empty()) return false;
+    scratch_ = state;
+    predict(euler, rows_, jobs, scratch_, trial_);
+    clear(direction_);
+    return contacts_.any_active({rows_, trial_, direction_});
   }
 
   void prepare_matrices(const ClothModel& model, const Wind& wind, const StepScheme& scheme,
@@ -117,11 +140,21 @@ class NewtonIntegrator final : public Integrator {
     const double rate = scheme.beta / scheme.step;
     potential_.fit(model, rate);
     if (key == key_) return;
+    const bool same_springs = key.model_id == key_.model_id && key.step == key_.step && key.drag == key_.drag;
     key_ = key;
+    set_weights(model, wind, 1 / scheme.step);
+    if (!same_springs)
+      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight, pinned_);
+    set_weights(model, wind, rate);
+    preconditioner_.set_diagonal(potential_.weight, jobs);
+    has_contact_diagonal_ = false;
+  }
+
+  /// D for β/h = `rate` [N/m].
+  void set_weights(const ClothModel& model, const Wind& wind, double rate) {
     const double per_mass = rate * (rate + wind.drag / model.material.density);
     for (int i = 0; i < model.num_particles(); ++i)
       potential_.weight[rows_.index(i)] = static_cast<float>(per_mass * model.mass[i]);
-    preconditioner_.build(model, rows_, rate * model.material.damping, potential_.weight, pinned_, jobs);
   }
 
   /// The prediction y, which the solve corrects.
@@ -159,14 +192,11 @@ class NewtonIntegrator final : public Integrator {
   /// Newton steps from x = y.
   IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
-    double before = 0, after = 0;
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
-      before = potential_.linearise(correction_, jobs, force_);
-      set_at_pins(Vec3::Zero(), force_);
+      const double before = linearise(jobs);
       const CgReport linear = solve(effort, jobs);
       *report.linear_iterations += linear.iterations;
-      double share = 1;
-      after = try_step(share, jobs);
+      double share = 1, after = try_step(share, jobs);
       for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
         ++*report.guard_events;
         share /= 2;
@@ -174,7 +204,7 @@ class NewtonIntegrator final : public Integrator {
       }
       std::swap(correction_, trial_);
       const double predicted = share * (2 - share) * linear.decrease;
-      const bool missed = after - (before - predicted) > kMissedShare * after + noise_;
+      const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
       if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
@@ -183,9 +213,33 @@ class NewtonIntegrator final : public Integrator {
     return report;
   }
 
+  /// The potential with its force and Hessian, and the preconditioner that goes with it.
+  double linearise(JobSystem& jobs) {
+    double energy = potential_.linearise(correction_, jobs, force_);
+    energy += contacts_.linearise(positions(correction_), force_);
+    update_contact_diagonal(jobs);
+    set_at_pins(Vec3::Zero(), force_);
+    return energy;
+  }
+
+  void update_contact_diagonal(JobSystem& jobs) {
+    bool any = false;
+    free_pieces_.release();
+    contacts_.for_pushed([&](int particle) {
+      any = true;
+      free_pieces_.hold(particle);
+    });
+    if (!any && !has_contact_diagonal_) return;
+    diagonal_ = potential_.weight;
+    contacts_.add_stiffness(rows_, diagonal_);
+    preconditioner_.set_diagonal(diagonal_, jobs);
+    has_contact_diagonal_ = any;
+  }
+
   CgReport solve(const Effort& effort, JobSystem& jobs) {
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
-      const double dot = potential_.multiply(p, jobs, q);
+      double dot = potential_.multiply(p, jobs, q);
+      dot += contacts_.add_product(rows_, p, q);
       set_at_pins(Vec3::Zero(), q);
       return dot;
     };
@@ -200,14 +254,17 @@ class NewtonIntegrator final : public Integrator {
   double try_step(double share, JobSystem& jobs) {
     add_scaled(correction_, share, direction_, jobs, trial_);
     free_pieces_.remove_mean(rows_, potential_.weight, trial_);
-    return potential_.energy(trial_, jobs);
+    const double energy = potential_.energy(trial_, jobs);
+    return energy + contacts_.energy(positions(trial_));
   }
+
+  OffsetPositions positions(const Vec3Array& offset) const { return {rows_, potential_.target, offset}; }
 
   void finish_step(const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
     correct(scheme, rows_, correction_, jobs, state);
     pin_motion_.finish(pins, state);
     state.history.step = scheme.step;
-    state.history.had_contact = false;
+    state.history.had_contact = contacts_.any_active(positions(correction_));
   }
 
   static void clear(Vec3Array& field) {
@@ -228,10 +285,14 @@ class NewtonIntegrator final : public Integrator {
   IncrementalPotential potential_;
   ScalarPreconditioner preconditioner_;
   ConjugateGradients gradients_;
+  ContactTerms contacts_;
+  bool has_contact_diagonal_ = false;  // of the preconditioner
+  std::vector<float> diagonal_;        // D and contacts [N/m]
   PinMotion pin_motion_;
   double noise_ = 0;  // of energies, from the rounding of positions [J]
   Vec3Array force_, direction_, trial_;
   Vec3Array correction_;  // x − y [m]
+  ClothState scratch_;
 };
 
 }  // namespace

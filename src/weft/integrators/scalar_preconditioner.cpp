@@ -4,28 +4,43 @@
 
 namespace weft {
 
-void ScalarPreconditioner::build(const ClothModel& model, const PaddedRows& rows, double damping,
-                                 const std::vector<float>& diagonal, const std::vector<int>& pinned,
-                                 JobSystem& jobs) {
+void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+                                       const std::vector<float>& least, const std::vector<int>& pinned) {
   is_grid_ = model.topology->grid.has_value();
   first_ = rows.row(0);
-  if (!is_grid_) return build_mesh(model, damping, diagonal.data() + first_, pinned);
+  pinned_ = pinned;
+  if (!is_grid_) {
+    least_.assign(least.begin() + first_, least.begin() + first_ + model.num_particles());
+    return build_mesh(model, damping);
+  }
   grid_.resize(rows);
   fill_grid(model, damping);
-  std::copy(diagonal.begin(), diagonal.end(), grid_.finest().excess.begin());
-  pin_grid(pinned);
+  pin_grid();
+}
+
+void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs) {
+  if (!is_grid_) {
+    more_.resize(least_.size());
+    for (std::size_t i = 0; i < more_.size(); ++i)
+      more_[i] = std::max(0.0f, diagonal[first_ + i] - least_[i]);
+    for (const int p : pinned_) more_[p] = 0;
+    return mesh_.add_excess(more_);
+  }
+  GridLevel& level = grid_.finest();
+  std::copy(diagonal.begin(), diagonal.end(), level.excess.begin());
+  for (const auto& [at, coupling] : ties_) level.excess[at] += coupling;
+  for (const int p : pinned_) level.excess[level.rows.index(p)] = 0;
   grid_.build(jobs);
 }
 
-void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping, const float* diagonal,
-                                      const std::vector<int>& pinned) {
+void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping) {
   const NeighbourTable& table = model.topology->table;
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
-  for (const int p : pinned) is_pinned[p] = 1;
+  for (const int p : pinned_) is_pinned[p] = 1;
   SparseMatrix couplings;
   couplings.num_columns = n;
-  std::vector<double> excess(diagonal, diagonal + n);
+  std::vector<double> excess(least_.begin(), least_.end());
   for (int i = 0; i < n; ++i) {
     constexpr int kLanes = NeighbourTable::kLanes;
     const int slice = i / kLanes;
@@ -67,13 +82,15 @@ void ScalarPreconditioner::fill_grid(const ClothModel& model, double damping) {
   }
 }
 
-void ScalarPreconditioner::pin_grid(const std::vector<int>& pinned) {
+/// Couplings to pins become part of the other end's diagonal.
+void ScalarPreconditioner::pin_grid() {
   GridLevel& level = grid_.finest();
   const int stride = level.rows.stride();
-  for (const int particle : pinned) {
+  ties_.clear();
+  for (const int particle : pinned_) {
     const int p = level.rows.index(particle);
     const auto cut = [&](float& coupling, int neighbour) {
-      level.excess[neighbour] += coupling;
+      if (coupling > 0) ties_.emplace_back(neighbour, coupling);
       coupling = 0;
     };
     cut(level.right[p], p + 1);
@@ -85,7 +102,6 @@ void ScalarPreconditioner::pin_grid(const std::vector<int>& pinned) {
     cut(level.down_left[p], p + stride - 1);
     cut(level.down_left[p - stride + 1], p - stride + 1);
   }
-  for (const int particle : pinned) level.excess[level.rows.index(particle)] = 0;
 }
 
 double ScalarPreconditioner::apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {

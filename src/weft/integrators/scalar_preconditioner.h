@@ -2,6 +2,7 @@
 /// Private to integrators/: the paper's constant approximate matrix (Eq. 11) as preconditioner of `newton`.
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "weft/core/job_system.h"
@@ -17,22 +18,28 @@ namespace weft {
 /// structural springs, on meshes they are left out.
 class ScalarPreconditioner {
  public:
-  /// Rebuilds the values; the hierarchy itself only for another cloth. `diagonal` is D, laid out by `rows`;
-  /// `damping` is added to every stiffness [N/m]. Pinned particles drop out of the matrix.
-  void build(const ClothModel& model, const PaddedRows& rows, double damping,
-             const std::vector<float>& diagonal, const std::vector<int>& pinned, JobSystem& jobs);
+  /// Takes the springs; `damping` is added to every stiffness [N/m]. Pinned particles drop out of the matrix.
+  /// `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must follow.
+  void set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+                   const std::vector<float>& least, const std::vector<int>& pinned);
+
+  /// Takes D, laid out by `rows` [N/m], and computes all values anew.
+  void set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs);
 
   /// z ≈ A⁻¹ r, zero at pinned particles. Returns r·z.
   double apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
 
  private:
-  void build_mesh(const ClothModel& model, double damping, const float* diagonal,
-                  const std::vector<int>& pinned);
+  void build_mesh(const ClothModel& model, double damping);
   void fill_grid(const ClothModel& model, double damping);
-  void pin_grid(const std::vector<int>& pinned);
+  void pin_grid();
 
   bool is_grid_ = true;
   int first_ = 0;  // index of particle 0
+  std::vector<int> pinned_;
+  std::vector<std::pair<int, float>> ties_;  // index of a particle on a grid, and its coupling to pins
+  std::vector<float> least_;                 // on meshes
+  std::vector<double> more_;                 // on meshes: D beyond `least_`
   GridMultigrid grid_;
   AggregationMultigrid mesh_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "weft/core/pack.h"
 #include "weft/core/random.h"
@@ -251,13 +252,10 @@ AggregationMultigrid::Level AggregationMultigrid::make_level(const SparseMatrix&
   Level level;
   level.size = couplings.num_rows;
   level.couplings = slice(couplings);
+  level.largest_eigenvalue = largest_eigenvalue;
+  level.built_diagonal = diagonal;
   level.diagonal.assign(round_up_to_pack(level.size), 0.0f);
   level.inverse = level.diagonal;
-  for (int i = 0; i < level.size; ++i) {
-    level.diagonal[i] = static_cast<float>(diagonal[i]);
-    if (diagonal[i] > 0)
-      level.inverse[i] = static_cast<float>(kJacobiWeight / (largest_eigenvalue * diagonal[i]));
-  }
   for (Vec3Array* field : {&level.right_side, &level.value, &level.residual, &level.smoothed})
     field->resize(round_up_to_pack(level.size));
   return level;
@@ -279,15 +277,42 @@ void AggregationMultigrid::build(const SparseMatrix& finest, const std::vector<d
     coarsen(couplings, diagonal, prolongation, restriction);
     levels_.back().prolong = slice(prolongation);
     levels_.back().restriction = slice(restriction);
+    levels_.back().spread = restriction;
   }
   dots_.assign(levels_.front().couplings.num_slices(), 0.0);
-  const int n = couplings.num_rows;
+  coarsest_ = std::move(couplings);
+  add_excess(std::vector<double>(levels_.front().size, 0.0));
+}
+
+void AggregationMultigrid::add_excess(const std::vector<double>& more) {
+  more_ = more;
+  for (Level& level : levels_) {
+    for (int i = 0; i < level.size; ++i) {
+      const double d = level.built_diagonal[i] + more_[i];
+      level.diagonal[i] = static_cast<float>(d);
+      level.inverse[i] = d > 0 ? static_cast<float>(kJacobiWeight / (level.largest_eigenvalue * d)) : 0.0f;
+    }
+    if (&level == &levels_.back()) break;
+    coarse_more_.assign(level.spread.num_rows, 0.0);
+    for (int c = 0; c < level.spread.num_rows; ++c) {
+      double sum = 0;
+      for (int e = level.spread.begin[c]; e < level.spread.begin[c + 1]; ++e)
+        sum += level.spread.value[e] * more_[level.spread.column[e]];
+      coarse_more_[c] = std::max(sum, 0.0);
+    }
+    more_.swap(coarse_more_);
+  }
+  invert_coarsest(more_);
+}
+
+void AggregationMultigrid::invert_coarsest(const std::vector<double>& more) {
+  const int n = coarsest_.num_rows;
   if (n > kMostCoarsest) return;
   coarsest_inverse_.assign(static_cast<std::size_t>(n) * n, 0.0);
   for (int i = 0; i < n; ++i) {
-    coarsest_inverse_[i * n + i] = diagonal[i];
-    for (int e = couplings.begin[i]; e < couplings.begin[i + 1]; ++e)
-      coarsest_inverse_[i * n + couplings.column[e]] -= couplings.value[e];
+    coarsest_inverse_[i * n + i] = levels_.back().built_diagonal[i] + more[i];
+    for (int e = coarsest_.begin[i]; e < coarsest_.begin[i + 1]; ++e)
+      coarsest_inverse_[i * n + coarsest_.column[e]] -= coarsest_.value[e];
   }
   invert_in_place(coarsest_inverse_, n);
 }

@@ -34,6 +34,10 @@ class AggregationMultigrid {
   /// without excess drop out: their values stay zero.
   void build(const SparseMatrix& couplings, const std::vector<double>& excess);
 
+  /// Adds to the excess given to build(), instead of what was added before: only diagonals are computed again.
+  /// What a coarse level gets is Pᵀ of it, all on the diagonal: a little more than PᵀDP.
+  void add_excess(const std::vector<double>& more);
+
   /// z ≈ A⁻¹ r by one V-cycle, for particle i at index first + i. Returns r·z.
   double apply(const Vec3Array& r, int first, JobSystem& jobs, Vec3Array& z);
 
@@ -44,17 +48,23 @@ class AggregationMultigrid {
     int size = 0;
     SlicedMatrix couplings;                // without the diagonal
     SlicedMatrix prolong, restriction;     // from and to the next level
+    SparseMatrix spread;                // `restriction`, for add_excess()
+    double largest_eigenvalue = 1;      // of D⁻¹A
+    std::vector<double> built_diagonal;
     std::vector<float> diagonal, inverse;  // Jacobi's weight / diagonal, 0 where that is 0
     Vec3Array right_side, value, residual, smoothed;
   };
 
   static Level make_level(const SparseMatrix& couplings, const std::vector<double>& diagonal,
                           double largest_eigenvalue);
+  void invert_coarsest(const std::vector<double>& more);
   void cycle(std::size_t level, const float* const b[3], float* const out[3], JobSystem& jobs, double* dots);
   void solve_coarsest(const float* const b[3], float* const out[3]) const;
 
   std::vector<Level> levels_;
+  SparseMatrix coarsest_;                 // couplings of the coarsest level
   std::vector<double> coarsest_inverse_;  // empty: the coarsest level is only smoothed
+  std::vector<double> more_, coarse_more_;  // work space of add_excess()
   std::vector<double> dots_;              // of each slice
 };
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct StepReport {
   std::vector<Trouble> troubles;  // with ok = true: the step was made, but less exactly than asked for
   int substeps = 0;               // of the cloth that needed most [1]
   int iterations = 0;             // of nonlinear solvers, all cloths [1]
+  std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
+  std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
 };
 
 class World {

@@ -1,0 +1,76 @@
+#pragma once
+/// Private to integrators/: contacts in the potential of `newton`.
+
+#include <vector>
+
+#include "weft/contact/contact.h"
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft {
+
+/// Places of particles: y + e.
+struct OffsetPositions {
+  const PaddedRows& rows;
+  const Vec3Array& target;
+  const Vec3Array& offset;
+
+  Vec3 operator[](int particle) const {
+    const int at = rows.index(particle);
+    return target.get(at) + offset.get(at);
+  }
+};
+
+/// Σ ½ k max(0, offset − n·Σ w x)² + µ N |slide|, with the normal forces N of the last linearise(), and slides
+/// slower than 1 mm/s rounded off to a parabola: sticking. In double precision, contact by contact.
+class ContactTerms {
+ public:
+  /// Forgets the contacts before.
+  void begin(const std::vector<Contact>& contacts, const ClothModel& model, const PinTargets& pins,
+             double step);
+
+  bool empty() const { return terms_.empty(); }
+
+  /// Whether any of them pushes at these positions.
+  bool any_active(const OffsetPositions& x) const;
+
+  /// Its value [J]; adds its forces, and keeps its Hessian.
+  double linearise(const OffsetPositions& x, Vec3Array& force);
+
+  double energy(const OffsetPositions& x) const;
+
+  /// q += H p, and p·Hp [J].
+  double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;
+
+  /// Adds the Hessian's stiffness at each particle, whatever its direction [N/m].
+  void add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const;
+
+  /// Calls body(particle) for the particles of contacts that pushed at the last linearise().
+  template <class Body>
+  void for_pushed(const Body& body) const {
+    for (const Term& t : terms_) {
+      if (!t.is_active) continue;
+      for (int k = 0; k < t.contact->num_particles; ++k) body(t.contact->particle[k]);
+    }
+  }
+
+ private:
+  struct Term {
+    const Contact* contact = nullptr;
+    double inertia_share = 1;  // what inertia leaves of the force on a lone stencil [1]
+    double normal_force = 0;   // [N]
+    bool is_active = false;
+    double stiffness = 0;      // the largest of the Hessian [N/m]
+    Mat3 hessian = Mat3::Zero();
+  };
+
+  double friction_length(double slide) const;
+  void compute_hessian(Term& term, const Vec3& slide) const;
+
+  double sticking_ = 0;  // slide of a step that still sticks [m]
+  bool is_first_ = true;
+  std::vector<Term> terms_;
+};
+
+}  // namespace weft
