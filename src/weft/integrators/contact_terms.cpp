@@ -23,7 +23,7 @@ void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel&
     }
     Term term;
     term.contact = &c;
-    term.inertia_share = 1 / (1 + c.stiffness * step * step * inverse_mass);
+    if (inverse_mass > 0) term.inertia = 1 / (step * step * inverse_mass);
     terms_.push_back(term);
   }
 }
@@ -32,45 +32,34 @@ bool ContactTerms::any_active(const OffsetPositions& x) const {
   return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.contact->depth(x) > 0; });
 }
 
-double ContactTerms::friction_length(double slide) const {
-  return slide < sticking_ ? 0.5 * slide * slide / sticking_ : slide - 0.5 * sticking_;
+/// At first the particles still are where inertia alone would take them. The normal force then is the one
+/// that stops a lone stencil, and friction shortens its slide by µ N over its inertia.
+double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
+  const Contact& c = *t.contact;
+  if (!is_first_) return c.friction * c.stiffness * depth / std::max(slide, sticking_);
+  const double normal_force = t.inertia / (t.inertia + c.stiffness) * c.stiffness * depth;
+  const double most = c.friction * normal_force;
+  return most / std::max(slide - most / t.inertia, sticking_);
 }
 
-/// At first the particles still are where inertia alone would take them: friction then goes by the force that
-/// stops a lone stencil.
 double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
   double energy = 0;
   for (Term& t : terms_) {
     const Contact& c = *t.contact;
     const double depth = c.depth(x);
-    t.is_active = depth > 0;
-    t.normal_force = (is_first_ ? t.inertia_share : 1.0) * c.stiffness * depth;
+    t.is_active = depth > 0 && t.inertia > 0;
     if (!t.is_active) continue;
     const Vec3 slide = c.slide(x);
-    compute_hessian(t, slide);
-    const double friction = c.friction * t.normal_force / std::max(slide.norm(), sticking_);
-    const Vec3 push = c.stiffness * depth * c.normal - friction * slide;
+    t.friction = friction_stiffness(t, depth, slide.norm());
+    const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;
     for (int k = 0; k < c.num_particles; ++k) {
       const int at = x.rows.index(c.particle[k]);
       force.set(at, force.get(at) + c.weight[k] * push);
     }
-    energy += 0.5 * c.stiffness * depth * depth + c.friction * t.normal_force * friction_length(slide.norm());
+    energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
   }
   is_first_ = false;
   return energy;
-}
-
-/// Along the normal the contact's stiffness, across it that of friction; a slide that is under way resists
-/// only sideways.
-void ContactTerms::compute_hessian(Term& t, const Vec3& slide) const {
-  const Contact& c = *t.contact;
-  const Mat3 normal = c.normal * c.normal.transpose();
-  const double length = slide.norm();
-  const double friction = c.friction * t.normal_force / std::max(length, sticking_);
-  Mat3 across = Mat3::Identity() - normal;
-  if (length > sticking_) across -= slide * slide.transpose() / (length * length);
-  t.hessian = c.stiffness * normal + friction * across;
-  t.stiffness = std::max(c.stiffness, friction);
 }
 
 double ContactTerms::energy(const OffsetPositions& x) const {
@@ -78,8 +67,7 @@ double ContactTerms::energy(const OffsetPositions& x) const {
   for (const Term& t : terms_) {
     const double depth = t.contact->depth(x);
     energy += 0.5 * t.contact->stiffness * depth * depth;
-    if (t.normal_force > 0)
-      energy += t.contact->friction * t.normal_force * friction_length(t.contact->slide(x).norm());
+    if (t.is_active) energy += 0.5 * t.friction * t.contact->slide(x).squaredNorm();
   }
   return energy;
 }
@@ -91,7 +79,8 @@ double ContactTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec
     const Contact& c = *t.contact;
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < c.num_particles; ++k) sum += c.weight[k] * p.get(rows.index(c.particle[k]));
-    const Vec3 product = t.hessian * sum;
+    const double along = c.normal.dot(sum);
+    const Vec3 product = (c.stiffness - t.friction) * along * c.normal + t.friction * sum;
     for (int k = 0; k < c.num_particles; ++k) {
       const int at = rows.index(c.particle[k]);
       q.set(at, q.get(at) + c.weight[k] * product);
@@ -106,7 +95,7 @@ void ContactTerms::add_stiffness(const PaddedRows& rows, std::vector<float>& dia
     if (!t.is_active) continue;
     for (int k = 0; k < t.contact->num_particles; ++k) {
       const double w = t.contact->weight[k];
-      diagonal[rows.index(t.contact->particle[k])] += static_cast<float>(w * w * t.stiffness);
+      diagonal[rows.index(t.contact->particle[k])] += static_cast<float>(w * w * std::max(t.contact->stiffness, t.friction));
     }
   }
 }

@@ -22,8 +22,9 @@ struct OffsetPositions {
   }
 };
 
-/// Σ ½ k max(0, offset − n·Σ w x)² + µ N |slide|, with the normal forces N of the last linearise(), and slides
-/// slower than 1 mm/s rounded off to a parabola: sticking. In double precision, contact by contact.
+/// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew at
+/// each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after the
+/// solve; slides slower than 1 mm/s count as sticking.
 class ContactTerms {
  public:
   /// Forgets the contacts before.
@@ -43,7 +44,7 @@ class ContactTerms {
   /// q += H p, and p·Hp [J].
   double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;
 
-  /// Adds the Hessian's stiffness at each particle, whatever its direction [N/m].
+  /// Adds the Hessian's largest stiffness at each particle, whatever its direction [N/m].
   void add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const;
 
   /// Calls body(particle) for the particles of contacts that pushed at the last linearise().
@@ -58,15 +59,12 @@ class ContactTerms {
  private:
   struct Term {
     const Contact* contact = nullptr;
-    double inertia_share = 1;  // what inertia leaves of the force on a lone stencil [1]
-    double normal_force = 0;   // [N]
+    double inertia = 0;   // of a lone stencil, against displacements in a step [N/m]
     bool is_active = false;
-    double stiffness = 0;      // the largest of the Hessian [N/m]
-    Mat3 hessian = Mat3::Zero();
+    double friction = 0;  // κ [N/m]
   };
 
-  double friction_length(double slide) const;
-  void compute_hessian(Term& term, const Vec3& slide) const;
+  double friction_stiffness(const Term& term, double depth, double slide) const;
 
   double sticking_ = 0;  // slide of a step that still sticks [m]
   bool is_first_ = true;

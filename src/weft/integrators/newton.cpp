@@ -26,6 +26,7 @@ namespace weft {
 namespace {
 
 constexpr double kMissedShare = 0.2;  // of the energy: if the model missed more, one more Newton step
+constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
 constexpr int kMaxHalvings = 8;       // of a Newton step after which the potential is higher than before
 
 class NewtonIntegrator final : public Integrator {
@@ -194,6 +195,7 @@ class NewtonIntegrator final : public Integrator {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(jobs);
+      if (has_contact_diagonal_) asked = std::max(asked, kNewtonStepsInContact);
       const CgReport linear = solve(effort, jobs);
       *report.linear_iterations += linear.iterations;
       double share = 1, after = try_step(share, jobs);
