@@ -88,7 +88,8 @@ TEST_P(Repeats, WithContactFromASnapshot) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Repeats,
-                         testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler", "newton"),
+                         testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler",
+                                         "newton"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {

@@ -107,7 +107,8 @@ TEST_P(Changes, SnapshotsReplayBitByBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Changes,
-                         testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler", "newton"));
+                         testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler",
+                                         "newton"));
 
 TEST(World, MovesPinsAlongTheirKeyFrames) {
   for (const std::string_view name : integrator_names()) {

@@ -10,15 +10,15 @@ constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
 }  // namespace
 
 void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel& model,
-                         const PinTargets& pins, double step) {
+                         const PinTargets& pins, double step, const Vec3& driven) {
   sticking_ = kStickSpeed * step;
+  driven_ = driven;
   is_first_ = true;
   terms_.clear();
   for (const Contact& c : contacts) {
     double inverse_mass = 0;
     for (int k = 0; k < c.num_particles; ++k) {
-      const bool is_pinned =
-          std::binary_search(pins.particle.begin(), pins.particle.end(), c.particle[k]);
+      const bool is_pinned = std::binary_search(pins.particle.begin(), pins.particle.end(), c.particle[k]);
       if (!is_pinned) inverse_mass += c.weight[k] * c.weight[k] / model.mass[c.particle[k]];
     }
     Term term;
@@ -32,14 +32,18 @@ bool ContactTerms::any_active(const OffsetPositions& x) const {
   return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.contact->depth(x) > 0; });
 }
 
-/// At first the particles still are where inertia alone would take them. The normal force then is the one
-/// that stops a lone stencil, and friction shortens its slide by µ N over its inertia.
-double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
+/// µ N over the slide that is expected after the solve: the present one. At first, where inertia alone has
+/// taken the particles, N is the force that stops a lone stencil, and the slide is what friction leaves of
+/// it, but not less than if the velocity at the start went on: many contacts carry a sheet, some more of it,
+/// some less, and those with more must not hold it fast.
+double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3& slide) const {
   const Contact& c = *t.contact;
-  if (!is_first_) return c.friction * c.stiffness * depth / std::max(slide, sticking_);
-  const double normal_force = t.inertia / (t.inertia + c.stiffness) * c.stiffness * depth;
-  const double most = c.friction * normal_force;
-  return most / std::max(slide - most / t.inertia, sticking_);
+  const double length = slide.norm();
+  if (!is_first_) return c.friction * c.stiffness * depth / std::max(length, sticking_);
+  const double most = c.friction * t.inertia / (t.inertia + c.stiffness) * c.stiffness * depth;
+  const Vec3 driven = driven_ - driven_.dot(c.normal) * c.normal;
+  const double expected = std::max(length - most / t.inertia, (slide - driven).norm());
+  return most / std::max(expected, sticking_);
 }
 
 double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
@@ -48,9 +52,10 @@ double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
     const Contact& c = *t.contact;
     const double depth = c.depth(x);
     t.is_active = depth > 0 && t.inertia > 0;
+    if (!t.is_active) t.friction = 0;
     if (!t.is_active) continue;
     const Vec3 slide = c.slide(x);
-    t.friction = friction_stiffness(t, depth, slide.norm());
+    t.friction = friction_stiffness(t, depth, slide);
     const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;
     for (int k = 0; k < c.num_particles; ++k) {
       const int at = x.rows.index(c.particle[k]);
@@ -95,7 +100,8 @@ void ContactTerms::add_stiffness(const PaddedRows& rows, std::vector<float>& dia
     if (!t.is_active) continue;
     for (int k = 0; k < t.contact->num_particles; ++k) {
       const double w = t.contact->weight[k];
-      diagonal[rows.index(t.contact->particle[k])] += static_cast<float>(w * w * std::max(t.contact->stiffness, t.friction));
+      diagonal[rows.index(t.contact->particle[k])] +=
+          static_cast<float>(w * w * std::max(t.contact->stiffness, t.friction));
     }
   }
 }

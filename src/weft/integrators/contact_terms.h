@@ -22,14 +22,14 @@ struct OffsetPositions {
   }
 };
 
-/// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew at
-/// each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after the
-/// solve; slides slower than 1 mm/s count as sticking.
+/// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew
+/// at each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after
+/// the solve; slides slower than 1 mm/s count as sticking.
 class ContactTerms {
  public:
-  /// Forgets the contacts before.
+  /// Forgets the contacts before. `driven`: displacement in the step by gravity and wind alone [m].
   void begin(const std::vector<Contact>& contacts, const ClothModel& model, const PinTargets& pins,
-             double step);
+             double step, const Vec3& driven);
 
   bool empty() const { return terms_.empty(); }
 
@@ -59,14 +59,15 @@ class ContactTerms {
  private:
   struct Term {
     const Contact* contact = nullptr;
-    double inertia = 0;   // of a lone stencil, against displacements in a step [N/m]
+    double inertia = 0;  // of a lone stencil, against displacements in a step [N/m]
     bool is_active = false;
     double friction = 0;  // κ [N/m]
   };
 
-  double friction_stiffness(const Term& term, double depth, double slide) const;
+  double friction_stiffness(const Term& term, double depth, const Vec3& slide) const;
 
   double sticking_ = 0;  // slide of a step that still sticks [m]
+  Vec3 driven_ = Vec3::Zero();
   bool is_first_ = true;
   std::vector<Term> terms_;
 };

@@ -25,9 +25,12 @@
 namespace weft {
 namespace {
 
-constexpr double kMissedShare = 0.2;  // of the energy: if the model missed more, one more Newton step
+constexpr double kMissedShare = 0.2;      // of the energy: if the model missed more, one more Newton step
 constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
-constexpr int kMaxHalvings = 8;       // of a Newton step after which the potential is higher than before
+constexpr int kIterationsInContact = 15;  // at least, of conjugate gradients: contacts are stiff
+constexpr int kMostGuardedIterations =
+    80;                          // of a Newton step that the guard asked for: each has twice as many
+constexpr int kMaxHalvings = 8;  // of a Newton step after which the potential is higher than before
 
 class NewtonIntegrator final : public Integrator {
  public:
@@ -38,8 +41,9 @@ class NewtonIntegrator final : public Integrator {
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
     fit(model, environment.pins);
-    contacts_.begin(environment.contacts, model, environment.pins, step);
+    contacts_.begin(environment.contacts, model, environment.pins, step, step * step * environment.gravity);
     if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
+    if (scratch_.x.size() != state.x.size()) scratch_ = state;
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
     prepare_matrices(model, environment.wind, scheme, jobs);
     begin_step(model, environment.pins, scheme, jobs, state);
@@ -145,7 +149,8 @@ class NewtonIntegrator final : public Integrator {
     key_ = key;
     set_weights(model, wind, 1 / scheme.step);
     if (!same_springs)
-      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight, pinned_);
+      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight,
+                                  pinned_);
     set_weights(model, wind, rate);
     preconditioner_.set_diagonal(potential_.weight, jobs);
     has_contact_diagonal_ = false;
@@ -191,11 +196,14 @@ class NewtonIntegrator final : public Integrator {
   }
 
   /// Newton steps from x = y.
-  IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
+  IntegratorReport minimise(Effort effort, JobSystem& jobs) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(jobs);
-      if (has_contact_diagonal_) asked = std::max(asked, kNewtonStepsInContact);
+      if (has_contact_diagonal_) {
+        asked = std::max(asked, kNewtonStepsInContact);
+        effort.linear.iterations = std::max(effort.linear.iterations, kIterationsInContact);
+      }
       const CgReport linear = solve(effort, jobs);
       *report.linear_iterations += linear.iterations;
       double share = 1, after = try_step(share, jobs);
@@ -204,12 +212,14 @@ class NewtonIntegrator final : public Integrator {
         share /= 2;
         after = try_step(share, jobs);
       }
+      if (!std::isfinite(after)) break;
       std::swap(correction_, trial_);
       const double predicted = share * (2 - share) * linear.decrease;
       const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
       if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
+        effort.linear.iterations = std::min(2 * effort.linear.iterations, kMostGuardedIterations);
       }
     }
     return report;
@@ -294,7 +304,7 @@ class NewtonIntegrator final : public Integrator {
   double noise_ = 0;  // of energies, from the rounding of positions [J]
   Vec3Array force_, direction_, trial_;
   Vec3Array correction_;  // x − y [m]
-  ClothState scratch_;
+  ClothState scratch_;    // where the cloth would go without springs
 };
 
 }  // namespace

@@ -34,8 +34,8 @@ class AggregationMultigrid {
   /// without excess drop out: their values stay zero.
   void build(const SparseMatrix& couplings, const std::vector<double>& excess);
 
-  /// Adds to the excess given to build(), instead of what was added before: only diagonals are computed again.
-  /// What a coarse level gets is Pᵀ of it, all on the diagonal: a little more than PᵀDP.
+  /// Adds to the excess given to build(), instead of what was added before: only diagonals are computed
+  /// again. What a coarse level gets is Pᵀ of it, all on the diagonal: a little more than PᵀDP.
   void add_excess(const std::vector<double>& more);
 
   /// z ≈ A⁻¹ r by one V-cycle, for particle i at index first + i. Returns r·z.
@@ -46,8 +46,8 @@ class AggregationMultigrid {
  private:
   struct Level {
     int size = 0;
-    SlicedMatrix couplings;                // without the diagonal
-    SlicedMatrix prolong, restriction;     // from and to the next level
+    SlicedMatrix couplings;             // without the diagonal
+    SlicedMatrix prolong, restriction;  // from and to the next level
     SparseMatrix spread;                // `restriction`, for add_excess()
     double largest_eigenvalue = 1;      // of D⁻¹A
     std::vector<double> built_diagonal;
@@ -62,10 +62,10 @@ class AggregationMultigrid {
   void solve_coarsest(const float* const b[3], float* const out[3]) const;
 
   std::vector<Level> levels_;
-  SparseMatrix coarsest_;                 // couplings of the coarsest level
-  std::vector<double> coarsest_inverse_;  // empty: the coarsest level is only smoothed
+  SparseMatrix coarsest_;                   // couplings of the coarsest level
+  std::vector<double> coarsest_inverse_;    // empty: the coarsest level is only smoothed
   std::vector<double> more_, coarse_more_;  // work space of add_excess()
-  std::vector<double> dots_;              // of each slice
+  std::vector<double> dots_;                // of each slice
 };
 
 }  // namespace weft

@@ -1,15 +1,17 @@
 #include "weft/solvers/dense_inverse.h"
 
+#include <algorithm>
+
 namespace weft {
 
 /// Gauss–Jordan elimination along the diagonal: stable for such matrices without any pivoting.
 void invert_in_place(std::vector<double>& a, int n) {
-  constexpr double kRounding = 1e-15;  // of a diagonal element: less is nothing
-  std::vector<double> before(n);
-  for (int i = 0; i < n; ++i) before[i] = a[i * n + i];
+  constexpr double kRounding = 1e-15;  // of the largest diagonal element: less is nothing
+  double largest = 0;
+  for (int i = 0; i < n; ++i) largest = std::max(largest, a[i * n + i]);
   for (int p = 0; p < n; ++p) {
     const double pivot = a[p * n + p];
-    if (!(pivot > kRounding * before[p])) {
+    if (!(pivot > kRounding * largest)) {
       for (int i = 0; i < n; ++i) a[p * n + i] = a[i * n + p] = 0;
       continue;
     }

@@ -44,10 +44,10 @@ struct Trouble {
 };
 
 struct StepReport {
-  bool ok = true;                 // false: the step failed, and every cloth is as it was before it
-  std::vector<Trouble> troubles;  // with ok = true: the step was made, but less exactly than asked for
-  int substeps = 0;               // of the cloth that needed most [1]
-  int iterations = 0;             // of nonlinear solvers, all cloths [1]
+  bool ok = true;                        // false: the step failed, and every cloth is as it was before it
+  std::vector<Trouble> troubles;         // with ok = true: the step was made, but less exactly than asked for
+  int substeps = 0;                      // of the cloth that needed most [1]
+  int iterations = 0;                    // of nonlinear solvers, all cloths [1]
   std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
   std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
 };
