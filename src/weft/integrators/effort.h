@@ -8,8 +8,9 @@ namespace weft {
 
 struct Effort {
   int newton_steps = 1;       // that are always made [1]
-  int most_newton_steps = 4;  // if the guard asks for more [1]
-  CgSettings linear;
+  int most_newton_steps = 8;  // if the guard asks for more [1]
+  CgSettings free;            // of each Newton step without contact
+  CgSettings in_contact;      // … and with contact
 };
 
 /// From the settings, and where they leave it open from how far waves run through the cloth within a step:

@@ -27,10 +27,7 @@ namespace {
 
 constexpr double kMissedShare = 0.2;      // of the energy: if the model missed more, one more Newton step
 constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
-constexpr int kIterationsInContact = 15;  // at least, of conjugate gradients: contacts are stiff
-constexpr int kMostGuardedIterations =
-    80;                          // of a Newton step that the guard asked for: each has twice as many
-constexpr int kMaxHalvings = 8;  // of a Newton step after which the potential is higher than before
+constexpr int kMaxHalvings = 8;           // of a Newton step after which the potential is higher than before
 
 class NewtonIntegrator final : public Integrator {
  public:
@@ -196,15 +193,13 @@ class NewtonIntegrator final : public Integrator {
   }
 
   /// Newton steps from x = y.
-  IntegratorReport minimise(Effort effort, JobSystem& jobs) {
+  IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
+    int more = 1;  // times as many iterations, where the guard asks for another Newton step
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(jobs);
-      if (has_contact_diagonal_) {
-        asked = std::max(asked, kNewtonStepsInContact);
-        effort.linear.iterations = std::max(effort.linear.iterations, kIterationsInContact);
-      }
-      const CgReport linear = solve(effort, jobs);
+      if (has_contact_diagonal_) asked = std::max(asked, kNewtonStepsInContact);
+      const CgReport linear = solve(effort, more, jobs);
       *report.linear_iterations += linear.iterations;
       double share = 1, after = try_step(share, jobs);
       for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
@@ -219,7 +214,7 @@ class NewtonIntegrator final : public Integrator {
       if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
-        effort.linear.iterations = std::min(2 * effort.linear.iterations, kMostGuardedIterations);
+        more *= 2;
       }
     }
     return report;
@@ -248,7 +243,10 @@ class NewtonIntegrator final : public Integrator {
     has_contact_diagonal_ = any;
   }
 
-  CgReport solve(const Effort& effort, JobSystem& jobs) {
+  CgReport solve(const Effort& effort, int more, JobSystem& jobs) {
+    CgSettings settings = has_contact_diagonal_ ? effort.in_contact : effort.free;
+    settings.iterations *= more;
+    settings.enough /= more;
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
       double dot = potential_.multiply(p, jobs, q);
       dot += contacts_.add_product(rows_, p, q);
@@ -258,7 +256,7 @@ class NewtonIntegrator final : public Integrator {
     const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
       return preconditioner_.apply(r, jobs, z);
     };
-    return gradients_.solve(multiply, precondition, force_, effort.linear, jobs, direction_);
+    return gradients_.solve(multiply, precondition, force_, settings, jobs, direction_);
   }
 
   /// The potential after the given share of the step [J]. Springs do not move the middle of a free piece of

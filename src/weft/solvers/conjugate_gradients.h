@@ -11,6 +11,7 @@ struct CgSettings {
   /// Stops once an iteration lowers ½ xᵀAx − bᵀx by less than this share of what all have; 0: never. Not the
   /// residual: in floats, and for cloth, that says little of how good x is [1].
   double enough = 0;
+  int least = 1;  // iterations before that share counts [1]
 };
 
 struct CgReport {
@@ -37,7 +38,9 @@ class ConjugateGradients {
       ++report.iterations;
       const double decrease = 0.5 * rz * rz / curvature;
       report.decrease += decrease;
-      if (decrease < settings.enough * report.decrease || report.iterations == settings.iterations) break;
+      const bool is_enough = decrease < settings.enough * report.decrease;
+      if (is_enough && report.iterations >= settings.least) break;
+      if (report.iterations == settings.iterations) break;
       const double next = precondition(residual_, preconditioned_);
       beta = next / rz;
       rz = next;
