@@ -5,7 +5,7 @@
 /// chooses when it is called. Results must not depend on W: elementwise work never does, and sums go through
 /// LaneSums, which has sixteen lanes whatever W is.
 
-#include <cstdint>
+#include <cstddef>
 #include <cstring>
 
 #include "weft/core/simd.h"
@@ -99,10 +99,10 @@ WEFT_ALWAYS_INLINE Pack<W> broadcast(float value) {
 
 /// first, first + 1, …
 template <int W>
-WEFT_ALWAYS_INLINE Pack<W> count_from(int first) {
-  Pack<W> v{};
-  for (int l = 0; l < W; ++l) v[l] = static_cast<float>(first + l);
-  return v;
+WEFT_ALWAYS_INLINE Pack<W> count_from(std::ptrdiff_t first) {
+  Pack<W> lanes{};
+  for (int l = 0; l < W; ++l) lanes[l] = static_cast<float>(l);
+  return static_cast<float>(first) + lanes;
 }
 
 template <class V>
@@ -150,8 +150,8 @@ class LaneSums {
 
 /// Calls body(i, part) for the packs of [0, count), count rounded up to a block of sixteen.
 template <int W, class Body>
-WEFT_ALWAYS_INLINE void for_packs(int count, const Body& body) {
-  for (int block = 0; block < count; block += kPackLanes) {
+WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
+  for (std::ptrdiff_t block = 0; block < count; block += kPackLanes) {
 #if defined(__GNUC__)
 #pragma GCC unroll 4
 #endif

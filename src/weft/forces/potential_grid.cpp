@@ -10,7 +10,7 @@ constexpr float kMinLengthSq = 1e-30f;
 
 /// 1 where a family's spring starts at column i of row j, else 0.
 template <int W>
-WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, int i, int j) {
+WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
   const int step = kFamilyOffsets[family].columns;
   const Pack<W> column = count_from<W>(i), zero = broadcast<W>(0), one = broadcast<W>(1);
   const float begin = step < 0 ? 1.0f : 0.0f,
@@ -35,8 +35,8 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
   float* t_out = g.hessian + g.hessian_row(j, family, 0);
   float* slope_out = g.slope + g.slope_row(j, family);
   const int pitch = g.rows.stride();
-  for_packs<W>(g.rows.row_length, [&](int i, int part) WEFT_INLINE_LAMBDA {
-    const int p = first + i, q = p + offset;
+  for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int part) WEFT_INLINE_LAMBDA {
+    const std::ptrdiff_t p = first + i, q = p + offset;
     const V dx = load<W>(g.x.x + q) - load<W>(g.x.x + p);
     const V dy = load<W>(g.x.y + q) - load<W>(g.x.y + p);
     const V dz = load<W>(g.x.z + q) - load<W>(g.x.z + p);
@@ -79,8 +79,8 @@ template <int W>
 WEFT_ALWAYS_INLINE void inertia_row(const GridPotential& g, int j, LaneSums<W>& energy) {
   using V = Pack<W>;
   const int first = g.rows.row(j);
-  for_packs<W>(g.rows.row_length, [&](int i, int part) WEFT_INLINE_LAMBDA {
-    const int p = first + i;
+  for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int part) WEFT_INLINE_LAMBDA {
+    const std::ptrdiff_t p = first + i;
     const V ex = load<W>(g.offset.x + p), ey = load<W>(g.offset.y + p), ez = load<W>(g.offset.z + p);
     energy.add(part, 0.5f * load<W>(g.weight + p) * (ex * ex + ey * ey + ez * ez));
   });
@@ -121,8 +121,8 @@ WEFT_ALWAYS_INLINE void force_row(const GridPotential& g, int j, const float* x,
   using V = Pack<W>;
   const int first = g.rows.row(j);
   const bool is_plain = g.damping > 0 && !g.is_projected;
-  for_packs<W>(g.rows.row_length, [&](int i, int) WEFT_INLINE_LAMBDA {
-    const int p = first + i;
+  for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int) WEFT_INLINE_LAMBDA {
+    const std::ptrdiff_t p = first + i;
     const V here = load<W>(x + p);
     V f = 0.0f - load<W>(g.weight + p) * load<W>(moved + p);
     for (int family = 0; family < g.num_families; ++family) {
@@ -174,14 +174,14 @@ struct Three {
 };
 
 template <int W>
-WEFT_ALWAYS_INLINE Three<W> load3(ConstRows a, int i) {
+WEFT_ALWAYS_INLINE Three<W> load3(ConstRows a, std::ptrdiff_t i) {
   return {load<W>(a.x + i), load<W>(a.y + i), load<W>(a.z + i)};
 }
 
 /// Adds K (p_i − p_j) of the springs whose Hessian begins at h.
 template <int W>
-WEFT_ALWAYS_INLINE void add_product(const float* h, int pitch, const Three<W>& a, ConstRows p, int j,
-                                    Three<W>& q) {
+WEFT_ALWAYS_INLINE void add_product(const float* h, std::ptrdiff_t pitch, const Three<W>& a, ConstRows p,
+                                    std::ptrdiff_t j, Three<W>& q) {
   using V = Pack<W>;
   const V t = load<W>(h), wx = load<W>(h + pitch), wy = load<W>(h + 2 * pitch), wz = load<W>(h + 3 * pitch);
   const V dx = a.x - load<W>(p.x + j), dy = a.y - load<W>(p.y + j), dz = a.z - load<W>(p.z + j);
@@ -195,19 +195,19 @@ template <int W, int kFamilies>
 WEFT_ALWAYS_INLINE void multiply_rows(const GridPotential& g, ConstRows p, Rows q, int row_begin, int row_end,
                                       double* dot) {
   using V = Pack<W>;
-  const int pitch = g.rows.stride();
+  const std::ptrdiff_t pitch = g.rows.stride();
   for (int j = row_begin; j < row_end; ++j) {
-    const int first = g.rows.row(j);
+    const std::ptrdiff_t first = g.rows.row(j);
     const float *h = g.hessian + g.hessian_row(j, 0, 0), *above = g.hessian + g.hessian_row(j - 1, 0, 0),
                 *above2 = g.hessian + g.hessian_row(j - 2, 0, 0);
     LaneSums<W> sum;
-    for_packs<W>(g.rows.row_length, [&](int i, int part) WEFT_INLINE_LAMBDA {
-      const int c = first + i;
+    for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int part) WEFT_INLINE_LAMBDA {
+      const std::ptrdiff_t c = first + i;
       const Three<W> a = load3<W>(p, c);
       const V d = load<W>(g.weight + c);
       Three<W> out{d * a.x, d * a.y, d * a.z};
       const auto both = [&](int family, const float* from, int rows, int columns) WEFT_INLINE_LAMBDA {
-        const int offset = rows * pitch + columns, plane = family * 4 * pitch + i;
+        const std::ptrdiff_t offset = rows * pitch + columns, plane = family * 4 * pitch + i;
         add_product<W>(h + plane, pitch, a, p, c + offset, out);
         add_product<W>(from + plane - columns, pitch, a, p, c - offset, out);
       };

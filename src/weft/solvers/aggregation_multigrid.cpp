@@ -52,12 +52,12 @@ WEFT_ALWAYS_INLINE Three<W> row_sums(const SlicedMatrix& a, In3 u, int slice, in
 }
 
 template <int W>
-WEFT_ALWAYS_INLINE Three<W> load3(In3 u, int i) {
+WEFT_ALWAYS_INLINE Three<W> load3(In3 u, std::ptrdiff_t i) {
   return {load<W>(u.x + i), load<W>(u.y + i), load<W>(u.z + i)};
 }
 
 template <int W>
-WEFT_ALWAYS_INLINE void store3(Out3 u, int i, const Three<W>& v) {
+WEFT_ALWAYS_INLINE void store3(Out3 u, std::ptrdiff_t i, const Three<W>& v) {
   store(u.x + i, v.x);
   store(u.y + i, v.y);
   store(u.z + i, v.z);
@@ -66,8 +66,8 @@ WEFT_ALWAYS_INLINE void store3(Out3 u, int i, const Three<W>& v) {
 /// out = inverse · b
 template <int W>
 WEFT_ALWAYS_INLINE void scale_body(const float* inverse, In3 b, Out3 out, int begin, int end) {
-  for_packs<W>((end - begin) * kPackLanes, [&](int offset, int) WEFT_INLINE_LAMBDA {
-    const int i = begin * kPackLanes + offset;
+  for_packs<W>((end - begin) * kPackLanes, [&](std::ptrdiff_t offset, int) WEFT_INLINE_LAMBDA {
+    const std::ptrdiff_t i = begin * kPackLanes + offset;
     const Pack<W> w = load<W>(inverse + i);
     const Three<W> v = load3<W>(b, i);
     store3<W>(out, i, {w * v.x, w * v.y, w * v.z});

@@ -11,7 +11,8 @@ constexpr float kJacobiWeight = 0.85f;
 
 /// Σ_j c_ij u_j.
 template <int W, bool kDownLeft>
-WEFT_ALWAYS_INLINE Pack<W> couple(const GridLevel& a, const float* u, int i, int stride) {
+WEFT_ALWAYS_INLINE Pack<W> couple(const GridLevel& a, const float* u, std::ptrdiff_t i,
+                                  std::ptrdiff_t stride) {
   const float *right = a.right.data() + i, *down = a.down.data() + i, *main = a.down_right.data() + i;
   Pack<W> sum = load<W>(right - 1) * load<W>(u + i - 1) + load<W>(right) * load<W>(u + i + 1);
   sum += load<W>(down - stride) * load<W>(u + i - stride) + load<W>(down) * load<W>(u + i + stride);
@@ -33,8 +34,8 @@ WEFT_ALWAYS_INLINE void finish_body(GridLevel& a, int row_begin, int row_end) {
               *anti = a.down_left.data();
   for (int j = row_begin; j < row_end; ++j) {
     const int first = a.rows.row(j);
-    for_packs<W>(a.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
-      const int i = first + column;
+    for_packs<W>(a.rows.row_length, [&](std::ptrdiff_t column, int) WEFT_INLINE_LAMBDA {
+      const std::ptrdiff_t i = first + column;
       V sum = load<W>(right + i) + load<W>(right + i - 1) + load<W>(down + i) + load<W>(down + i - stride);
       sum += load<W>(main + i) + load<W>(main + i - stride - 1);
       sum += load<W>(anti + i) + load<W>(anti + i - stride + 1);
@@ -105,8 +106,8 @@ WEFT_ALWAYS_INLINE void merge_body(const GridMatrix& n, GridMatrix& coarse, int 
     const auto [before, after, next] = shares_at(row, n.rows.num_rows);
     const float after2 = after * after, before2 = before * before, shared = after * next;
     const int in = n.rows.row(2 * row), out = coarse.rows.row(row);
-    for_packs<W>(coarse.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
-      const int i = in + column, o = out + column;
+    for_packs<W>(coarse.rows.row_length, [&](std::ptrdiff_t column, int) WEFT_INLINE_LAMBDA {
+      const std::ptrdiff_t i = in + column, o = out + column;
       const V e0 = load<W>(e + i), e1 = load<W>(e + i + s), e2 = load<W>(e + i - s);
       store(coarse.excess.data() + o, e0 + after * e1 + before * e2);
       const V r0 = load<W>(r + i), r1 = load<W>(r + i + s), r2 = load<W>(r + i - s);
@@ -132,8 +133,8 @@ WEFT_ALWAYS_INLINE void smooth_from_zero_multi_body(const GridLevel& a, ConstCom
                                                     int row_begin, int row_end) {
   for (int j = row_begin; j < row_end; ++j) {
     const int first = a.rows.row(j);
-    for_packs<W>(a.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
-      const int i = first + column;
+    for_packs<W>(a.rows.row_length, [&](std::ptrdiff_t column, int) WEFT_INLINE_LAMBDA {
+      const std::ptrdiff_t i = first + column;
       const Pack<W> inverse = load<W>(a.inverse.data() + i);
       store(x.x + i, inverse * load<W>(b.x + i));
       store(x.y + i, inverse * load<W>(b.y + i));
@@ -154,8 +155,8 @@ WEFT_ALWAYS_INLINE void smooth_rows(const GridLevel& a, ConstComponent3 b, Const
   for (int j = row_begin; j < row_end; ++j) {
     const int first = a.rows.row(j);
     LaneSums<W> sum;
-    for_packs<W>(a.rows.row_length, [&](int column, int part) WEFT_INLINE_LAMBDA {
-      const int i = first + column;
+    for_packs<W>(a.rows.row_length, [&](std::ptrdiff_t column, int part) WEFT_INLINE_LAMBDA {
+      const std::ptrdiff_t i = first + column;
       const V inverse = load<W>(a.inverse.data() + i), diagonal = load<W>(a.diagonal.data() + i);
       const V zero = broadcast<W>(0);
       const auto sweep = [&](const float* right_side, const float* u, float* to) WEFT_INLINE_LAMBDA {
@@ -184,12 +185,14 @@ WEFT_MULTIVERSION_PACKS(smooth_multi,
                          int row_begin, int row_end, double* dots),
                         (a, b, x, out, row_begin, row_end, dots))
 
-/// Residuals of three rows, with zeros before and behind; of one thread, kept between calls.
+/// Residuals of three rows, with room before and behind; of one thread, kept between calls.
 class ResidualRows {
  public:
+  /// What is in them does not matter.
   void fit(int row_length) {
     pitch_ = round_up_to_pack(row_length) + 2 * kPackLanes;
-    values_.assign(static_cast<std::size_t>(9) * pitch_, 0.0f);
+    const auto size = static_cast<std::size_t>(9) * pitch_;
+    if (values_.size() < size) values_.resize(size);
   }
 
   Component3 row(int j) {
@@ -207,8 +210,8 @@ WEFT_ALWAYS_INLINE void residual_row(const GridLevel& a, ConstComponent3 b, Cons
                                      Component3 out) {
   using V = Pack<W>;
   const int stride = a.rows.stride(), first = a.rows.row(j);
-  for_packs<W>(a.rows.row_length, [&](int column, int) WEFT_INLINE_LAMBDA {
-    const int i = first + column;
+  for_packs<W>(a.rows.row_length, [&](std::ptrdiff_t column, int) WEFT_INLINE_LAMBDA {
+    const std::ptrdiff_t i = first + column;
     const V diagonal = load<W>(a.diagonal.data() + i);
     const auto residual = [&](const float* side, const float* u) WEFT_INLINE_LAMBDA {
       return load<W>(side + i) - diagonal * load<W>(u + i) + couple<W, kDownLeft>(a, u, i, stride);
@@ -222,6 +225,7 @@ WEFT_ALWAYS_INLINE void residual_row(const GridLevel& a, ConstComponent3 b, Cons
 /// out[q] = in[2q] + ½ (in[2q−1] + in[2q+1]); see coarse_length() for the end of an even row.
 WEFT_ALWAYS_INLINE void halve(float* in, int fine_length, float* out, int coarse_length) {
   const float last = in[fine_length - 1];
+  in[-1] = in[fine_length] = 0;
   const bool is_even = fine_length % 2 == 0, is_pair = fine_length == 2;
   if (is_even) in[fine_length - 1] = is_pair ? 2 * last : 0;
   const int inner = is_even && !is_pair ? coarse_length - 1 : coarse_length;
@@ -239,7 +243,7 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
   const auto compute = [&](int j) WEFT_INLINE_LAMBDA {
     const Component3 row = rows.row(j);
     if (j >= 0 && j < num_rows) return residual_row<W, kDownLeft>(fine, b, x, j, row);
-    for (float* component : {row.x, row.y, row.z}) std::fill_n(component, length, 0.0f);
+    for (float* component : {row.x, row.y, row.z}) std::fill_n(component, round_up_to_pack(length), 0.0f);
   };
   compute(2 * row_begin - 1);
   for (int j = row_begin; j < row_end; ++j) {
@@ -249,7 +253,7 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
     const Shares shares = shares_at(j, num_rows);
     const float weight_before = shares.before, weight_after = shares.after;
     const auto combine = [&](float* at, const float* up, const float* down, float* to) WEFT_INLINE_LAMBDA {
-      for_packs<W>(length, [&](int i, int) WEFT_INLINE_LAMBDA {
+      for_packs<W>(length, [&](std::ptrdiff_t i, int) WEFT_INLINE_LAMBDA {
         const V sum = load<W>(at + i) + weight_before * load<W>(up + i) + weight_after * load<W>(down + i);
         store(at + i, sum);
       });
