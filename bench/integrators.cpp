@@ -79,7 +79,7 @@ double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem
 void bench_one(const std::string& name, int size, int threads, const IntegratorBenchOptions& options,
                double clock) {
   Sheet sheet = make_sheet(size, options.model);
-  const bool is_implicit = name == "desbrun" || name == "implicit_euler";
+  const bool is_implicit = name == "desbrun" || name == "implicit_euler" || name == "newton";
   const double step = is_implicit ? 1.0 / 60 : 0.5 * explicit_step_limit(*sheet.model, {});
   const auto jobs = make_jobs(threads);
   const auto integrator = make_integrator({.integrator = name});

@@ -97,8 +97,9 @@ INSTANTIATE_TEST_SUITE_P(
     Integrators, FrictionOnASlope,
     testing::Values(FrictionCase{Ground::plane, "explicit"}, FrictionCase{Ground::plane, "paper_fixed"},
                     FrictionCase{Ground::plane, "desbrun"}, FrictionCase{Ground::plane, "implicit_euler"},
-                    FrictionCase{Ground::box, "explicit"}, FrictionCase{Ground::box, "paper_fixed"},
-                    FrictionCase{Ground::box, "desbrun"}, FrictionCase{Ground::box, "implicit_euler"}),
+                    FrictionCase{Ground::plane, "newton"}, FrictionCase{Ground::box, "explicit"},
+                    FrictionCase{Ground::box, "paper_fixed"}, FrictionCase{Ground::box, "desbrun"},
+                    FrictionCase{Ground::box, "implicit_euler"}, FrictionCase{Ground::box, "newton"}),
     [](const auto& test) {
       return std::string(test.param.ground == Ground::plane ? "plane_" : "box_") + test.param.integrator;
     });
@@ -167,7 +168,7 @@ TEST_P(FrictionOnCloth, WithoutFrictionTheSheetKeepsItsSpeed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FrictionOnCloth,
-                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler"),
+                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

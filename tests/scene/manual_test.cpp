@@ -24,6 +24,8 @@ TEST(Manual, ItsSceneFileIsGood) {
   const SceneDesc defaults;
   EXPECT_EQ(scene.gravity, defaults.gravity);
   EXPECT_EQ(scene.solver.implicit_euler.tolerance, defaults.solver.implicit_euler.tolerance);
+  EXPECT_EQ(scene.solver.newton.iterations, defaults.solver.newton.iterations);
+  EXPECT_EQ(scene.solver.newton.quality, defaults.solver.newton.quality);
   EXPECT_EQ(scene.solver.implicit_euler.iterations, defaults.solver.implicit_euler.iterations);
   EXPECT_EQ(scene.solver.integrator, defaults.solver.integrator);
   EXPECT_EQ(scene.cloths[0].material.structural, ClothMaterial{}.structural);

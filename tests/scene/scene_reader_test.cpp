@@ -301,6 +301,7 @@ TEST(SceneReader, ReadsEveryKeyOfTheSolver) {
 integrator = "paper"
 steps_per_frame = 100
 iterations = 7
+quality = "high"
 tolerance = 1e-7
 contact = false
 explicit = { substeps = 12 }
@@ -309,10 +310,18 @@ paper = { damping_sign = "as_printed" }
   EXPECT_EQ(scene.solver.integrator, "paper");
   EXPECT_EQ(scene.steps_per_frame, 100);
   EXPECT_EQ(scene.solver.implicit_euler.iterations, 7);
+  EXPECT_EQ(scene.solver.newton.iterations, 7);
+  EXPECT_EQ(scene.solver.newton.quality, NewtonQuality::high);
   EXPECT_EQ(scene.solver.implicit_euler.tolerance, 1e-7);
   EXPECT_FALSE(scene.contact);
   EXPECT_EQ(scene.solver.explicit_euler.substeps, 12);
   EXPECT_TRUE(scene.solver.paper.printed_damping_sign);
+}
+
+TEST(SceneReader, LeavesIterationsToTheIntegrator) {
+  const SceneDesc scene = parse(kScene + kGrid + "[solver]\niterations = \"auto\"\n");
+  EXPECT_EQ(scene.solver.newton.iterations, 0);
+  EXPECT_EQ(scene.solver.implicit_euler.iterations, ImplicitEulerSettings{}.iterations);
 }
 
 TEST(SceneReader, KnowsEveryIntegrator) {

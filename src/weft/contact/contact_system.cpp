@@ -266,6 +266,7 @@ void ContactSystem::store_touched() {
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
       if (!is_touched_[v] || inverse_mass_[v] == 0) continue;
+      cloths_[c].state->history.had_contact = true;
       cloths_[c].state->set_position(v - first_vertex_[c], motion_.end[v]);
       cloths_[c].state->v.set(v - first_vertex_[c], velocity_[v]);
     }

@@ -5,8 +5,8 @@
 namespace weft {
 
 const std::vector<std::string_view>& integrator_names() {
-  static const std::vector<std::string_view> names = {"explicit", "paper", "paper_fixed", "desbrun",
-                                                      "implicit_euler"};
+  static const std::vector<std::string_view> names = {"explicit", "paper",          "paper_fixed",
+                                                      "desbrun",  "implicit_euler", "newton"};
   return names;
 }
 
@@ -17,6 +17,7 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) 
   if (name == "paper_fixed") return make_paper_fixed();
   if (name == "desbrun") return make_desbrun();
   if (name == "implicit_euler") return make_implicit_euler(settings.implicit_euler);
+  if (name == "newton") return make_newton(settings.newton);
   std::string known;
   for (const std::string_view n : integrator_names()) known += (known.empty() ? "" : ", ") + std::string(n);
   throw InputError("there is no integrator \"" + name + "\"; there are " + known);

@@ -50,13 +50,19 @@ void follow_cloth(ClothState& state) {
 }
 
 void add_to_hash(const ClothState& state, Hash& hash) {
-  const auto add = [&](const float* values) { hash.add(std::span<const float>(values, state.x.size())); };
+  const auto add = [&](const Vec3Array& values) {
+    for (const float* component : {values.x(), values.y(), values.z()})
+      hash.add(std::span<const float>(component, values.size()));
+  };
   for (int c = 0; c < 3; ++c) hash.add(state.origin[c]);
-  for (const Vec3Array* array : {&state.x, &state.v}) {
-    add(array->x());
-    add(array->y());
-    add(array->z());
-  }
+  add(state.x);
+  add(state.v);
+  const MotionHistory& history = state.history;
+  if (history.step == 0) return;
+  hash.add(history.step);
+  hash.add(history.had_contact ? 1.0 : 0.0);
+  add(history.displacement);
+  add(history.velocity);
 }
 
 }  // namespace weft

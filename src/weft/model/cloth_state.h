@@ -7,12 +7,21 @@
 
 namespace weft {
 
+/// What the step before has left for an integrator of second order. Any other may leave it alone.
+struct MotionHistory {
+  double step = 0;           // length of the step before, 0: there is none to go by [s]
+  bool had_contact = false;  // contact took part in it
+  Vec3Array displacement;    // x now − x before it (num_particles) [m]
+  Vec3Array velocity;        // v before it (num_particles) [m/s]
+};
+
 /// Positions are float offsets from a double origin, so that cloth far from the world's origin keeps its
 /// precision.
 struct ClothState {
   Vec3 origin = Vec3::Zero();  // [m]
   Vec3Array x;                 // offset of each particle from `origin` (num_particles) [m]
   Vec3Array v;                 // velocity (num_particles) [m/s]
+  MotionHistory history;       // to be dropped (step = 0) where positions or velocities are set from outside
 
   Vec3 position(std::size_t i) const { return origin + x.get(i); }
   void set_position(std::size_t i, const Vec3& position) { x.set(i, position - origin); }

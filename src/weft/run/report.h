@@ -26,6 +26,10 @@ struct RunReport {
   std::vector<double> kinetic_energy;     // (frames) [J]
   std::vector<double> potential_energy;   // (frames) elastic plus gravity, zero at the world's origin [J]
   std::vector<double> lowest_y;           // (frames) the first one after the first frame [m]
+  // Work of the solver, empty for integrators without it:
+  std::vector<int> newton_steps;    // (frames) nonlinear iterations, all cloths [1]
+  std::vector<int> cg_iterations;   // (frames) linear iterations inside them [1]
+  std::optional<int> guard_events;  // how often the guard stepped in, over the run [1]
   // What the independent checker (verify/checker.h) found in the frames, the start not counted:
   std::optional<int>
       intersections;  // crossing pairs of triangles in the worst frame; empty without frames [1]
@@ -35,8 +39,8 @@ struct RunReport {
   std::vector<std::string> warnings;
 };
 
-/// The report as JSON text. What this version does not measure (infeasible, guard_events) is
-/// null.
+/// The report as JSON text. What was not measured is null, as `infeasible` always is in this
+/// version.
 std::string to_json(const RunReport& report);
 
 /// Throws InputError if the file cannot be written.

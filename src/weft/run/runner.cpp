@@ -156,6 +156,7 @@ class Run {
       world.set_wind(wind_at(scene_.wind, world.time()));
       const StepReport done = world.step(1 / (scene_.fps * scene_.steps_per_frame));
       ++num_steps_;
+      add_work(done, frame);
       if (done.ok) {
         troubles_.add(done);
         continue;
@@ -167,6 +168,16 @@ class Run {
       return false;
     }
     return true;
+  }
+
+  void add_work(const StepReport& done, int frame) {
+    RunReport& report = result_.report;
+    if (done.guard_events) report.guard_events = report.guard_events.value_or(0) + *done.guard_events;
+    if (!done.linear_iterations) return;
+    report.newton_steps.resize(frame, 0);
+    report.cg_iterations.resize(frame, 0);
+    report.newton_steps.back() += done.iterations;
+    report.cg_iterations.back() += *done.linear_iterations;
   }
 
   void finish() {

@@ -81,11 +81,26 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
   if (choice >= 0) integrator = names[choice];
 }
 
+/// A number goes to whichever integrator runs; "auto" leaves the choice to it.
+void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
+  const TomlValue value = solver.get("iterations");
+  if (!value) return;
+  int iterations = 0;
+  if (value.is_string()) {
+    if (value.node().value_exact<std::string_view>() != "auto") value.expected("a whole number or \"auto\"");
+  } else if (value.read(iterations, IntegerRule{1, INT_MAX})) {
+    settings.implicit_euler.iterations = settings.newton.iterations = iterations;
+  }
+}
+
 void read_solver(TomlTable table, SceneDesc& scene) {
   IntegratorSettings& solver = scene.solver;
   read_integrator(table, solver.integrator);
   table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
-  table.read("iterations", solver.implicit_euler.iterations, IntegerRule{1, INT_MAX});
+  read_iterations(table, solver);
+  table.read_choice<NewtonQuality>(
+      "quality", solver.newton.quality,
+      {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.table("explicit").read("substeps", solver.explicit_euler.substeps, IntegerRule{0, INT_MAX});

@@ -54,10 +54,14 @@ int find_non_finite(const ClothState& state) {
   return -1;
 }
 
+void add(const std::optional<int>& count, std::optional<int>& sum) {
+  if (count) sum = sum.value_or(0) + *count;
+}
+
 std::string advice(const std::string& integrator) {
   if (integrator == "explicit")
     return "raise solver.explicit.substeps (0 chooses them), or soften the springs";
-  if (integrator == "implicit_euler") return "raise solver.steps_per_frame";
+  if (integrator == "implicit_euler" || integrator == "newton") return "raise solver.steps_per_frame";
   return "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
 }
 
@@ -136,7 +140,10 @@ void World::set_material(ClothId id, const ClothMaterial& material) {
 void World::set_integrator(const IntegratorSettings& settings) {
   make_integrator(settings);  // throws before anything has changed
   integrator_settings_ = settings;
-  for (Cloth& cloth : cloths_) cloth.integrator = make_integrator(settings);
+  for (Cloth& cloth : cloths_) {
+    cloth.integrator = make_integrator(settings);
+    cloth.state.history.step = 0;
+  }
 }
 
 void World::aim_pins(Cloth& cloth, double time) {
@@ -195,6 +202,8 @@ void World::advance(double time, double dt, StepReport& report) {
         cloth.integrator->advance(*cloth.held_model, environment_, dt, *jobs_, cloth.state);
     cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
     report.iterations += done.iterations;
+    add(done.linear_iterations, report.linear_iterations);
+    add(done.guard_events, report.guard_events);
     if (!done.converged) has_converged_[c] = 0;
     if (contact_) contact_system_.end_of(c);
   }

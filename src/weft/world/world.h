@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,12 @@ struct Trouble {
 };
 
 struct StepReport {
-  bool ok = true;                 // false: the step failed, and every cloth is as it was before it
-  std::vector<Trouble> troubles;  // with ok = true: the step was made, but less exactly than asked for
-  int substeps = 0;               // of the cloth that needed most [1]
-  int iterations = 0;             // of nonlinear solvers, all cloths [1]
+  bool ok = true;                        // false: the step failed, and every cloth is as it was before it
+  std::vector<Trouble> troubles;         // with ok = true: the step was made, but less exactly than asked for
+  int substeps = 0;                      // of the cloth that needed most [1]
+  int iterations = 0;                    // of nonlinear solvers, all cloths [1]
+  std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
+  std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
 };
 
 class World {

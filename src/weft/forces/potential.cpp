@@ -1,0 +1,165 @@
+#include "weft/forces/potential.h"
+
+#include <cmath>
+#include <utility>
+
+#include "weft/forces/potential_kernels.h"
+
+namespace weft {
+namespace {
+
+/// Particles per chunk of work: enough to outweigh handing a chunk to another thread.
+constexpr int kGrain = 4096;
+
+int rows_per_chunk(const PaddedRows& rows) { return std::max(1, kGrain / rows.row_length); }
+
+}  // namespace
+
+PaddedRows padded_rows_of(const ClothTopology& topology) {
+  if (topology.grid) return {topology.grid->num_columns(), topology.grid->num_rows()};
+  return {topology.num_particles(), 1};
+}
+
+void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
+  damping_ = static_cast<float>(model.material.damping * damping_rate);
+  is_projected_ = model.material.damping_kind == DampingKind::projected;
+  if (model.id == model_id_) return;
+  if (model.topology != topology_) {
+    topology_ = model.topology;
+    rows_ = padded_rows_of(*topology_);
+    weight.assign(rows_.size(), 0.0f);
+    for (Vec3Array* field : {&target, &lag, &x_, &damped_}) *field = Vec3Array(rows_.size());
+    hessian_.clear();
+    slope_.clear();
+  }
+  model_id_ = model.id;
+  if (topology_->grid) {
+    fit_grid(model);
+  } else {
+    fit_mesh(model);
+  }
+}
+
+void IncrementalPotential::fit_grid(const ClothModel& model) {
+  const Grid& grid = *topology_->grid;
+  const double dx = grid.spacing_x(), dz = grid.spacing_z(), diagonal = std::sqrt(dx * dx + dz * dz);
+  const ClothMaterial& m = model.material;
+  num_families_ = topology_->spring_model == SpringModel::simplified ? 5 : 6;
+  const double stiffness[] = {m.structural, m.structural, m.shear, m.bend, m.bend, m.shear};
+  const double rest_length[] = {dx, dz, diagonal, 2 * dx, 2 * dz, diagonal};
+  for (int f = 0; f < 6; ++f) {
+    stiffness_[f] = static_cast<float>(stiffness[f]);
+    rest_length_[f] = static_cast<float>(rest_length[f]);
+  }
+  if (!hessian_.empty()) return;
+  hessian_.assign(kernels::GridPotential::hessian_size(rows_, num_families_), 0.0f);
+  slope_.assign(num_families_ * rows_.size() + kPackLanes, 0.0f);
+  parts_.assign(rows_.num_rows, 0.0);
+}
+
+void IncrementalPotential::fit_mesh(const ClothModel& model) {
+  const NeighbourTable& table = topology_->table;
+  mesh_stiffness_ = model.entry_stiffness;
+  if (!hessian_.empty()) return;
+  hessian_.assign(4 * table.neighbour.size(), 0.0f);
+  parts_.assign(table.num_slices(), 0.0);
+}
+
+/// x = y + e, and z = e + lag.
+void IncrementalPotential::place(const Vec3Array& e, JobSystem& jobs) {
+  const auto add = [&](const float* a, const float* b, float* sum) {
+    parallel_for(jobs, static_cast<int>(rows_.size()), 4 * kGrain,
+                 [&](int begin, int end) { kernels::add(a, b, sum, begin, end); });
+  };
+  add(target.x(), e.x(), x_.x());
+  add(target.y(), e.y(), x_.y());
+  add(target.z(), e.z(), x_.z());
+  if (!is_damped()) return;
+  add(e.x(), lag.x(), damped_.x());
+  add(e.y(), lag.y(), damped_.y());
+  add(e.z(), lag.z(), damped_.z());
+}
+
+double IncrementalPotential::sum_parts(int count) const {
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += parts_[i];
+  return sum;
+}
+
+kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
+  return {.rows = rows_,
+          .num_families = num_families_,
+          .alternates = topology_->spring_model == SpringModel::alternating,
+          .stiffness = stiffness_,
+          .rest_length = rest_length_,
+          .damping = damping_,
+          .is_projected = is_projected_,
+          .weight = weight.data(),
+          .x = kernels::rows(std::as_const(x_)),
+          .offset = kernels::rows(e),
+          .damped = kernels::rows(std::as_const(damped_)),
+          .hessian = hessian_.data(),
+          .slope = slope_.data()};
+}
+
+kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& e) {
+  return {.table = &topology_->table,
+          .first = rows_.row(0),
+          .num_particles = topology_->num_particles(),
+          .stiffness = mesh_stiffness_.data(),
+          .damping = damping_,
+          .is_projected = is_projected_,
+          .weight = weight.data(),
+          .x = kernels::rows(std::as_const(x_)),
+          .offset = kernels::rows(e),
+          .damped = kernels::rows(std::as_const(damped_)),
+          .hessian = hessian_.data()};
+}
+
+double IncrementalPotential::compute(const Vec3Array& e, JobSystem& jobs, Vec3Array* force) {
+  place(e, jobs);
+  const bool store = force != nullptr;
+  double* parts = parts_.data();
+  if (topology_->grid) {
+    kernels::GridPotential g = grid_view(e);
+    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
+                 [&](int begin, int end) { kernels::grid_springs(g, store, begin, end, parts); });
+    if (store) {
+      g.force = kernels::rows(*force);
+      parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
+                   [&](int begin, int end) { kernels::grid_forces(g, begin, end); });
+    }
+    return sum_parts(rows_.num_rows);
+  }
+  kernels::MeshPotential m = mesh_view(e);
+  if (store) m.force = kernels::rows(*force);
+  const int num_slices = topology_->table.num_slices();
+  parallel_for(jobs, num_slices, kGrain / NeighbourTable::kLanes,
+               [&](int begin, int end) { kernels::mesh_springs(m, store, begin, end, parts); });
+  return sum_parts(num_slices);
+}
+
+double IncrementalPotential::energy(const Vec3Array& e, JobSystem& jobs) { return compute(e, jobs, nullptr); }
+
+double IncrementalPotential::linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force) {
+  return compute(e, jobs, &force);
+}
+
+double IncrementalPotential::multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) {
+  const kernels::ConstRows in = kernels::rows(p);
+  const kernels::Rows out = kernels::rows(q);
+  double* parts = parts_.data();
+  if (topology_->grid) {
+    const kernels::GridPotential g = grid_view(p);
+    parallel_for(jobs, rows_.num_rows, rows_per_chunk(rows_),
+                 [&](int begin, int end) { kernels::grid_multiply(g, in, out, begin, end, parts); });
+    return sum_parts(rows_.num_rows);
+  }
+  const kernels::MeshPotential m = mesh_view(p);
+  const int num_slices = topology_->table.num_slices();
+  parallel_for(jobs, num_slices, kGrain / NeighbourTable::kLanes,
+               [&](int begin, int end) { kernels::mesh_multiply(m, in, out, begin, end, parts); });
+  return sum_parts(num_slices);
+}
+
+}  // namespace weft

@@ -1,0 +1,84 @@
+#pragma once
+/// The incremental potential of an implicit step, in floats, for the fast solver:
+///
+///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring, if damping is
+///     projected)
+///
+/// y is where the particles would go without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with
+/// the velocity v_y that goes with y, and c = b β/h: the dissipation of spring damping at the new velocity
+/// v_y + (β/h)(x − y).
+///
+/// Its Hessian is kept per spring as t I + w wᵀ with t = k min(1, |1 − l0/l|) and |w|² = k − t: positive
+/// semidefinite by construction. The absolute value matters: with the transverse stiffness of compressed
+/// springs clamped at zero, one Newton step overshoots sideways by hundreds of percent of strain.
+///
+/// On grids springs are stencils; on meshes they come from the NeighbourTable. Sums have one fixed order: the
+/// same bits for any number of threads and any vector width.
+
+#include <memory>
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+namespace kernels {
+struct GridPotential;
+struct MeshPotential;
+}  // namespace kernels
+
+/// Where the particles of a cloth are in the arrays of the solver.
+PaddedRows padded_rows_of(const ClothTopology& topology);
+
+class IncrementalPotential {
+ public:
+  /// Lays everything out for the cloth, and takes its stiffnesses. `damping_rate` is β/h [1/s].
+  void fit(const ClothModel& model, double damping_rate);
+
+  const PaddedRows& rows() const { return rows_; }
+  bool is_damped() const { return damping_ > 0; }
+
+  // Set before use; zero where no particle is (rows().size() each).
+  std::vector<float> weight;  // D [N/m]
+  Vec3Array target;           // y [m]
+  Vec3Array lag;              // (h/β) v_y; only used with damping [m]
+
+  /// E(y + e) [J]. Offsets from y, for they are small: in floats x − y would lose them where steps are small.
+  double energy(const Vec3Array& e, JobSystem& jobs);
+
+  /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
+  double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
+
+  /// q = A p with the Hessian A of linearise(), and p·q. p must be zero where no particle is.
+  double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
+
+ private:
+  void fit_grid(const ClothModel& model);
+  void fit_mesh(const ClothModel& model);
+  kernels::GridPotential grid_view(const Vec3Array& e);
+  kernels::MeshPotential mesh_view(const Vec3Array& e);
+  double compute(const Vec3Array& e, JobSystem& jobs, Vec3Array* force);
+  void place(const Vec3Array& e, JobSystem& jobs);
+  double sum_parts(int count) const;
+
+  std::shared_ptr<const ClothTopology> topology_;
+  std::uint64_t model_id_ = 0;
+  PaddedRows rows_;
+  int num_families_ = 0;               // of equal springs on a grid
+  float stiffness_[6] = {};            // of each family [N/m]
+  float rest_length_[6] = {};          // of each family [m]
+  std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
+  float damping_ = 0;                  // c [N/m]
+  bool is_projected_ = true;
+
+  std::vector<float> hessian_;  // t, wx, wy, wz of each spring
+  std::vector<float> slope_;    // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
+  Vec3Array x_;                 // y + e
+  Vec3Array damped_;            // z
+  std::vector<double> parts_;   // sums of rows or slices
+};
+
+}  // namespace weft

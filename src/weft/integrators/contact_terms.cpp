@@ -1,0 +1,109 @@
+#include "weft/integrators/contact_terms.h"
+
+#include <algorithm>
+
+namespace weft {
+namespace {
+
+constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
+
+}  // namespace
+
+void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel& model,
+                         const PinTargets& pins, double step, const Vec3& driven) {
+  sticking_ = kStickSpeed * step;
+  driven_ = driven;
+  is_first_ = true;
+  terms_.clear();
+  for (const Contact& c : contacts) {
+    double inverse_mass = 0;
+    for (int k = 0; k < c.num_particles; ++k) {
+      const bool is_pinned = std::binary_search(pins.particle.begin(), pins.particle.end(), c.particle[k]);
+      if (!is_pinned) inverse_mass += c.weight[k] * c.weight[k] / model.mass[c.particle[k]];
+    }
+    Term term;
+    term.contact = &c;
+    if (inverse_mass > 0) term.inertia = 1 / (step * step * inverse_mass);
+    terms_.push_back(term);
+  }
+}
+
+bool ContactTerms::any_active(const OffsetPositions& x) const {
+  return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.contact->depth(x) > 0; });
+}
+
+/// µ N over the slide that is expected after the solve: the present one. At first, where inertia alone has
+/// taken the particles, N is the force that stops a lone stencil, and the slide is what friction leaves of
+/// it, but not less than if the velocity at the start went on: many contacts carry a sheet, some more of it,
+/// some less, and those with more must not hold it fast.
+double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3& slide) const {
+  const Contact& c = *t.contact;
+  const double length = slide.norm();
+  if (!is_first_) return c.friction * c.stiffness * depth / std::max(length, sticking_);
+  const double most = c.friction * t.inertia / (t.inertia + c.stiffness) * c.stiffness * depth;
+  const Vec3 driven = driven_ - driven_.dot(c.normal) * c.normal;
+  const double expected = std::max(length - most / t.inertia, (slide - driven).norm());
+  return most / std::max(expected, sticking_);
+}
+
+double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
+  double energy = 0;
+  for (Term& t : terms_) {
+    const Contact& c = *t.contact;
+    const double depth = c.depth(x);
+    t.is_active = depth > 0 && t.inertia > 0;
+    if (!t.is_active) t.friction = 0;
+    if (!t.is_active) continue;
+    const Vec3 slide = c.slide(x);
+    t.friction = friction_stiffness(t, depth, slide);
+    const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;
+    for (int k = 0; k < c.num_particles; ++k) {
+      const int at = x.rows.index(c.particle[k]);
+      force.set(at, force.get(at) + c.weight[k] * push);
+    }
+    energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
+  }
+  is_first_ = false;
+  return energy;
+}
+
+double ContactTerms::energy(const OffsetPositions& x) const {
+  double energy = 0;
+  for (const Term& t : terms_) {
+    const double depth = t.contact->depth(x);
+    energy += 0.5 * t.contact->stiffness * depth * depth;
+    if (t.is_active) energy += 0.5 * t.friction * t.contact->slide(x).squaredNorm();
+  }
+  return energy;
+}
+
+double ContactTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const {
+  double dot = 0;
+  for (const Term& t : terms_) {
+    if (!t.is_active) continue;
+    const Contact& c = *t.contact;
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < c.num_particles; ++k) sum += c.weight[k] * p.get(rows.index(c.particle[k]));
+    const double along = c.normal.dot(sum);
+    const Vec3 product = (c.stiffness - t.friction) * along * c.normal + t.friction * sum;
+    for (int k = 0; k < c.num_particles; ++k) {
+      const int at = rows.index(c.particle[k]);
+      q.set(at, q.get(at) + c.weight[k] * product);
+    }
+    dot += sum.dot(product);
+  }
+  return dot;
+}
+
+void ContactTerms::add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const {
+  for (const Term& t : terms_) {
+    if (!t.is_active) continue;
+    for (int k = 0; k < t.contact->num_particles; ++k) {
+      const double w = t.contact->weight[k];
+      diagonal[rows.index(t.contact->particle[k])] +=
+          static_cast<float>(w * w * std::max(t.contact->stiffness, t.friction));
+    }
+  }
+}
+
+}  // namespace weft

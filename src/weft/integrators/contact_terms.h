@@ -1,0 +1,75 @@
+#pragma once
+/// Private to integrators/: contacts in the potential of `newton`.
+
+#include <vector>
+
+#include "weft/contact/contact.h"
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft {
+
+/// Places of particles: y + e.
+struct OffsetPositions {
+  const PaddedRows& rows;
+  const Vec3Array& target;
+  const Vec3Array& offset;
+
+  Vec3 operator[](int particle) const {
+    const int at = rows.index(particle);
+    return target.get(at) + offset.get(at);
+  }
+};
+
+/// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew
+/// at each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after
+/// the solve; slides slower than 1 mm/s count as sticking.
+class ContactTerms {
+ public:
+  /// Forgets the contacts before. `driven`: displacement in the step by gravity and wind alone [m].
+  void begin(const std::vector<Contact>& contacts, const ClothModel& model, const PinTargets& pins,
+             double step, const Vec3& driven);
+
+  bool empty() const { return terms_.empty(); }
+
+  /// Whether any of them pushes at these positions.
+  bool any_active(const OffsetPositions& x) const;
+
+  /// Its value [J]; adds its forces, and keeps its Hessian.
+  double linearise(const OffsetPositions& x, Vec3Array& force);
+
+  double energy(const OffsetPositions& x) const;
+
+  /// q += H p, and p·Hp [J].
+  double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;
+
+  /// Adds the Hessian's largest stiffness at each particle, whatever its direction [N/m].
+  void add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const;
+
+  /// Calls body(particle) for the particles of contacts that pushed at the last linearise().
+  template <class Body>
+  void for_pushed(const Body& body) const {
+    for (const Term& t : terms_) {
+      if (!t.is_active) continue;
+      for (int k = 0; k < t.contact->num_particles; ++k) body(t.contact->particle[k]);
+    }
+  }
+
+ private:
+  struct Term {
+    const Contact* contact = nullptr;
+    double inertia = 0;  // of a lone stencil, against displacements in a step [N/m]
+    bool is_active = false;
+    double friction = 0;  // κ [N/m]
+  };
+
+  double friction_stiffness(const Term& term, double depth, const Vec3& slide) const;
+
+  double sticking_ = 0;  // slide of a step that still sticks [m]
+  Vec3 driven_ = Vec3::Zero();
+  bool is_first_ = true;
+  std::vector<Term> terms_;
+};
+
+}  // namespace weft

@@ -1,0 +1,314 @@
+/// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
+/// V-cycle on the paper's constant matrix. A step minimises the incremental potential
+///
+///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and
+///     gravity
+///
+/// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
+///
+/// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
+/// it is more than a fifth of E; a potential that rises makes the step shorter.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "weft/forces/potential.h"
+#include "weft/integrators/common.h"
+#include "weft/integrators/contact_terms.h"
+#include "weft/integrators/effort.h"
+#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/newton_kernels.h"
+#include "weft/integrators/scalar_preconditioner.h"
+#include "weft/solvers/conjugate_gradients.h"
+
+namespace weft {
+namespace {
+
+constexpr double kMissedShare = 0.2;      // of the energy: if the model missed more, one more Newton step
+constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
+constexpr int kMaxHalvings = 8;           // of a Newton step after which the potential is higher than before
+
+class NewtonIntegrator final : public Integrator {
+ public:
+  explicit NewtonIntegrator(const NewtonSettings& settings) : settings_(settings) {}
+
+  bool resolves_contacts() const override { return true; }
+
+  IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
+                           JobSystem& jobs, ClothState& state) override {
+    fit(model, environment.pins);
+    contacts_.begin(environment.contacts, model, environment.pins, step, step * step * environment.gravity);
+    if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
+    if (scratch_.x.size() != state.x.size()) scratch_ = state;
+    const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
+    prepare_matrices(model, environment.wind, scheme, jobs);
+    begin_step(model, environment.pins, scheme, jobs, state);
+    const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
+    finish_step(environment.pins, scheme, jobs, state);
+    return report;
+  }
+
+ private:
+  /// What the matrices depend on.
+  struct Key {
+    std::uint64_t model_id = 0;
+    double step = 0, beta = 0, drag = 0;
+    bool operator==(const Key&) const = default;
+  };
+
+  void fit(const ClothModel& model, const PinTargets& pins) {
+    if (model.topology != topology_) {
+      topology_ = model.topology;
+      rows_ = padded_rows_of(*topology_);
+      for (Vec3Array* field : {&trial_, &force_, &direction_, &correction_}) *field = Vec3Array(rows_.size());
+      key_ = {};
+    }
+    if (model.id == key_.model_id && pins.particle == pinned_) return;
+    pinned_ = pins.particle;
+    free_pieces_.find(model, pinned_);
+    reach_rate_ = compute_reach_rate(model);
+    key_ = {};
+  }
+
+  /// The past of cloth that has been moving with its present velocity, and falling freely as far as pins do
+  /// not hold it: x₋₁ = x − h v + ½ h² a, v₋₁ = v − h a. It halves the error of a plain first step.
+  void invent_history(const ClothModel& model, const Vec3& gravity, double step, JobSystem& jobs,
+                      ClothState& state) {
+    MotionHistory& history = state.history;
+    if (history.displacement.size() != state.x.size()) {
+      history.displacement.resize(state.x.size());
+      history.velocity.resize(state.x.size());
+    }
+    const Vec3 a = free_share(model, gravity, jobs, state) * gravity;
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 v = state.v.get(i);
+      history.displacement.set(i, step * v - 0.5 * step * step * a);
+      history.velocity.set(i, v - step * a);
+    }
+    history.step = step;
+    history.had_contact = false;
+  }
+
+  /// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1.
+  double free_share(const ClothModel& model, const Vec3& gravity, JobSystem& jobs, const ClothState& state) {
+    const double gravity_sq = gravity.squaredNorm();
+    if (pinned_.empty() || gravity_sq == 0) return 1;
+    potential_.fit(model, 0);
+    for (int i = 0; i < model.num_particles(); ++i) potential_.target.set(rows_.index(i), state.x.get(i));
+    clear(correction_);
+    potential_.linearise(correction_, jobs, force_);
+    set_at_pins(Vec3::Zero(), force_);
+    double mass = 0, carried = 0;
+    for (int i = 0; i < model.num_particles(); ++i) {
+      mass += model.mass[i];
+      carried -= force_.get(rows_.index(i)).dot(gravity) / gravity_sq;
+    }
+    for (const int p : pinned_) mass -= model.mass[p];
+    return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
+  }
+
+  /// BDF2; implicit Euler while contact takes part in this step or did in the one before, for BDF2 remembers
+  /// velocities from before an impact and would bounce a part of them back.
+  StepScheme choose_scheme(const ClothModel& model, const Environment& environment, double step,
+                           JobSystem& jobs, ClothState& state) {
+    StepScheme euler{.step = step};
+    add_outside(model, environment, euler);
+    if (state.history.had_contact || meets_contact(euler, jobs, state)) return euler;
+    StepScheme bdf2 = make_bdf2(step, state.history.step);
+    add_outside(model, environment, bdf2);
+    return bdf2;
+  }
+
+  static void add_outside(const ClothModel& model, const Environment& environment, StepScheme& scheme) {
+    const double time = scheme.step / scheme.beta;
+    const double wind = time * environment.wind.drag / model.material.density;
+    scheme.keep = 1 / (1 + wind);
+    scheme.gain = scheme.keep * (time * environment.gravity + wind * environment.wind.velocity);
+  }
+
+  /// Whether implicit Euler without springs would run into a contact.
+  bool meets_contact(const StepScheme& euler, JobSystem& jobs, const ClothState& state) {
+    if (contacts_.empty()) return false;
+    scratch_ = state;
+    predict(euler, rows_, jobs, scratch_, trial_);
+    clear(direction_);
+    return contacts_.any_active({rows_, trial_, direction_});
+  }
+
+  void prepare_matrices(const ClothModel& model, const Wind& wind, const StepScheme& scheme,
+                        JobSystem& jobs) {
+    const Key key{model.id, scheme.step, scheme.beta, wind.drag};
+    const double rate = scheme.beta / scheme.step;
+    potential_.fit(model, rate);
+    if (key == key_) return;
+    const bool same_springs = key.model_id == key_.model_id && key.step == key_.step && key.drag == key_.drag;
+    key_ = key;
+    set_weights(model, wind, 1 / scheme.step);
+    if (!same_springs)
+      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight,
+                                  pinned_);
+    set_weights(model, wind, rate);
+    preconditioner_.set_diagonal(potential_.weight, jobs);
+    has_contact_diagonal_ = false;
+  }
+
+  /// D for β/h = `rate` [N/m].
+  void set_weights(const ClothModel& model, const Wind& wind, double rate) {
+    const double per_mass = rate * (rate + wind.drag / model.material.density);
+    for (int i = 0; i < model.num_particles(); ++i)
+      potential_.weight[rows_.index(i)] = static_cast<float>(per_mass * model.mass[i]);
+  }
+
+  /// The prediction y, which the solve corrects.
+  void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs,
+                  ClothState& state) {
+    noise_ = energy_noise(model, state);
+    pin_motion_.prepare(pins, scheme.step, state);
+    predict(scheme, rows_, jobs, state, potential_.target);
+    for (std::size_t p = 0; p < pinned_.size(); ++p) {
+      potential_.target.set(rows_.index(pinned_[p]), pins.position[p] - state.origin);
+      state.v.set(pinned_[p], pin_motion_.velocity()[p]);
+      state.history.displacement.set(pinned_[p], scheme.step * pin_motion_.velocity()[p]);
+    }
+    if (potential_.is_damped()) copy_lag(scheme, state);
+    clear(correction_);
+  }
+
+  /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
+  /// place of the cloth's size.
+  double energy_noise(const ClothModel& model, const ClothState& state) const {
+    constexpr double kHalfUnit = 6e-8;
+    const double size = kHalfUnit * (state.x.get(0).norm() + 1);
+    double stiffness = 0;
+    for (const double k : model.stiffness_sum) stiffness += k;
+    return stiffness * size * size;
+  }
+
+  /// The velocities that go with y, as the potential wants them.
+  void copy_lag(const StepScheme& scheme, const ClothState& state) {
+    const double time = scheme.step / scheme.beta;
+    for (std::size_t i = 0; i < state.v.size(); ++i)
+      potential_.lag.set(rows_.index(static_cast<int>(i)), time * state.v.get(i));
+  }
+
+  /// Newton steps from x = y.
+  IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
+    IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
+    int more = 1;  // times as many iterations, where the guard asks for another Newton step
+    for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
+      const double before = linearise(jobs);
+      if (has_contact_diagonal_) asked = std::max(asked, kNewtonStepsInContact);
+      const CgReport linear = solve(effort, more, jobs);
+      *report.linear_iterations += linear.iterations;
+      double share = 1, after = try_step(share, jobs);
+      for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
+        ++*report.guard_events;
+        share /= 2;
+        after = try_step(share, jobs);
+      }
+      if (!std::isfinite(after)) break;
+      std::swap(correction_, trial_);
+      const double predicted = share * (2 - share) * linear.decrease;
+      const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
+      if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
+        ++asked;
+        ++*report.guard_events;
+        more *= 2;
+      }
+    }
+    return report;
+  }
+
+  /// The potential with its force and Hessian, and the preconditioner that goes with it.
+  double linearise(JobSystem& jobs) {
+    double energy = potential_.linearise(correction_, jobs, force_);
+    energy += contacts_.linearise(positions(correction_), force_);
+    update_contact_diagonal(jobs);
+    set_at_pins(Vec3::Zero(), force_);
+    return energy;
+  }
+
+  void update_contact_diagonal(JobSystem& jobs) {
+    bool any = false;
+    free_pieces_.release();
+    contacts_.for_pushed([&](int particle) {
+      any = true;
+      free_pieces_.hold(particle);
+    });
+    if (!any && !has_contact_diagonal_) return;
+    diagonal_ = potential_.weight;
+    contacts_.add_stiffness(rows_, diagonal_);
+    preconditioner_.set_diagonal(diagonal_, jobs);
+    has_contact_diagonal_ = any;
+  }
+
+  CgReport solve(const Effort& effort, int more, JobSystem& jobs) {
+    CgSettings settings = has_contact_diagonal_ ? effort.in_contact : effort.free;
+    settings.iterations *= more;
+    settings.enough /= more;
+    const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
+      double dot = potential_.multiply(p, jobs, q);
+      dot += contacts_.add_product(rows_, p, q);
+      set_at_pins(Vec3::Zero(), q);
+      return dot;
+    };
+    const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
+      return preconditioner_.apply(r, jobs, z);
+    };
+    return gradients_.solve(multiply, precondition, force_, settings, jobs, direction_);
+  }
+
+  /// The potential after the given share of the step [J]. Springs do not move the middle of a free piece of
+  /// cloth: what an unfinished solve has moved it by is taken back.
+  double try_step(double share, JobSystem& jobs) {
+    add_scaled(correction_, share, direction_, jobs, trial_);
+    free_pieces_.remove_mean(rows_, potential_.weight, trial_);
+    const double energy = potential_.energy(trial_, jobs);
+    return energy + contacts_.energy(positions(trial_));
+  }
+
+  OffsetPositions positions(const Vec3Array& offset) const { return {rows_, potential_.target, offset}; }
+
+  void finish_step(const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs, ClothState& state) {
+    correct(scheme, rows_, correction_, jobs, state);
+    pin_motion_.finish(pins, state);
+    state.history.step = scheme.step;
+    state.history.had_contact = contacts_.any_active(positions(correction_));
+  }
+
+  static void clear(Vec3Array& field) {
+    for (float* component : {field.x(), field.y(), field.z()}) std::fill_n(component, field.size(), 0.0f);
+  }
+
+  void set_at_pins(const Vec3& value, Vec3Array& field) const {
+    for (const int p : pinned_) field.set(rows_.index(p), value);
+  }
+
+  NewtonSettings settings_;
+  std::shared_ptr<const ClothTopology> topology_;
+  PaddedRows rows_;
+  std::vector<int> pinned_;
+  FreePieces free_pieces_;
+  double reach_rate_ = 0;
+  Key key_;
+  IncrementalPotential potential_;
+  ScalarPreconditioner preconditioner_;
+  ConjugateGradients gradients_;
+  ContactTerms contacts_;
+  bool has_contact_diagonal_ = false;  // of the preconditioner
+  std::vector<float> diagonal_;        // D and contacts [N/m]
+  PinMotion pin_motion_;
+  double noise_ = 0;  // of energies, from the rounding of positions [J]
+  Vec3Array force_, direction_, trial_;
+  Vec3Array correction_;  // x − y [m]
+  ClothState scratch_;    // where the cloth would go without springs
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_newton(const NewtonSettings& settings) {
+  return std::make_unique<NewtonIntegrator>(settings);
+}
+
+}  // namespace weft

@@ -1,0 +1,111 @@
+#include "weft/integrators/scalar_preconditioner.h"
+
+#include <algorithm>
+
+namespace weft {
+
+void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+                                       const std::vector<float>& least, const std::vector<int>& pinned) {
+  is_grid_ = model.topology->grid.has_value();
+  first_ = rows.row(0);
+  pinned_ = pinned;
+  if (!is_grid_) {
+    least_.assign(least.begin() + first_, least.begin() + first_ + model.num_particles());
+    return build_mesh(model, damping);
+  }
+  grid_.resize(rows);
+  fill_grid(model, damping);
+  pin_grid();
+}
+
+void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs) {
+  if (!is_grid_) {
+    more_.resize(least_.size());
+    for (std::size_t i = 0; i < more_.size(); ++i)
+      more_[i] = std::max(0.0f, diagonal[first_ + i] - least_[i]);
+    for (const int p : pinned_) more_[p] = 0;
+    return mesh_.add_excess(more_);
+  }
+  GridLevel& level = grid_.finest();
+  std::copy(diagonal.begin(), diagonal.end(), level.excess.begin());
+  for (const auto& [at, coupling] : ties_) level.excess[at] += coupling;
+  for (const int p : pinned_) level.excess[level.rows.index(p)] = 0;
+  grid_.build(jobs);
+}
+
+void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping) {
+  const NeighbourTable& table = model.topology->table;
+  const int n = model.num_particles();
+  std::vector<char> is_pinned(n, 0);
+  for (const int p : pinned_) is_pinned[p] = 1;
+  SparseMatrix couplings;
+  couplings.num_columns = n;
+  std::vector<double> excess(least_.begin(), least_.end());
+  for (int i = 0; i < n; ++i) {
+    constexpr int kLanes = NeighbourTable::kLanes;
+    const int slice = i / kLanes;
+    if (is_pinned[i]) excess[i] = 0;
+    for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1] && !is_pinned[i]; ++row) {
+      const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
+      if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
+      const double c = model.stiffness(model.topology->springs[spring].kind) + damping;
+      if (is_pinned[table.neighbour[entry]]) {
+        excess[i] += c;
+      } else if (c > 0) {
+        couplings.add_entry(table.neighbour[entry], c);
+      }
+    }
+    couplings.end_row();
+  }
+  mesh_.build(couplings, excess);
+}
+
+void ScalarPreconditioner::fill_grid(const ClothModel& model, double damping) {
+  GridLevel& level = grid_.finest();
+  const ClothMaterial& m = model.material;
+  const SpringModel spring_model = model.topology->spring_model;
+  const auto structural = static_cast<float>(m.structural + 4 * m.bend + 5 * damping);
+  const auto shear = static_cast<float>(m.shear + damping);
+  const int columns = level.rows.row_length, num_rows = level.rows.num_rows;
+  level.has_down_left = spring_model != SpringModel::simplified;
+  const bool alternates = spring_model == SpringModel::alternating;
+  for (int j = 0; j < num_rows; ++j) {
+    const int first = level.rows.row(j);
+    std::fill_n(level.right.begin() + first, columns - 1, structural);
+    if (j + 1 == num_rows) break;
+    std::fill_n(level.down.begin() + first, columns, structural);
+    for (int i = 0; i < columns; ++i) {
+      const float here = alternates && (i + j) % 2 == 1 ? 0.0f : shear;
+      level.down_right[first + i] = i + 1 < columns ? here : 0.0f;
+      if (level.has_down_left) level.down_left[first + i] = i > 0 ? here : 0.0f;
+    }
+  }
+}
+
+/// Couplings to pins become part of the other end's diagonal.
+void ScalarPreconditioner::pin_grid() {
+  GridLevel& level = grid_.finest();
+  const int stride = level.rows.stride();
+  ties_.clear();
+  for (const int particle : pinned_) {
+    const int p = level.rows.index(particle);
+    const auto cut = [&](float& coupling, int neighbour) {
+      if (coupling > 0) ties_.emplace_back(neighbour, coupling);
+      coupling = 0;
+    };
+    cut(level.right[p], p + 1);
+    cut(level.right[p - 1], p - 1);
+    cut(level.down[p], p + stride);
+    cut(level.down[p - stride], p - stride);
+    cut(level.down_right[p], p + stride + 1);
+    cut(level.down_right[p - stride - 1], p - stride - 1);
+    cut(level.down_left[p], p + stride - 1);
+    cut(level.down_left[p - stride + 1], p - stride + 1);
+  }
+}
+
+double ScalarPreconditioner::apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
+  return is_grid_ ? grid_.apply(r, jobs, z) : mesh_.apply(r, first_, jobs, z);
+}
+
+}  // namespace weft

@@ -1,0 +1,47 @@
+#pragma once
+/// Private to integrators/: the paper's constant approximate matrix (Eq. 11) as preconditioner of `newton`.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/core/padded_rows.h"
+#include "weft/model/cloth_model.h"
+#include "weft/solvers/aggregation_multigrid.h"
+#include "weft/solvers/grid_multigrid.h"
+
+namespace weft {
+
+/// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved roughly by one multigrid
+/// V-cycle. Bending springs are not in it: on grids they count as four times their stiffness along the
+/// structural springs, on meshes they are left out.
+class ScalarPreconditioner {
+ public:
+  /// Takes the springs; `damping` is added to every stiffness [N/m]. Pinned particles drop out of the matrix.
+  /// `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must follow.
+  void set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+                   const std::vector<float>& least, const std::vector<int>& pinned);
+
+  /// Takes D, laid out by `rows` [N/m], and computes all values anew.
+  void set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs);
+
+  /// z ≈ A⁻¹ r, zero at pinned particles. Returns r·z.
+  double apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
+
+ private:
+  void build_mesh(const ClothModel& model, double damping);
+  void fill_grid(const ClothModel& model, double damping);
+  void pin_grid();
+
+  bool is_grid_ = true;
+  int first_ = 0;  // index of particle 0
+  std::vector<int> pinned_;
+  std::vector<std::pair<int, float>> ties_;  // index of a particle on a grid, and its coupling to pins
+  std::vector<float> least_;                 // on meshes
+  std::vector<double> more_;                 // on meshes: D beyond `least_`
+  GridMultigrid grid_;
+  AggregationMultigrid mesh_;
+};
+
+}  // namespace weft

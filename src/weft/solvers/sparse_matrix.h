@@ -1,0 +1,29 @@
+#pragma once
+/// Sparse matrices of numbers, row by row: for setting up the multigrid of meshes.
+
+#include <vector>
+
+namespace weft {
+
+struct SparseMatrix {
+  int num_rows = 0, num_columns = 0;
+  std::vector<int> begin = {0};  // (num_rows + 1) first entry of each row
+  std::vector<int> column;       // of each entry; no two of a row are equal
+  std::vector<double> value;     // of each entry
+
+  void add_entry(int c, double v) {
+    column.push_back(c);
+    value.push_back(v);
+  }
+  void end_row() {
+    begin.push_back(static_cast<int>(column.size()));
+    ++num_rows;
+  }
+};
+
+SparseMatrix transpose(const SparseMatrix& a);
+
+/// A B. Entries of a row stand in the order in which they first come up.
+SparseMatrix multiply(const SparseMatrix& a, const SparseMatrix& b);
+
+}  // namespace weft
