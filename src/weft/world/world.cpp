@@ -187,6 +187,7 @@ void World::advance(double time, double dt, StepReport& report) {
   for (Cloth& cloth : cloths_) {
     cloth.held_model =
         &cloth.hands.begin(cloth.model, cloth.is_pinned, environment_.gravity, dt, cloth.state);
+    if (!cloth.hands.are_empty()) cloth.state.history.step = 0;  // its past does not know of the hands
   }
   if (contact_) begin_contact(time, dt);
   for (int c = 0; c < num_cloths(); ++c) {
