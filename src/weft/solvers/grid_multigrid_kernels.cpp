@@ -103,7 +103,8 @@ WEFT_ALWAYS_INLINE void merge_body(const GridMatrix& n, GridMatrix& coarse, int 
   const float *e = n.excess.data(), *d = n.diagonal.data(), *r = n.right.data(), *c = n.down.data(),
               *dr = n.down_right.data(), *dl = n.down_left.data();
   for (int row = row_begin; row < row_end; ++row) {
-    const auto [before, after, next] = shares_at(row, n.rows.num_rows);
+    const Shares shares = shares_at(row, n.rows.num_rows);
+    const float before = shares.before, after = shares.after, next = shares.next;
     const float after2 = after * after, before2 = before * before, shared = after * next;
     const int in = n.rows.row(2 * row), out = coarse.rows.row(row);
     for_packs<W>(coarse.rows.row_length, [&](std::ptrdiff_t column, int) WEFT_INLINE_LAMBDA {
