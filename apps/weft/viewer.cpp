@@ -277,7 +277,7 @@ void Viewer::finish_frame() {
     const Image image = window_.end_frame_and_read();
     const std::filesystem::path file = name_of_next_picture();
     try {
-      write_png(file, image);
+      write_image(file, image);
       pictures_.push_back(file.string());
       say("written " + file.string());
     } catch (const InputError& error) {

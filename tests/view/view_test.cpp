@@ -83,10 +83,11 @@ class Screen : public testing::Environment {
   void SetUp() override {
     int ends[2];
     ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
-    server_ =
-        std::make_unique<Program>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]),
-                                                           "-screen", "0", "1280x720x24", "-nolisten", "tcp"},
-                                  ends[1]);
+    // -noreset: else it starts anew, and refuses, when the last window is gone.
+    server_ = std::make_unique<Program>(
+        std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x720x24",
+                                 "-nolisten", "tcp", "-noreset"},
+        ends[1]);
     close(ends[1]);
     std::string number;
     for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
