@@ -18,5 +18,8 @@ done
 "$weft" render paper/fig5_falling --frames 0,20,40 --columns 3 --size 480x360 --out "$images/fig5_falling.jpg"
 "$weft" render paper/fig6_ball --frames 0,26,120 --columns 3 --size 480x360 --out "$images/fig6_ball.jpg"
 
+# Real fabric with the default integrator.
+"$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
+
 # The moving picture at the top of the README.
-"$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22,1.25 --out "$images/weft.webp"
+"$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22 --out "$images/weft.webp"
