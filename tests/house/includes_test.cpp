@@ -20,7 +20,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"mesh", {"core", "geometry"}},
     {"fabric", {"core", "mesh"}},
     {"model", {"core", "mesh", "fabric"}},
-    {"forces", {"core", "geometry", "mesh", "model"}},
+    {"forces", {"core", "geometry", "mesh", "fabric", "model"}},
     {"solvers", {"core"}},
     {"animation", {"core", "mesh"}},
     {"contact", {"core", "geometry", "mesh", "model", "animation"}},
