@@ -8,6 +8,9 @@
 
 namespace weft {
 
+/// Σ_v w_rv x_v of a row: a second derivative of the positions [1/m].
+Vec3 bending_curvature(const BendingRows& rows, int row, const std::vector<Vec3>& x);
+
 /// ½ Σ_r k_r |Σ_v w_rv x_v|² [J]. Zero where the cloth is flat, wherever it lies.
 double bending_energy(const BendingRows& rows, const std::vector<Vec3>& x);
 

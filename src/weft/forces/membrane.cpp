@@ -36,6 +36,12 @@ Vec3 membrane_strain(const RestTriangle& rest, const TriangleCorners& x) {
   return green_strain(deformation(rest, x));
 }
 
+std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const TriangleCorners& x) {
+  const Deformation f = deformation(rest, x);
+  return {strain_derivative(f, rest.gradient[0]), strain_derivative(f, rest.gradient[1]),
+          strain_derivative(f, rest.gradient[2])};
+}
+
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x) {
   // The roots of FᵀF's eigenvalues, the smaller one from the determinant |warp × weft|².
   const Deformation f = deformation(rest, x);

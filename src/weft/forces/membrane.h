@@ -28,6 +28,9 @@ using TriangleCorners = std::array<Vec3, 3>;
 /// Green strain (ε11, ε22, 2 ε12) [1].
 Vec3 membrane_strain(const RestTriangle& rest, const TriangleCorners& x);
 
+/// ∂e/∂x_c of each corner: three rows, (ε11, ε22, 2 ε12) [1/m].
+std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const TriangleCorners& x);
+
 /// Smallest and largest factor by which any direction in the triangle is longer than at rest [1].
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x);
 
