@@ -5,6 +5,7 @@
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
 #include "weft/fabric/presets.h"
+#include "weft/integrators/element_terms.h"
 
 namespace weft {
 namespace {
@@ -80,6 +81,36 @@ TEST(Elements, DampingDoesNotBrakeARotation) {
     const double free = spin_left(0, bending), damped = spin_left(0.02, bending);
     EXPECT_GT(free, 1e-4) << "it spins";
     EXPECT_GT(damped, 0.9 * free) << "what unrolling and shaking lose, and not the rotation";
+  }
+}
+
+TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
+  // In one step from strain e₀ to e the potential gains τ/(2h) C (e − e₀)²: τ/h times the elastic energy of
+  // the difference. Hinges and stencils alike, stretching and bending alike.
+  constexpr double kTau = 0.03;
+  Fabric fabric = find_fabric("denim").fabric;
+  for (const BendingModel bending : kBendings) {
+    const auto energy = [&](double damping, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+      fabric.damping = damping;
+      const auto model = sheet_of(fabric, SheetKind::parallel, bending);
+      ElementTerms terms;
+      terms.begin_step(*model->elements, kStep, from);
+      return terms.energy(to);
+    };
+    const TriangleMesh mesh = make_sheet(SheetKind::parallel, 8);
+    const auto stretched =
+        test::mapped(mesh, [](const Vec3& p) { return Vec3(1.0001 * p.x(), 0, 0.9999 * p.z()); });
+    const double stretching = energy(0, mesh.positions, stretched);
+    EXPECT_NEAR(energy(kTau, mesh.positions, stretched) / stretching, 1 + kTau / kStep, 1e-3)
+        << "the strain's second order is 1e-4 of it";
+    // Rolled by 0.2/m, then by 0.1/m more: a quarter of the energy at 0.2/m is that of the difference. A soft
+    // membrane, whose own resistance to the chords vanishes beside.
+    fabric.c11 = fabric.c22 = 1e-6;
+    fabric.g = 1e-6;
+    const auto some = test::rolled(mesh, 0.2, 0), more = test::rolled(mesh, 0.3, 0);
+    const double elastic = energy(0, some, more), viscous = energy(kTau, some, more) - elastic;
+    EXPECT_NEAR(viscous / (elastic / 9), kTau / kStep, 0.05) << "directions turn by a few hundredths";
+    fabric = find_fabric("denim").fabric;
   }
 }
 
