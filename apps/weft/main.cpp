@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_render_command(app, exit_code);
   add_view_command(app, exit_code);
   add_scenes_command(app, exit_code);
+  add_fabrics_command(app, exit_code);
   add_check_command(app, exit_code);
   add_verify_command(app, exit_code);
   add_bench_command(app, exit_code);

@@ -30,6 +30,10 @@
 #include "weft/mesh/grid.h"
 #include "weft/mesh/solid.h"
 #include "weft/mesh/triangle_mesh.h"
+// What cloth is made of:
+#include "weft/fabric/fabric.h"
+#include "weft/fabric/laboratory.h"
+#include "weft/fabric/presets.h"
 // What a cloth is, and what of it moves:
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"

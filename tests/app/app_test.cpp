@@ -73,6 +73,33 @@ TEST_F(App, SetChangesValuesOfTheScene) {
   EXPECT_EQ(read_json("results/report.json")["particles"], 25);
 }
 
+TEST_F(App, FabricsListsNamesAndShowsOne) {
+  const Finished list = shell("weft fabrics");
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_TRUE(contains(list.out, "silk "));
+  EXPECT_TRUE(contains(list.out, "11oz_black_denim "));
+  const Finished denim = shell("weft fabrics 11oz_black_denim");
+  EXPECT_TRUE(contains(denim.out, "c11       = 410.7      # [N/m] measured: Wang, O'Brien")) << denim.out;
+  expect_bad_input("weft fabrics slik", "did you mean \"silk\"?");
+}
+
+TEST_F(App, FabricsPrintsJsonWithUnitsAndSources) {
+  ASSERT_EQ(shell("weft fabrics gray-interlock --json > one.json; weft fabrics --json > all.json").exit_code,
+            0);
+  const nlohmann::json one = read_json("one.json");
+  EXPECT_EQ(one["c12"], -29.4);
+  EXPECT_EQ(one["units"]["bend_warp"], "N·m");
+  EXPECT_TRUE(one["sources"]["g"].is_string());
+  EXPECT_EQ(read_json("all.json")["fabrics"].size(), 15u);
+}
+
+TEST_F(App, FabricThatIsShownIsAFabricFile) {
+  ASSERT_EQ(
+      shell("weft fabrics wool_suiting > wool.toml && weft fabrics wool.toml --json > wool.json").exit_code,
+      0);
+  EXPECT_EQ(read_json("wool.json")["c11"], 1225.0);
+}
+
 TEST_F(App, ThreadsDoNotChangeTheResult) {
   EXPECT_EQ(
       shell("for t in 1 2; do weft run paper/fig6_ball --frames 2 --threads $t --out $t; done").exit_code, 0);

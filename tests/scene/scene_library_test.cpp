@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "weft/core/error.h"
-#include "weft/scene/nearest_name.h"
+#include "weft/core/nearest_name.h"
 
 namespace weft {
 namespace {

@@ -1,7 +1,7 @@
 /// Implicit Euler with the true forces: the yardstick. Each step minimises the incremental potential
 ///
-///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + h · (damping and wind dissipation at velocity (x −
-///     x₀)/h)
+///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + membranes and bending (element_terms.h)
+///            + h · (damping and wind dissipation at velocity (x − x₀)/h)
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
 /// by Newton's method with line search and sparse Cholesky, in double precision. Where the true Hessian is
@@ -16,6 +16,7 @@
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
 #include "weft/integrators/common.h"
+#include "weft/integrators/element_terms.h"
 #include "weft/solvers/block_cholesky.h"
 
 namespace weft {
@@ -59,6 +60,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       start_[i] = state.x.get(i);
       inertial_[i] = start_[i] + step * state.v.get(i) + step * step * environment.gravity;
     }
+    if (model.elements) elements_.begin_step(*model.elements, step, start_);
     x_ = inertial_;
     for (std::size_t p = 0; p < environment.pins.particle.size(); ++p) {
       is_pinned_[environment.pins.particle[p]] = 1;
@@ -72,14 +74,17 @@ class ImplicitEulerIntegrator final : public Integrator {
   /// only when a pair comes that was not there before.
   void fit_pattern() {
     const std::vector<Spring>& springs = model_->topology->springs;
-    if (analyzed_ != model_->topology) {
+    if (analyzed_ != model_->topology || analyzed_elements_ != model_->elements) {
       analyzed_ = model_->topology;
+      analyzed_elements_ = model_->elements;
       matrix_.diagonal.resize(model_->num_particles());
       matrix_.pairs.clear();
       for (const Spring& s : springs) matrix_.pairs.push_back({s.i, s.j});
       spring_pairs_.clear();
       for (const Spring& s : springs) spring_pairs_.push_back(std::minmax(s.i, s.j));
       std::sort(spring_pairs_.begin(), spring_pairs_.end());
+      add_element_pairs();
+      num_lasting_pairs_ = matrix_.pairs.size();
       contact_pairs_.clear();
       is_analyzed_ = false;
     }
@@ -101,7 +106,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       is_analyzed_ = false;
     }
     if (is_analyzed_) return;
-    matrix_.pairs.resize(springs.size());
+    matrix_.pairs.resize(num_lasting_pairs_);
     for (const auto& [i, j] : contact_pairs_) matrix_.pairs.push_back({i, j});
     matrix_.off_diagonal.resize(matrix_.pairs.size());
     pair_index_.clear();
@@ -111,6 +116,18 @@ class ImplicitEulerIntegrator final : public Integrator {
     std::sort(pair_index_.begin(), pair_index_.end());
     cholesky_.analyze(model_->num_particles(), matrix_.pairs);
     is_analyzed_ = true;
+  }
+
+  /// Pairs that elements join and springs do not.
+  void add_element_pairs() {
+    if (!model_->elements) return;
+    const auto num_springs = static_cast<std::ptrdiff_t>(spring_pairs_.size());
+    for (const Pair& pair : ElementTerms::find_pairs(*model_->elements)) {
+      if (std::binary_search(spring_pairs_.begin(), spring_pairs_.begin() + num_springs, pair)) continue;
+      spring_pairs_.push_back(pair);
+      matrix_.pairs.push_back({pair.first, pair.second});
+    }
+    std::sort(spring_pairs_.begin(), spring_pairs_.end());
   }
 
   /// Where the block of particles i and j is.
@@ -137,7 +154,7 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   double compute_energy(const std::vector<Vec3>& x) const {
     const Wind& wind = environment_->wind;
-    double energy = 0;
+    double energy = model_->elements ? elements_.energy(x) : 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (is_pinned_[i]) continue;
       const Vec3 slip = (x[i] - start_[i]) / step_ - wind.velocity;
@@ -227,6 +244,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       for (int k = 0; k < contact.num_particles; ++k)
         gradient_[contact.particle[k]] += contact.weight[k] * pull;
     }
+    if (model_->elements) elements_.add_gradient(x_, gradient_);
     for (const int i : environment_->pins.particle) gradient_[i].setZero();
   }
 
@@ -253,10 +271,22 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     std::fill(matrix_.off_diagonal.begin() + static_cast<std::ptrdiff_t>(springs.size()),
               matrix_.off_diagonal.end(), Mat3::Zero());
+    if (model_->elements) add_element_blocks(true_hessian ? StressFilter::exact : StressFilter::absolute);
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       add_contact_blocks(environment_->contacts[c], contact_hessian(c));
     }
     for (const int i : environment_->pins.particle) matrix_.diagonal[i].setIdentity();
+  }
+
+  void add_element_blocks(StressFilter filter) {
+    elements_.add_hessian(x_, filter, [this](int i, int j, const Mat3& block) {
+      if (i == j) {
+        matrix_.diagonal[i] += block;
+      } else if (!is_pinned_[i] && !is_pinned_[j]) {
+        const int p = index_of_pair(i, j);
+        matrix_.off_diagonal[p] += matrix_.pairs[p][0] == i ? block : Mat3(block.transpose());
+      }
+    });
   }
 
   void add_contact_blocks(const Contact& contact, const Mat3& hessian) {
@@ -323,9 +353,12 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   ImplicitEulerSettings settings_;
   std::shared_ptr<const ClothTopology> analyzed_;
+  std::shared_ptr<const ClothElements> analyzed_elements_;
   bool is_analyzed_ = false;
   std::vector<Pair> spring_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
-  std::vector<std::pair<Pair, int>> pair_index_;                   // of matrix_.pairs, sorted
+  std::size_t num_lasting_pairs_ = 0;  // of springs and elements, before those of contacts
+  ElementTerms elements_;
+  std::vector<std::pair<Pair, int>> pair_index_;  // of matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;
   PinMotion pins_;

@@ -33,11 +33,13 @@ std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh) {
 }
 
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
-                                                    const ClothMaterial& material) {
+                                                    const ClothMaterial& material,
+                                                    std::shared_ptr<const ClothElements> elements) {
   auto model = std::make_shared<ClothModel>();
   model->id = next_id();
   model->topology = std::move(topology);
   model->material = material;
+  model->elements = std::move(elements);
   const ClothTopology& t = *model->topology;
 
   for (const double area : t.area) model->mass.push_back(material.density * area);

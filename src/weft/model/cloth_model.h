@@ -11,6 +11,7 @@
 
 #include "weft/mesh/grid.h"
 #include "weft/mesh/triangle_mesh.h"
+#include "weft/model/cloth_elements.h"
 #include "weft/model/neighbour_table.h"
 #include "weft/model/springs.h"
 
@@ -55,6 +56,9 @@ struct ClothModel {
       0;  // no two models of a process share it: what is computed from a model can be kept by id
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
+  /// A fabric's membranes and bending, besides the springs (whose stiffness is then 0 as a rule); null: none.
+  /// Only `implicit_euler` knows them.
+  std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
   std::vector<double> stiffness_sum;   // Σ_j k_ij, (num_particles) [N/m]
   std::vector<float> entry_stiffness;  // k of each entry of topology->table, 0 in its padding [N/m]
@@ -78,7 +82,8 @@ struct ClothModel {
 };
 
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
-                                                    const ClothMaterial& material);
+                                                    const ClothMaterial& material,
+                                                    std::shared_ptr<const ClothElements> elements = nullptr);
 
 /// The same cloth with `added` (num_particles) on its particles' masses [kg].
 std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "weft/core/error.h"
-#include "weft/scene/nearest_name.h"
+#include "weft/core/nearest_name.h"
 
 namespace weft {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "weft/scene/nearest_name.h"
+#include "weft/core/nearest_name.h"
 
 namespace weft {
 namespace {

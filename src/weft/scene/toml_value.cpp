@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "weft/scene/nearest_name.h"
+#include "weft/core/nearest_name.h"
 #include "weft/scene/toml_table.h"
 
 namespace weft {

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to scene/: what a person may have meant by a name that does not exist.
+/// What a person may have meant by a name that does not exist.
 
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "weft/scene/nearest_name.h"
+#include "weft/core/nearest_name.h"
 
 #include <algorithm>
 #include <cstdlib>

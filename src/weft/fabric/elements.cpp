@@ -1,0 +1,116 @@
+#include "weft/fabric/elements.h"
+
+#include <cmath>
+#include <map>
+
+namespace weft {
+namespace {
+
+constexpr double kLeastSine = 1e-6;  // of the angle between a direction and a triangle's normal
+
+struct TriangleCorners3 {
+  Vec3 a, b, c;
+  Vec3 normal() const { return (b - a).cross(c - a); }
+};
+
+TriangleCorners3 corners(const TriangleMesh& mesh, int t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+}
+
+/// The direction in the plane of the triangle, or zero.
+Vec3 project(const Vec3& direction, const Vec3& normal) {
+  const Vec3 n = normal.normalized();
+  const Vec3 flat = direction - direction.dot(n) * n;
+  return flat.norm() > kLeastSine * direction.norm() ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
+}
+
+Vec3 any_axis(const Vec3& normal) {
+  const Vec3 x = project(Vec3::UnitX(), normal);
+  return x.norm() > 0.5 ? x : project(Vec3::UnitZ(), normal);
+}
+
+/// ∂x/∂u at constant v, up to a positive factor.
+Vec3 along_u(const TriangleCorners3& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 ab = b - a, ac = c - a;
+  const double area = ab.x() * ac.y() - ab.y() * ac.x();
+  return ((p.b - p.a) * ac.y() - (p.c - p.a) * ab.y()) * (area < 0 ? -1.0 : 1.0) * (area != 0 ? 1.0 : 0.0);
+}
+
+}  // namespace
+
+WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv) {
+  WarpField field;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const TriangleCorners3 p = corners(mesh, t);
+    const Vec3 direction = along_u(p, uv[a], uv[b], uv[c]);
+    const bool is_given = direction.allFinite() && direction.norm() > 0;
+    field.warp.push_back(is_given ? Vec3(direction.normalized()) : any_axis(p.normal()));
+    field.num_guessed += !is_given;
+  }
+  return field;
+}
+
+WarpField warp_from_direction(const TriangleMesh& mesh, const Vec3& direction) {
+  WarpField field;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const Vec3 normal = corners(mesh, t).normal();
+    const Vec3 warp = project(direction, normal);
+    const bool is_given = warp.norm() > 0.5;
+    field.warp.push_back(is_given ? warp : any_axis(normal));
+    field.num_guessed += !is_given;
+  }
+  return field;
+}
+
+Mat3 membrane_stiffness(const Fabric& fabric) {
+  Mat3 c = Mat3::Zero();
+  c(0, 0) = fabric.c11;
+  c(1, 1) = fabric.c22;
+  c(0, 1) = c(1, 0) = fabric.c12;
+  c(2, 2) = fabric.g;
+  return c;
+}
+
+std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const WarpField& warp) {
+  std::vector<MembraneElement> membranes;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const TriangleCorners3 p = corners(mesh, t);
+    const Vec3 axis_1 = warp.warp[t], axis_2 = p.normal().normalized().cross(axis_1);
+    const auto flat = [&](const Vec3& x) { return Vec2((x - p.a).dot(axis_1), (x - p.a).dot(axis_2)); };
+    membranes.push_back({mesh.triangles[t], make_rest_triangle(flat(p.a), flat(p.b), flat(p.c))});
+  }
+  return membranes;
+}
+
+std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp,
+                                       const Fabric& fabric) {
+  // The triangles at each edge, by the vertex opposite to it.
+  std::map<std::array<int, 3>, int> triangle_of;  // (a, b, opposite), a < b
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const Triangle& v = mesh.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(v[k], v[(k + 1) % 3]);
+      triangle_of[{a, b, v[(k + 2) % 3]}] = t;
+    }
+  }
+  std::vector<HingeElement> hinges;
+  for (const Edge& e : build_edges(mesh)) {
+    if (e.num_triangles != 2 || e.opposite[0] == e.opposite[1]) continue;
+    const Vec3 edge = mesh.positions[e.b] - mesh.positions[e.a];
+    double rigidity = 0, area = 0;
+    for (const int opposite : e.opposite) {
+      const int t = triangle_of.at({e.a, e.b, opposite});
+      // Bending goes across the edge: its direction's cosine to warp is the edge's sine.
+      const double along = edge.normalized().dot(warp.warp[t]);
+      const double across = std::sqrt(std::max(0.0, 1 - along * along));
+      rigidity += 0.5 * bending_rigidity(fabric, across, along);
+      area += triangle_area(mesh, t);
+    }
+    hinges.push_back({{e.a, e.b, e.opposite[0], e.opposite[1]}, rigidity * edge.squaredNorm() / area});
+  }
+  return hinges;
+}
+
+}  // namespace weft

@@ -1,0 +1,49 @@
+#pragma once
+/// A fabric laid on a triangle mesh: where warp goes, membranes, hinges.
+
+#include <array>
+#include <vector>
+
+#include "weft/fabric/fabric.h"
+#include "weft/mesh/rest_triangle.h"
+#include "weft/mesh/triangle_mesh.h"
+
+namespace weft {
+
+/// Which way warp goes in each triangle; weft is across it, in the triangle's plane.
+struct WarpField {
+  std::vector<Vec3> warp;  // unit vectors in the triangles' planes (num_triangles)
+  int num_guessed = 0;     // triangles whose input gave no direction: they got another one [1]
+};
+
+/// Warp along the direction in which u grows while v stays: u = uv[vertex].x(). Where a triangle's uv have no
+/// area, the world's x axis serves as below.
+WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv);
+
+/// Warp along a direction, projected on every triangle; where that is perpendicular to the triangle, along
+/// another axis.
+WarpField warp_from_direction(const TriangleMesh& mesh, const Vec3& direction);
+
+/// [C11 C12 0; C12 C22 0; 0 0 G] for forces/membrane.h [N/m].
+Mat3 membrane_stiffness(const Fabric& fabric);
+
+struct MembraneElement {
+  Triangle vertices;
+  RestTriangle rest;
+};
+
+/// One for each triangle, in its order. Rest lengths are those of the mesh; `warp` only turns the frame.
+std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const WarpField& warp);
+
+struct HingeElement {
+  std::array<int, 4> vertices;  // as in forces/hinge.h: the edge's ends, then the two opposite ones
+  double stiffness = 0;         // k [N·m]
+};
+
+/// One for each edge between two triangles. k = D |e|²/(A0 + A1), D the rigidity of bending across the edge:
+/// bending_rigidity() in the direction perpendicular to it, so a hinge along weft threads bends warp. Exact
+/// for cylinders around rows of parallel edges, but up to three times too stiff for the diagonals of a grid,
+/// whose hinges count on top of the others: BendingRows has not that fault.
+std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
+
+}  // namespace weft

@@ -1,0 +1,112 @@
+#include "weft/fabric/fabric.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+constexpr double kDensityOfLead = 11340;  // [kg/m³]
+
+std::string text(double number) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, 4).ptr};
+}
+
+/// Collects mistakes, at most one per field.
+class Judge {
+ public:
+  void require(bool is_right, const char* field, double value, const std::string& rule) {
+    if (!is_right || !std::isfinite(value)) refuse(field, "must be " + rule + ", is " + text(value));
+  }
+
+  void refuse(const std::string& field, const std::string& reason) {
+    for (const FabricMistake& m : mistakes) {
+      if (m.field == field) return;
+    }
+    mistakes.push_back({field, reason});
+  }
+
+  bool has_none() const { return mistakes.empty(); }
+
+  std::vector<FabricMistake> mistakes;
+};
+
+void judge_ranges(const Fabric& f, Judge& judge) {
+  judge.require(f.density > 0, "density", f.density, "above 0 kg/m²");
+  judge.require(f.c11 > 0, "c11", f.c11, "above 0 N/m");
+  judge.require(f.c22 > 0, "c22", f.c22, "above 0 N/m");
+  judge.require(true, "c12", f.c12, "a finite number in N/m");
+  judge.require(f.g > 0, "g", f.g, "above 0 N/m");
+  judge.require(f.bend_warp >= 0, "bend_warp", f.bend_warp, "0 N·m or above");
+  judge.require(f.bend_weft >= 0, "bend_weft", f.bend_weft, "0 N·m or above");
+  judge.require(f.bend_bias >= 0, "bend_bias", f.bend_bias, "0 N·m or above");
+  judge.require(f.damping >= 0 && f.damping <= 10, "damping", f.damping,
+                "from 0 to 10 s (a time constant, not N·s/m)");
+  judge.require(f.thickness >= 1e-6 && f.thickness <= 0.05, "thickness", f.thickness, "from 1e-6 to 0.05 m");
+  judge.require(f.friction >= 0 && f.friction <= 10, "friction", f.friction, "from 0 to 10");
+  judge.require(f.strain_limit >= 0 && f.strain_limit <= 10, "strain_limit", f.strain_limit,
+                "from 0 (none) to 10");
+}
+
+/// What the numbers must be to each other.
+void judge_relations(const Fabric& f, Judge& judge) {
+  if (f.c12 * f.c12 >= f.c11 * f.c22) {
+    judge.refuse(
+        "c12", "must be less than √(c11 c22) = " + text(std::sqrt(f.c11 * f.c22)) + " N/m in magnitude, is " +
+                   text(f.c12) +
+                   ": the membrane is not positive definite, so some stretching would release energy");
+  }
+  const double roots = std::sqrt(f.bend_warp) - std::sqrt(f.bend_weft);
+  const double least_bias = roots * roots / 4;
+  if (f.bend_bias < least_bias) {
+    judge.refuse("bend_bias", "must be at least (√bend_warp − √bend_weft)²/4 = " + text(least_bias) +
+                                  " N·m, is " + text(f.bend_bias) + ": some bending would release energy");
+  }
+  if (f.density > kDensityOfLead * f.thickness) {
+    judge.refuse("density", "must be at most " + text(kDensityOfLead * f.thickness) + " kg/m², is " +
+                                text(f.density) + ": heavier than sheet lead of the fabric's thickness, " +
+                                text(f.thickness) + " m");
+  }
+}
+
+void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judge& judge) {
+  StretchPoint last;
+  for (const StretchPoint& point : curve) {
+    const bool rises = point.strain > last.strain && point.tension > last.tension &&
+                       std::isfinite(point.strain) && std::isfinite(point.tension);
+    if (!rises) {
+      return judge.refuse(field, "must rise from the origin, does not at strain " + text(point.strain));
+    }
+    last = point;
+  }
+}
+
+}  // namespace
+
+std::vector<FabricMistake> find_mistakes(const Fabric& fabric) {
+  Judge judge;
+  judge_ranges(fabric, judge);
+  if (judge.has_none()) judge_relations(fabric, judge);
+  judge_curve(fabric.stretch_warp, "stretch_warp", judge);
+  judge_curve(fabric.stretch_weft, "stretch_weft", judge);
+  return judge.mistakes;
+}
+
+void validate_fabric(const Fabric& fabric, const std::string& name) {
+  std::string sentence;
+  for (const FabricMistake& m : find_mistakes(fabric)) {
+    sentence += (sentence.empty() ? "fabric \"" + name + "\": " : "; ") + m.field + " " + m.reason;
+  }
+  if (!sentence.empty()) throw InputError(sentence);
+}
+
+double bending_rigidity(const Fabric& fabric, double cos_psi, double sin_psi) {
+  const double cc = cos_psi * cos_psi, ss = sin_psi * sin_psi;
+  const double twist = 4 * fabric.bend_bias - fabric.bend_warp - fabric.bend_weft;
+  return fabric.bend_warp * cc * cc + fabric.bend_weft * ss * ss + twist * cc * ss;
+}
+
+}  // namespace weft

@@ -1,0 +1,157 @@
+#include "weft/integrators/element_terms.h"
+
+#include <algorithm>
+
+#include "weft/forces/bending.h"
+
+namespace weft {
+namespace {
+
+TriangleCorners corners_of(const MembraneElement& m, const std::vector<Vec3>& x) {
+  return {x[m.vertices[0]], x[m.vertices[1]], x[m.vertices[2]]};
+}
+
+HingeCorners corners_of(const HingeElement& h, const std::vector<Vec3>& x) {
+  return {x[h.vertices[0]], x[h.vertices[1]], x[h.vertices[2]], x[h.vertices[3]]};
+}
+
+}  // namespace
+
+void ElementTerms::begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start) {
+  elements_ = &elements;
+  start_ = start;
+  damped_.clear();
+  vertex_.clear();
+  weight_.clear();
+  if (elements.damping == 0) return;
+  damp_membranes(elements.damping / step, start);
+  damp_bending(elements.damping / step, start);
+}
+
+/// δeᵀ C δe as three rows, by Cholesky's C = Σ d l lᵀ.
+void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& start) {
+  for (const MembraneElement& m : elements_->membranes) {
+    const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, corners_of(m, start));
+    Mat3 rest = elements_->stiffness;
+    for (int c = 0; c < 3; ++c) {
+      const double pivot = rest(c, c);
+      const Vec3 l = rest.col(c) / pivot;
+      rest -= pivot * l * l.transpose();
+      const int begin = static_cast<int>(vertex_.size());
+      for (int k = 0; k < 3; ++k) {
+        vertex_.push_back(m.vertices[k]);
+        weight_.push_back(derivative[k].transpose() * l);
+      }
+      damped_.push_back({begin, begin + 3, share * m.rest.area * pivot});
+    }
+  }
+}
+
+void ElementTerms::damp_bending(double share, const std::vector<Vec3>& start) {
+  const BendingRows& rows = elements_->bending;
+  for (int r = 0; r < rows.num_rows(); ++r) {
+    const Vec3 curvature = bending_curvature(rows, r, start);
+    if (curvature.norm() == 0) continue;
+    const Vec3 direction = curvature.normalized();
+    const int begin = static_cast<int>(vertex_.size());
+    for (int k = rows.begin[r]; k < rows.begin[r + 1]; ++k) {
+      vertex_.push_back(rows.vertex[k]);
+      weight_.push_back(rows.weight[k] * direction);
+    }
+    damped_.push_back({begin, static_cast<int>(vertex_.size()), share * rows.stiffness[r]});
+  }
+  for (const HingeElement& h : elements_->hinges) {
+    const HingeCorners gradient = hinge_angle_gradient(corners_of(h, start));
+    const int begin = static_cast<int>(vertex_.size());
+    vertex_.insert(vertex_.end(), h.vertices.begin(), h.vertices.end());
+    weight_.insert(weight_.end(), gradient.begin(), gradient.end());
+    damped_.push_back({begin, begin + 4, share * h.stiffness});
+  }
+}
+
+double ElementTerms::energy(const std::vector<Vec3>& x) const {
+  double energy = bending_energy(elements_->bending, x);
+  for (const MembraneElement& m : elements_->membranes) {
+    energy += membrane_energy(m.rest, elements_->stiffness, corners_of(m, x));
+  }
+  for (const HingeElement& h : elements_->hinges) energy += hinge_energy(h.stiffness, 0, corners_of(h, x));
+  for (const DampedRow& row : damped_) {
+    double change = 0;
+    for (int k = row.begin; k < row.end; ++k) change += weight_[k].dot(x[vertex_[k]] - start_[vertex_[k]]);
+    energy += 0.5 * row.stiffness * change * change;
+  }
+  return energy;
+}
+
+void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const {
+  for (const MembraneElement& m : elements_->membranes) {
+    const TriangleCorners force = membrane_force(m.rest, elements_->stiffness, corners_of(m, x));
+    for (int c = 0; c < 3; ++c) gradient[m.vertices[c]] -= force[c];
+  }
+  for (const HingeElement& h : elements_->hinges) {
+    const HingeCorners force = hinge_force(h.stiffness, 0, corners_of(h, x));
+    for (int c = 0; c < 4; ++c) gradient[h.vertices[c]] -= force[c];
+  }
+  const BendingRows& rows = elements_->bending;
+  for (int r = 0; r < rows.num_rows(); ++r) {
+    const Vec3 moment = rows.stiffness[r] * bending_curvature(rows, r, x);
+    for (int k = rows.begin[r]; k < rows.begin[r + 1]; ++k)
+      gradient[rows.vertex[k]] += rows.weight[k] * moment;
+  }
+  for (const DampedRow& row : damped_) {
+    double change = 0;
+    for (int k = row.begin; k < row.end; ++k) change += weight_[k].dot(x[vertex_[k]] - start_[vertex_[k]]);
+    for (int k = row.begin; k < row.end; ++k) gradient[vertex_[k]] += row.stiffness * change * weight_[k];
+  }
+}
+
+void ElementTerms::add_hessian(const std::vector<Vec3>& x, StressFilter filter, const AddBlock& add) const {
+  for (const MembraneElement& m : elements_->membranes) {
+    const MembraneHessian hessian = membrane_hessian(m.rest, elements_->stiffness, corners_of(m, x));
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b <= a; ++b) add(m.vertices[a], m.vertices[b], membrane_block(hessian, a, b, filter));
+    }
+  }
+  for (const HingeElement& h : elements_->hinges) {
+    const HingeCorners gradient = hinge_angle_gradient(corners_of(h, x));
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b <= a; ++b)
+        add(h.vertices[a], h.vertices[b], hinge_gauss_newton_block(h.stiffness, gradient, a, b));
+    }
+  }
+  const BendingRows& rows = elements_->bending;
+  for (int r = 0; r < rows.num_rows(); ++r) {
+    for (int a = rows.begin[r]; a < rows.begin[r + 1]; ++a) {
+      for (int b = rows.begin[r]; b <= a; ++b) {
+        const double value = rows.stiffness[r] * rows.weight[a] * rows.weight[b];
+        add(rows.vertex[a], rows.vertex[b], value * Mat3::Identity());
+      }
+    }
+  }
+  for (const DampedRow& row : damped_) {
+    for (int a = row.begin; a < row.end; ++a) {
+      for (int b = row.begin; b <= a; ++b)
+        add(vertex_[a], vertex_[b], row.stiffness * weight_[a] * weight_[b].transpose());
+    }
+  }
+}
+
+std::vector<std::pair<int, int>> ElementTerms::find_pairs(const ClothElements& elements) {
+  std::vector<std::pair<int, int>> pairs;
+  const auto add_all = [&](const int* vertices, int count) {
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b < a; ++b) pairs.push_back(std::minmax(vertices[a], vertices[b]));
+    }
+  };
+  for (const MembraneElement& m : elements.membranes) add_all(m.vertices.data(), 3);
+  for (const HingeElement& h : elements.hinges) add_all(h.vertices.data(), 4);
+  const BendingRows& rows = elements.bending;
+  for (int r = 0; r < rows.num_rows(); ++r) {
+    add_all(rows.vertex.data() + rows.begin[r], rows.begin[r + 1] - rows.begin[r]);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+}  // namespace weft

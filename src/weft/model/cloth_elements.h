@@ -1,0 +1,33 @@
+#pragma once
+/// A fabric on a cloth's triangles: what stretches, shears and bends where there are no springs.
+
+#include <memory>
+
+#include "weft/fabric/bending_rows.h"
+#include "weft/fabric/elements.h"
+
+namespace weft {
+
+struct ClothElements {
+  Mat3 stiffness = Mat3::Zero();           // of every membrane [N/m]
+  std::vector<MembraneElement> membranes;  // one per triangle
+  BendingRows bending;                     // curvature stencils; none if there are hinges
+  std::vector<HingeElement> hinges;        // flat at rest; none if there are stencils
+  double damping = 0;                      // time constant τ of all of them [s]
+};
+
+enum class BendingModel {
+  stencils,  // the same rigidity in every direction, a constant Hessian
+  hinges,    // angles between triangles, as most engines have it; stiffer along the mesh's diagonals
+};
+
+/// Of a grid and its mesh. The stencils are those of the grid, whatever way its cells are cut.
+std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
+                                                         GridWarp warp, const Fabric& fabric,
+                                                         BendingModel bending = BendingModel::stencils);
+
+std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
+                                                         const Fabric& fabric,
+                                                         BendingModel bending = BendingModel::stencils);
+
+}  // namespace weft

@@ -1,0 +1,37 @@
+#pragma once
+/// Fabric files (TOML) in, with every mistake reported at its place, and fabrics by name or file.
+///
+///     density   = 0.324      # mass per area [kg/m²]
+///     c11       = 410.7      # stretching along warp [N/m]
+///     c22       = 2027.8     # along weft [N/m]
+///     c12       = 20.5       # how much one draws in the other [N/m]
+///     g         = 53.4       # shearing [N/m]
+///     bend_warp = 16.05e-6   # bending along warp [N·m]
+///     bend_weft = 24.24e-6   # along weft [N·m]
+///     bend_bias = 18.35e-6   # along the bias, at 45° [N·m]
+///     damping   = 0.002      # time constant of internal damping, may be left out [s]
+///     thickness = 0.0008     # may be left out [m]
+///     friction  = 0.5        # of the fabric on itself, may be left out [1]
+///
+/// `strain_limit` may be given as well. What each number does is said at Fabric, where the defaults are too.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "weft/fabric/presets.h"
+#include "weft/scene/diagnostic.h"
+
+namespace weft {
+
+/// Reads and judges a fabric file; the fabric is named for the file. Throws SceneError with every mistake.
+FabricPreset read_fabric_file(const std::filesystem::path& file);
+
+/// The same from text; `file` is used in messages and for the name.
+FabricPreset parse_fabric(std::string_view text, const std::filesystem::path& file);
+
+/// What a person typed: an existing file, or the name of a preset. Throws InputError naming the nearest
+/// preset.
+FabricPreset load_fabric(const std::string& name_or_file);
+
+}  // namespace weft

@@ -1,0 +1,85 @@
+#pragma once
+/// Flat sheets for tests of membranes and bending: square grids, and random meshes of the same fineness.
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "weft/core/random.h"
+#include "weft/forces/hinge.h"
+#include "weft/forces/membrane.h"
+#include "weft/mesh/grid.h"
+
+namespace weft::test {
+
+/// A sheet in the x–z plane, cut into cells² squares of two triangles.
+enum class SheetKind {
+  parallel,     // all diagonals along (i,j)–(i+1,j+1)
+  alternating,  // every second one the other way
+  random,       // inner vertices moved by up to 0.3 cells, each cell cut along its shorter diagonal
+};
+
+inline const char* to_string(SheetKind kind) {
+  switch (kind) {
+    case SheetKind::parallel:
+      return "parallel";
+    case SheetKind::alternating:
+      return "alternating";
+    case SheetKind::random:
+      break;
+  }
+  return "random";
+}
+
+inline TriangleMesh make_sheet(SheetKind kind, const Grid& grid, std::uint64_t seed = 1) {
+  const bool parallel = kind == SheetKind::parallel;
+  TriangleMesh mesh = build_grid_mesh(grid, parallel ? GridDiagonals::parallel : GridDiagonals::alternating);
+  if (kind != SheetKind::random) return mesh;
+  Random random(seed);
+  for (int j = 1; j < grid.cells_z; ++j) {
+    for (int i = 1; i < grid.cells_x; ++i) {
+      mesh.positions[grid.index(i, j)] +=
+          Vec3(random.uniform(-0.3, 0.3) * grid.spacing_x(), 0, random.uniform(-0.3, 0.3) * grid.spacing_z());
+    }
+  }
+  mesh.triangles.clear();
+  for (int j = 0; j < grid.cells_z; ++j) {
+    for (int i = 0; i < grid.cells_x; ++i) {
+      const int a = grid.index(i, j), b = grid.index(i + 1, j), c = grid.index(i + 1, j + 1),
+                d = grid.index(i, j + 1);
+      const auto& p = mesh.positions;
+      if ((p[a] - p[c]).norm() < (p[b] - p[d]).norm()) {
+        mesh.triangles.push_back({a, d, c});
+        mesh.triangles.push_back({a, c, b});
+      } else {
+        mesh.triangles.push_back({a, d, b});
+        mesh.triangles.push_back({d, c, b});
+      }
+    }
+  }
+  return mesh;
+}
+
+inline TriangleMesh make_sheet(SheetKind kind, int cells) {
+  return make_sheet(kind, {.size_x = 1, .size_z = 1, .cells_x = cells, .cells_z = cells});
+}
+
+/// The mesh's positions after a map of space.
+inline std::vector<Vec3> mapped(const TriangleMesh& mesh, const std::function<Vec3(const Vec3&)>& map) {
+  std::vector<Vec3> x;
+  for (const Vec3& p : mesh.positions) x.push_back(map(p));
+  return x;
+}
+
+/// Rolled to a cylinder of this curvature, in the direction ψ from x; lengths are kept.
+inline std::vector<Vec3> rolled(const TriangleMesh& mesh, double curvature, double psi) {
+  const double c = std::cos(psi), s = std::sin(psi);
+  return mapped(mesh, [=](const Vec3& p) {
+    const double along = c * p.x() + s * p.z(), across = c * p.z() - s * p.x();
+    const double x = std::sin(curvature * along) / curvature;
+    return Vec3(c * x - s * across, (1 - std::cos(curvature * along)) / curvature, s * x + c * across);
+  });
+}
+
+}  // namespace weft::test
