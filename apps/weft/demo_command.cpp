@@ -7,6 +7,7 @@
 #include "progress.h"
 #include "run_command.h"
 #include "summary.h"
+#include "view_command.h"
 #include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
 
@@ -55,6 +56,19 @@ class Pictures {
   std::string trouble_;
 };
 
+/// A window is no reason to fail either.
+void show_window() {
+  const std::string scene = "paper/fig6_ball_real";
+  fmt::print("\nThe last scene in a window: grab the cloth; H for help, Q to close it (weft view {}).\n",
+             scene);
+  std::fflush(stdout);
+  try {
+    view({.scene = scene});
+  } catch (const std::runtime_error& error) {
+    fmt::print("There is no window: {}\n", error.what());
+  }
+}
+
 int run_demo(const fs::path& out) {
   fmt::print("The paper's four scenes, and each again with real fabric (_real).\n\n{}", table_head());
   Pictures pictures;
@@ -72,6 +86,7 @@ int run_demo(const fs::path& out) {
       "{}.\n",
       (out / "paper").string());
   pictures.tell();
+  if (has_spectator()) show_window();
   return kDone;
 }
 

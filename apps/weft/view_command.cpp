@@ -1,3 +1,8 @@
+#include "view_command.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
 #include <memory>
 
 #include "commands.h"
@@ -14,16 +19,6 @@
 
 namespace weft::app {
 namespace {
-
-struct ViewRequest {
-  std::string scene;
-  std::string size = "1280x720";
-  std::vector<std::string> compare;  // integrators, none or two
-  int threads = 0;
-  std::int64_t frames = 0;
-  std::filesystem::path report;
-  Overrides overrides;
-};
 
 /// From now on this thread, and those that it makes, give way to the simulation's: where OpenGL is computed
 /// by the processor, pictures come late rather than steps.
@@ -49,6 +44,8 @@ std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, Sc
   return sides;
 }
 
+}  // namespace
+
 void view(const ViewRequest& request) {
   const ViewOptions options{
       .size = parse_size(request.size), .report = request.report, .frames = request.frames};
@@ -62,7 +59,9 @@ void view(const ViewRequest& request) {
   Viewer(std::move(sides), options).run();
 }
 
-}  // namespace
+bool has_spectator() {
+  return isatty(STDIN_FILENO) != 0 && (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY"));
+}
 
 void add_view_command(CLI::App& app, int& exit_code) {
   auto request = std::make_shared<ViewRequest>();
