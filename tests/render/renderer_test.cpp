@@ -40,9 +40,9 @@ TEST(Renderer, GoesThroughItsStagesInOrder) {
                                              "pass occlusion",
                                              "draw blur",
                                              "pass colour",
-                                             "draw surface",
-                                             "draw surface",
-                                             "draw surface",
+                                             "draw solid",
+                                             "draw fabric",
+                                             "draw ground",
                                              "draw line",
                                              "draw dot",
                                              "draw sky",
@@ -59,13 +59,14 @@ TEST(Renderer, LeavesOutSkyAndGroundWhereTransparent) {
   picture.transparent = true;
   const Drawn drawn = draw_with_mock(picture);
   EXPECT_EQ(drawn.count("draw sky"), 0);
-  EXPECT_EQ(drawn.count("draw surface"), 2);
+  EXPECT_EQ(drawn.count("draw ground"), 0);
+  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric"), 2);
 }
 
 TEST(Renderer, DrawsNoDepthThatNobodyReads) {
   const Drawn drawn = draw_with_mock(make_still_life(), {.samples = 1, .shadow_size = 0, .occlusion = false});
   EXPECT_EQ(drawn.count("draw depth"), 0);
-  EXPECT_EQ(drawn.count("draw surface"), 3);
+  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric") + drawn.count("draw ground"), 3);
 }
 
 TEST(Renderer, DrawsPicturesOfNothingAndOfOddThings) {

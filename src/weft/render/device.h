@@ -23,7 +23,7 @@ class GraphicsError : public std::runtime_error {
 };
 
 /// Programs of the graphics card; their sources are in shaders.h.
-enum class Program { depth, occlusion, blur, sky, surface, line, dot };
+enum class Program { depth, occlusion, blur, sky, fabric, solid, ground, line, dot };
 
 /// A picture in the device's memory that passes draw to and read from.
 struct TargetDesc {
@@ -69,7 +69,7 @@ struct Instances {
 };
 
 struct DrawCall {
-  Program program = Program::surface;
+  Program program = Program::depth;
   std::vector<Uniform> uniforms;  // all that the program has, in any order
   std::variant<WholeTarget, GeometryId, Instances> what;
 };

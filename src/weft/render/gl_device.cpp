@@ -10,7 +10,7 @@
 namespace weft {
 namespace {
 
-constexpr int kNumPrograms = 7;
+constexpr int kNumPrograms = 9;
 
 GLuint compile(GLenum kind, const std::string& source) {
   const GLuint shader = glCreateShader(kind);

@@ -24,8 +24,12 @@ const char* to_string(Program program) {
       return "blur";
     case Program::sky:
       return "sky";
-    case Program::surface:
-      return "surface";
+    case Program::fabric:
+      return "fabric";
+    case Program::solid:
+      return "solid";
+    case Program::ground:
+      return "ground";
     case Program::line:
       return "line";
     case Program::dot:

@@ -172,9 +172,7 @@ struct Renderer::Stage {
                  WholeTarget{}});
   }
 
-  enum class Kind { fabric, solid, ground };
-
-  void draw_surface(GeometryId geometry, Kind kind, const Look& look) {
+  void draw_surface(GeometryId geometry, Program program, const Look& look) {
     Mat4 to_texture = Mat4::Identity();
     to_texture.diagonal().head<3>().setConstant(0.5);
     to_texture.topRightCorner<3, 1>().setConstant(0.5);
@@ -183,10 +181,9 @@ struct Renderer::Stage {
         settings.shadow_size > 0 ? static_cast<float>(sun.width / settings.shadow_size) : 0.0f;
     const float reach = static_cast<float>(picture.camera.distance + extent.radius);
     device.draw(
-        {Program::surface,
+        {program,
          {{"to_clip", to_clip},
           {"eye", Vector3f(picture.camera.eye().cast<float>())},
-          {"kind", static_cast<int>(kind)},
           {"color", to_vector(look.color)},
           {"check_size", static_cast<float>(look.check_size)},
           {"to_sun", Vector3f(light.to_sun.cast<float>())},
@@ -210,9 +207,9 @@ struct Renderer::Stage {
   void draw_surfaces() {
     for (std::size_t m = 0; m < meshes.size(); ++m) {
       const Look& look = picture.meshes[m].look;
-      draw_surface(meshes[m], look.kind == Look::Kind::fabric ? Kind::fabric : Kind::solid, look);
+      draw_surface(meshes[m], look.kind == Look::Kind::fabric ? Program::fabric : Program::solid, look);
     }
-    if (ground) draw_surface(*ground, Kind::ground, {.color = kGroundColor});
+    if (ground) draw_surface(*ground, Program::ground, {.color = kGroundColor});
   }
 
   void draw_lines_and_dots() {
