@@ -32,6 +32,13 @@ void make_folder(const fs::path& folder) {
 
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
+void add_set_option(CLI::App& command, Overrides& overrides) {
+  command.add_option("--set", overrides, "Change a value, as in --set solver.integrator=desbrun")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 PictureSize parse_size(const std::string& text) {
   PictureSize size;
   char end = 0;

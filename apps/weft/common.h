@@ -1,10 +1,12 @@
 #pragma once
 /// What several commands need.
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
 #include "weft/render/camera.h"
+#include "weft/scene/scene_reader.h"
 
 namespace weft::app {
 
@@ -17,6 +19,9 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Processors of this machine, at least 1.
 int num_processors();
+
+/// --set KEY=VALUE, as often as wanted.
+void add_set_option(CLI::App& command, Overrides& overrides);
 
 /// "1280x720" as a size; throws InputError for anything else.
 PictureSize parse_size(const std::string& text);

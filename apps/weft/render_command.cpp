@@ -170,10 +170,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--threads", request->threads, "Threads of the simulation (default: all processors)")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
-  command->add_option("--set", request->overrides, "Change a value, as in --set solver.integrator=desbrun")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_set_option(*command, request->overrides);
   command->callback([request, &exit_code] { exit_code = exit_code_of(render(*request)); });
 }
 

@@ -83,10 +83,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "Threads (default: all processors); never changes the result")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
-  command->add_option("--set", request->overrides, "Change a value, as in --set solver.integrator=desbrun")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_set_option(*command, request->overrides);
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
   command->callback([request, &exit_code] {
     const FinishedRun run = run_to_files(*request);

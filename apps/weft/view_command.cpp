@@ -88,10 +88,7 @@ void add_view_command(CLI::App& app, int& exit_code) {
       ->add_option("--report", request->report,
                    "Write what the window shows as JSON, at the end and on the key J")
       ->type_name("FILE");
-  command->add_option("--set", request->overrides, "Change a value, as in --set solver.integrator=desbrun")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_set_option(*command, request->overrides);
   command->callback([request, &exit_code] {
     view(*request);
     exit_code = kDone;
