@@ -71,7 +71,7 @@ const vec2 kDisc[16] = vec2[](
 // The share of the sun's light that arrives. Loops end early where nothing, or everything, is in the way: software
 // drivers skip what a loop leaves out, but not what a branch does.
 float sunlight(vec3 n) {
-  const int kLooks = 6, kTaps = 14;
+  const int kLooks = 6, kTaps = 12;
   vec4 place = to_shadow * vec4(world + 4.0 * shadow_texel * n, 1.0);
   bool outside = any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0)));
   place.z -= shadow_texel / shadow_depth_range;
@@ -216,7 +216,7 @@ void main() {
   ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
   float turn = 6.2832 / 16.0 * float(4 * ((cell.x + 2 * cell.y) & 3) + ((2 * cell.x + cell.y) & 3));
   float sum = 0.0;
-  const int kSamples = 16;
+  const int kSamples = 12;
   for (int i = 0; i < kSamples; ++i) {
     float r = (float(i) + 0.5) / float(kSamples), a = turn + 2.39996323 * float(i);
     vec3 v = in_view(place + r * reach * vec2(cos(a), sin(a))) - p;
