@@ -163,7 +163,7 @@ WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
 
 // WEFT_MULTIVERSION_PACKS(name, (parameters), (arguments)): as WEFT_MULTIVERSION, for a body that is a
 // template over the width of its packs.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if WEFT_HAS_SIMD_LEVELS
 #define WEFT_MULTIVERSION_PACKS(name, parameters, arguments)                                         \
   [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body<8> arguments; } \
   [[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] static void name##_avx512 parameters {   \

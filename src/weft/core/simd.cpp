@@ -6,7 +6,7 @@ namespace weft {
 namespace {
 
 SimdLevel detect() {
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if WEFT_HAS_SIMD_LEVELS
   __builtin_cpu_init();
   if (__builtin_cpu_supports("x86-64-v4")) return SimdLevel::avx512;
   if (__builtin_cpu_supports("x86-64-v3")) return SimdLevel::avx2;

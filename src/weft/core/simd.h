@@ -45,7 +45,15 @@ std::string_view to_string(SimdLevel level);
 #define WEFT_IVDEP
 #endif
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Under sanitizers the baseline alone: all levels share one body, and three copies of it take very long to compile.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define WEFT_HAS_SIMD_LEVELS 1
+#else
+#define WEFT_HAS_SIMD_LEVELS 0
+#endif
+
+#if WEFT_HAS_SIMD_LEVELS
 #define WEFT_MULTIVERSION(name, parameters, arguments)                                             \
   [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body arguments; }  \
   [[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] static void name##_avx512 parameters { \
