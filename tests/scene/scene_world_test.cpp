@@ -55,7 +55,8 @@ file = "body.obj"
     return "no error";
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "scene_world_test";
+  const std::filesystem::path folder_ =
+      std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 bool warns(const SceneWorld& built, const std::string& words) {
