@@ -8,7 +8,6 @@
 #include "run_command.h"
 #include "summary.h"
 #include "view_command.h"
-#include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
 
 namespace weft::app {
@@ -28,8 +27,7 @@ constexpr int kEvery = 2;  // frames of the videos
 /// A picture of the last frame and a video beside the animation.
 void paint(const FinishedRun& run) {
   const fs::path folder = run.animation_file.parent_path();
-  const Animation animation = read_glb(run.animation_file);
-  Painter painter(animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
+  Painter painter(run.animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
   painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
   const fs::path video = folder / "video.mp4";
   require_ffmpeg(video);

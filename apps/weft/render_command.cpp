@@ -27,7 +27,7 @@ struct RenderRequest {
   fs::path out = "weft.png";
   std::vector<int> frames;  // of pictures; of a video the last one; empty: the last one of the scene
   int columns = 0;          // of a contact sheet; 0: as many as pictures, at most 4
-  int every = 1;            // of a video: each so manieth frame
+  int every = 1;            // of a video: every so many frames
   std::string size = "1280x720";
   std::vector<double> camera;  // azimuth, elevation, zoom
   bool transparent = false, springs = false;
@@ -94,9 +94,9 @@ class Source {
   fs::path file_;
 };
 
-PaintSettings paint_settings(const RenderRequest& request, std::vector<SpringsToDraw> springs) {
+PaintSettings paint_settings(const RenderRequest& request) {
   PaintSettings settings{.size = parse_size(request.size)};
-  settings.style = {.transparent = request.transparent, .ground = {}, .springs = std::move(springs)};
+  settings.style.transparent = request.transparent;
   if (request.camera.size() > 0) settings.view.azimuth_deg = request.camera[0];
   if (request.camera.size() > 1) settings.view.elevation_deg = request.camera[1];
   if (request.camera.size() > 2) settings.zoom = request.camera[2];
@@ -111,14 +111,15 @@ PaintSettings paint_settings(const RenderRequest& request, std::vector<SpringsTo
 /// Paints what there is, even if the simulation has failed; tells how that ended.
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
-  paint_settings(request, {});  // throws
+  PaintSettings settings = paint_settings(request);
   const Source source(request);
   auto device = make_offscreen_device();  // now: no reason to simulate where nothing can be drawn
   if (request.out.has_parent_path()) make_folder(request.out.parent_path());
   require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
   const auto [animation, outcome] = source.get();
-  Painter painter(animation, paint_settings(request, source.springs()), std::move(device));
+  settings.style.springs = source.springs();
+  Painter painter(animation, settings, std::move(device));
   if (is_video(request.out)) {
     painter.write_video(request.out, request.every);
   } else {

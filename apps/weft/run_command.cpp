@@ -44,16 +44,16 @@ FinishedRun run_to_files(const RunRequest& request) {
                            .threads = request.threads > 0 ? request.threads : num_processors()};
   ProgressBar bar(scene.name);
   catch_interrupts();
-  const RunResult result = run_scene(scene, options, [&](const Progress& progress) {
+  RunResult result = run_scene(scene, options, [&](const Progress& progress) {
     bar.update(progress);
     return !interrupted();
   });
   bar.clear();
-  const FinishedRun run{result.report, folder / kAnimationName, folder / kReportName};
-  write_report(run.report_file, result.report);
+  write_report(folder / kReportName, result.report);
   if (!request.report.empty()) write_report(request.report, result.report);
-  write_glb(run.animation_file, result.animation);
-  return run;
+  write_glb(folder / kAnimationName, result.animation);
+  return {std::move(result.report), std::move(result.animation), folder / kAnimationName,
+          folder / kReportName};
 }
 
 int exit_code_of(RunOutcome outcome) {

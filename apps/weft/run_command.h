@@ -21,6 +21,7 @@ struct RunRequest {
 
 struct FinishedRun {
   RunReport report;
+  Animation animation;
   std::filesystem::path animation_file, report_file;
 };
 
