@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "tests/render/pictures.h"
+#include "weft/mesh/vertex_normals.h"
 #include "weft/render/mock_device.h"
 
 namespace weft {
@@ -91,7 +92,7 @@ TEST(Renderer, ShowsInsteadOfReadingInAWindow) {
 
 TEST(Normals, PointAwayFromTheFrontAndAreUnit) {
   const DrawnMesh sheet = make_sheet({0, 0, 0}, 1, fabric({1, 1, 1}));
-  const std::vector<float> normals = compute_normals(sheet);
+  const std::vector<float> normals = compute_vertex_normals(sheet.triangles, sheet.positions);
   ASSERT_EQ(normals.size(), sheet.positions.size());
   const float up = normals[1];
   EXPECT_NEAR(std::abs(up), 1, 1e-6);

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "weft/core/error.h"
+#include "weft/mesh/vertex_normals.h"
 
 namespace weft {
 namespace {
@@ -101,30 +102,6 @@ void require_valid(const Animation& animation) {
 }
 
 // ---- Geometry ----
-
-Eigen::Vector3f vertex(std::span<const float> positions, int v) {
-  return Eigen::Map<const Eigen::Vector3f>(positions.data() + 3 * static_cast<size_t>(v));
-}
-
-/// Unit normals of the vertices, by area: the sum of the cross products of the triangles around. Up where
-/// that is too short to have a direction.
-std::vector<float> compute_normals(const std::vector<Triangle>& triangles, std::span<const float> positions) {
-  std::vector<Vec3> sums(positions.size() / 3, Vec3::Zero());
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3 x = vertex(positions, a).cast<double>();
-    const Vec3 area =
-        (vertex(positions, b).cast<double>() - x).cross(vertex(positions, c).cast<double>() - x);
-    for (const int v : {a, b, c}) sums[v] += area;
-  }
-  std::vector<float> normals;
-  normals.reserve(positions.size());
-  for (const Vec3& sum : sums) {
-    const double length = sum.norm();
-    const Vec3 normal = length > 1e-30 && std::isfinite(length) ? Vec3(sum / length) : Vec3::UnitY();
-    for (const double n : normal) normals.push_back(static_cast<float>(n));
-  }
-  return normals;
-}
 
 std::vector<float> difference(std::span<const float> a, std::span<const float> b) {
   std::vector<float> result(a.size());
@@ -253,12 +230,12 @@ class GlbBuilder {
     tinygltf::Mesh mesh;
     tinygltf::Primitive primitive = make_primitive(cloth.triangles, add_material(cloth.name, cloth.color));
     const auto& base = cloth.frames[0];
-    const auto base_normals = compute_normals(cloth.triangles, base);
+    const auto base_normals = compute_vertex_normals(cloth.triangles, base);
     primitive.attributes = add_vertices(base, base_normals);
     if (!cloth.fabric_coordinates.empty())
       primitive.attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
     for (size_t k = 1; k < num_frames_; ++k) {
-      const auto normals = compute_normals(cloth.triangles, cloth.frames[k]);
+      const auto normals = compute_vertex_normals(cloth.triangles, cloth.frames[k]);
       primitive.targets.push_back(
           add_vertices(difference(cloth.frames[k], base), difference(normals, base_normals)));
     }
@@ -274,7 +251,8 @@ class GlbBuilder {
     mesh.primitives.push_back(make_primitive(body.mesh.triangles, add_material(body.name, body.color)));
     const auto positions = flatten(body.mesh.positions);
     require_finite(body.name, 0, positions);
-    mesh.primitives[0].attributes = add_vertices(positions, compute_normals(body.mesh.triangles, positions));
+    mesh.primitives[0].attributes =
+        add_vertices(positions, compute_vertex_normals(body.mesh.triangles, positions));
     const int node = add_node(body.name, std::move(mesh));
     model_.nodes[node].extras = extras_of(body);
     const auto& [translation, rotation] = body.poses[0];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/mesh/vertex_normals.h"
+
 namespace weft {
 namespace {
 
@@ -90,7 +92,7 @@ void add_arc(const Vec3& a, const Vec3& b, const Vec3& side, std::vector<Vec3>& 
 }
 
 void draw_springs(const DrawnMesh& cloth, const ClothTopology& topology, Picture& picture) {
-  const std::vector<float> normals = compute_normals(cloth);
+  const std::vector<float> normals = compute_vertex_normals(cloth.triangles, cloth.positions);
   DrawnLines structural{.ends = {}, .color = kStructural, .width = 2.2},
       shear{.ends = {}, .color = kShear, .width = 2.2}, bend{.ends = {}, .color = kBend, .width = 1.4};
   for (const Spring& spring : topology.springs) {

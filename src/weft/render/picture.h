@@ -60,7 +60,4 @@ struct Picture {
   bool transparent = false;      // no sky and no ground: alpha tells where something is
 };
 
-/// Normals of the vertices (num_vertices x 3), unit, weighted by the areas around; up where there is none.
-std::vector<float> compute_normals(const DrawnMesh& mesh);
-
 }  // namespace weft

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/mesh/vertex_normals.h"
+
 namespace weft {
 namespace {
 
@@ -69,7 +71,7 @@ SunView make_sun_view(const Light& light, const Extent& extent) {
 }
 
 std::vector<float> interleave(const DrawnMesh& mesh) {
-  const std::vector<float> normals = compute_normals(mesh);
+  const std::vector<float> normals = compute_vertex_normals(mesh.triangles, mesh.positions);
   const std::size_t count = mesh.positions.size() / 3;
   std::vector<float> vertices(count * kFloatsPerVertex, 0.0f);
   for (std::size_t v = 0; v < count; ++v) {
