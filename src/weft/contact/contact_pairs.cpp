@@ -217,6 +217,15 @@ int ContactSystem::cloth_of(int vertex) const {
          1;
 }
 
+ContactSystem::Place ContactSystem::place_of(int vertex) const {
+  if (vertex >= first_vertex_.back()) {
+    const Body& body = body_of(vertex);
+    return {-1, body.collider, vertex - body.first_vertex};
+  }
+  const int cloth = cloth_of(vertex);
+  return {cloth, -1, vertex - first_vertex_[cloth]};
+}
+
 double ContactSystem::friction_of(int vertex) const {
   return cloths_[cloth_of(vertex)].model->material.friction;
 }

@@ -38,11 +38,6 @@ TriangleSignedDistance triangle_distance(const ColliderShape& shape, const Vec3&
 
 }  // namespace
 
-Vec3 ContactSystem::MovingShape::velocity_at(const Vec3& p, double step) const {
-  if (collider->motion.is_still()) return Vec3::Zero();
-  return (p - apply(pose_before, pivot, apply_inverse(pose_after, pivot, p))) / step;
-}
-
 void ContactSystem::collect_shapes(double share_of_travel) {
   for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
     if (!shapes_[s].is_mesh()) collect_shape(s, share_of_travel);

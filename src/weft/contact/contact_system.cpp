@@ -200,6 +200,30 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   store_touched();
 }
 
+LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
+  if (proximity_.wildest() >= 0) return {};
+  origins_.clear();
+  for (int c = 0; c < static_cast<int>(cloths_.size()); ++c) {
+    end_of(c);
+    origins_.push_back(cloths_[c].state->origin);
+  }
+  arrived_ = motion_.end;
+  const LastLineReport report =
+      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_}, proximity_, motion_, jobs);
+  if (report.hits == 0) return report;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    ClothState& state = *cloths_[c].state;
+    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
+      const Vec3 moved = motion_.end[v] - arrived_[v];
+      if (moved.isZero(0)) continue;
+      state.history.had_contact = true;
+      state.set_position(i, motion_.end[v]);
+      state.v.set(i, state.v.get(i) + moved / step_.step);
+    }
+  }
+  return report;
+}
+
 void ContactSystem::settle_positions() {
   for (int round = 0; round < kRounds; ++round) {
     const double moved = project_positions(inverse_mass_, kPasses, constraints_, motion_.end);

@@ -8,6 +8,8 @@
 #include "weft/contact/collider.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/contact.h"
+#include "weft/contact/last_line.h"
+#include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
 #include "weft/core/job_system.h"
 #include "weft/model/cloth_model.h"
@@ -34,6 +36,7 @@ struct ContactStep {
 ///     find_contacts     … as planes in one cloth's way
 ///     end_of            a cloth has been moved
 ///     hold_off          what has come too close all the same is set apart
+///     stop_crossings    and whatever would still go through anything is stopped (see last_line.h)
 ///
 /// Cloth keeps half its thickness from colliders, and half of both thicknesses from other cloth. Pinned
 /// particles push others, and are not pushed. Keeps its work space between steps; what it does depends on the
@@ -58,20 +61,20 @@ class ContactSystem {
   /// constraint.h). To be called when every cloth is at its end.
   void hold_off(JobSystem& jobs);
 
+  /// Makes sure that nothing has gone through anything since begin_step. To be called last.
+  LastLineReport stop_crossings(JobSystem& jobs);
+
+  /// What a vertex of the common numbering belongs to, and its number there; exactly one of cloth and
+  /// collider is not -1.
+  struct Place {
+    int cloth = -1, collider = -1, index = 0;
+  };
+  Place place_of(int vertex) const;
+
   /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
   int wild_cloth() const;
 
  private:
-  struct MovingShape {
-    const Collider* collider = nullptr;
-    ColliderShape before, after;
-    Pose pose_before, pose_after;
-    Vec3 pivot = Vec3::Zero();
-
-    bool is_mesh() const { return std::holds_alternative<MeshShape>(after); }
-    Vec3 velocity_at(const Vec3& p, double step) const;
-  };
-
   struct Body {
     int collider = 0;      // number
     int first_vertex = 0;  // of the common numbering
@@ -136,6 +139,8 @@ class ContactSystem {
   std::vector<char> is_touched_;
   std::vector<double> shape_distance_;
   std::vector<Vec3> velocity_, slowed_;
+  LastLine last_line_;
+  std::vector<Vec3> origins_;  // (cloths)
   std::vector<Vec3> arrived_;  // where contacts were last looked for
 };
 

@@ -10,9 +10,9 @@ namespace {
 /// A tree this much looser than when it was built is built anew.
 constexpr double kLoosest = 1.6;
 
-/// The triangles around a vertex are its neighbours on the mesh. As long as their normals are this near to
-/// their sum, seen along it they do not overlap, and nothing of them can come close. cos 30°: the lists are
-/// kept while it bends further.
+/// The triangles around a vertex are its neighbours on the mesh. As long as their normals are near to their
+/// sum, seen along it they do not overlap, and nothing of them can come close: within 30° when lists are
+/// made, and such that none can turn over while they are kept.
 constexpr double kSharp = 0.87;
 
 /// So few triangles may all be near to each other, as long as they do not fly off [m].
@@ -127,6 +127,8 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
     std::sort(pairs->begin(), pairs->end(), [](const FeaturePair& x, const FeaturePair& y) {
       return x.a < y.a || (x.a == y.a && x.b < y.b);
     });
+    const auto is_same = [](const FeaturePair& x, const FeaturePair& y) { return x.a == y.a && x.b == y.b; };
+    pairs->erase(std::unique(pairs->begin(), pairs->end(), is_same), pairs->end());
   }
   measure_edges(motion);
   reference_ = motion.end;
@@ -204,24 +206,29 @@ void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is
 
 /// Marks the vertices at which the cloth makes a point, where it is at x.
 void Proximity::mark_sharp(const std::vector<Vec3>& x) {
-  std::vector<Vec3>& normal = fan_normal_;
-  normal.resize(num_cloth_triangles_);
+  fan_shape_.resize(num_cloth_triangles_);
   for (int t = 0; t < num_cloth_triangles_; ++t) {
     const auto [i, j, k] = surface_.triangles[t];
-    normal[t] = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
+    const Vec3 area = (x[j] - x[i]).cross(x[k] - x[i]);
+    const double longest_sq =
+        std::max({(x[j] - x[i]).squaredNorm(), (x[k] - x[j]).squaredNorm(), (x[i] - x[k]).squaredNorm()});
+    fan_shape_[t] = {area.stableNormalized(), longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0};
   }
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     Vec3 sum = Vec3::Zero();
-    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) sum += normal[surface_.fan[f]];
+    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f)
+      sum += fan_shape_[surface_.fan[f]].normal;
     const double length = sum.norm();
     for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
-      if (!(normal[surface_.fan[f]].dot(sum) >= kSharp * length)) is_sharp_[v] = 1;
+      const FanShape& shape = fan_shape_[surface_.fan[f]];
+      const double facing = shape.normal.dot(sum);
+      if (!(facing >= kSharp * length && facing * shape.height > 2 * slack_ * length)) is_sharp_[v] = 1;
     }
   }
 }
 
-/// Triangles that share a vertex are not reported by the tree. They matter only where the cloth makes a
-/// point.
+/// Triangles that share a vertex or an edge are not reported by the tree. They matter only where the cloth
+/// makes a point or a fold. Two that share an edge are found at both of its ends.
 void Proximity::add_fans(const SurfaceMotion& motion) {
   is_sharp_.assign(num_cloth_vertices_, 0);
   mark_sharp(motion.start);
@@ -230,10 +237,7 @@ void Proximity::add_fans(const SurfaceMotion& motion) {
     if (!is_sharp_[v]) continue;
     for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
       for (int g = f + 1; g < surface_.fan_begin[v + 1]; ++g) {
-        const int a = surface_.fan[f], b = surface_.fan[g];
-        if (num_shared_vertices(surface_.triangles[a], surface_.triangles[b]) == 1) {
-          add_pairs_of_triangles(motion, {a, b}, true);
-        }
+        add_pairs_of_triangles(motion, {surface_.fan[f], surface_.fan[g]}, true);
       }
     }
   }

@@ -66,6 +66,11 @@ class Proximity {
   void add_fans(const SurfaceMotion& motion);
   Aabb box_of_triangle(int triangle) const;
 
+  struct FanShape {
+    Vec3 normal;
+    double height;  // the least of three [m]
+  };
+
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
@@ -83,8 +88,8 @@ class Proximity {
   std::vector<Aabb> vertex_box_;
   std::vector<double> travel_;  // of each vertex during the step, against the common motion [m]
   PairSearch search_;
-  std::vector<char> is_sharp_;    // (num_cloth_vertices)
-  std::vector<Vec3> fan_normal_;  // (num_cloth_triangles)
+  std::vector<char> is_sharp_;       // (num_cloth_vertices)
+  std::vector<FanShape> fan_shape_;  // (num_cloth_triangles)
 };
 
 }  // namespace weft

@@ -42,7 +42,7 @@ std::optional<Impact> find(const At& at, double travel, const ImpactLimit& limit
   if (!found) return std::nullopt;
   const Closest& closest = found->place;
   const Vec3 normal = closest.distance > 0 ? Vec3(closest.offset / closest.distance) : Vec3(Vec3::UnitY());
-  return Impact{found->time, normal, closest.weights};
+  return Impact{found->time, found->distance_before, normal, closest.weights};
 }
 
 }  // namespace

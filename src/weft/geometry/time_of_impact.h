@@ -40,6 +40,7 @@ struct ImpactLimit {
 /// the start have their impact then.
 struct Impact {
   double time;                    // 0 to 1, from start to end
+  double distance_before;         // at the start [m]
   Vec3 normal;                    // from the second feature to the first, unit length
   std::array<double, 4> weights;  // of the features' corners: the first's positive, the second's negative
 };
@@ -60,12 +61,13 @@ template <class At>
 auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
   struct Found {
     double time;
+    double distance_before;
     decltype(at(0.0)) place;
   };
   constexpr double kShare = 0.9;
   constexpr int kMostAdvances = 20000;  // enough but for features that graze each other for long
-  Found now{0, at(0.0)};
-  const double start = now.place.distance;
+  Found now{0, 0, at(0.0)};
+  const double start = now.distance_before = now.place.distance;
   if (start - travel > 2 * limit.separation) return std::optional<Found>();
   const double gap = limit.gap(start), tolerance = limit.tolerance(start);
   for (int advance = 0; advance < kMostAdvances && start > 0; ++advance) {

@@ -26,6 +26,9 @@ std::string to_string(RunOutcome outcome) {
 
 std::string to_json(const RunReport& r) {
   const nlohmann::ordered_json null = nullptr;
+  const auto or_null = [](const auto& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+  };
   nlohmann::ordered_json json = {
       {"scene", r.scene},
       {"integrator", r.integrator},
@@ -43,10 +46,12 @@ std::string to_json(const RunReport& r) {
       {"max_strain", r.max_strain},
       {"min_strain", r.min_strain},
       {"mean_strain", r.mean_strain},
-      {"penetration_max", r.penetration_max ? nlohmann::ordered_json(*r.penetration_max) : null},
-      {"intersections", r.intersections ? nlohmann::ordered_json(*r.intersections) : null},
-      {"infeasible", null},
-      {"guard_events", r.guard_events ? nlohmann::ordered_json(*r.guard_events) : null},
+      {"penetration_max", or_null(r.penetration_max)},
+      {"intersections", or_null(r.intersections)},
+      {"infeasible", or_null(r.infeasible)},
+      {"contact_hits", or_null(r.contact_hits)},
+      {"contact_zones", or_null(r.contact_zones)},
+      {"guard_events", or_null(r.guard_events)},
       {"newton_steps", r.newton_steps.empty() ? null : nlohmann::ordered_json(r.newton_steps)},
       {"cg_iterations", r.cg_iterations.empty() ? null : nlohmann::ordered_json(r.cg_iterations)},
       {"state_hash", r.state_hash},

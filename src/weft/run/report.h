@@ -30,6 +30,11 @@ struct RunReport {
   std::vector<int> newton_steps;    // (frames) nonlinear iterations, all cloths [1]
   std::vector<int> cg_iterations;   // (frames) linear iterations inside them [1]
   std::optional<int> guard_events;  // how often the guard stepped in, over the run [1]
+  // What the last line of contact (contact/last_line.h) had to do, over the run; empty without contact:
+  std::optional<int> contact_hits;   // pairs of features left to it [1]
+  std::optional<int> contact_zones;  // zones that it moved rigidly [1]
+  std::optional<std::vector<std::string>>
+      infeasible;  // `frame 12: cloth "sheet" particle 7 and …`, the first
   // What the independent checker (verify/checker.h) found in the frames, the start not counted:
   std::optional<int>
       intersections;  // crossing pairs of triangles in the worst frame; empty without frames [1]
@@ -39,8 +44,7 @@ struct RunReport {
   std::vector<std::string> warnings;
 };
 
-/// The report as JSON text. What was not measured is null, as `infeasible` always is in this
-/// version.
+/// The report as JSON text. What was not measured is null.
 std::string to_json(const RunReport& report);
 
 /// Throws InputError if the file cannot be written.

@@ -16,6 +16,7 @@
 namespace weft {
 namespace {
 
+constexpr int kMostInfeasible = 100;     // listed in a report
 constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
 
 std::string hex(std::uint64_t value) {
@@ -172,12 +173,24 @@ class Run {
 
   void add_work(const StepReport& done, int frame) {
     RunReport& report = result_.report;
+    if (scene_.contact) add_contact(done, frame);
     if (done.guard_events) report.guard_events = report.guard_events.value_or(0) + *done.guard_events;
     if (!done.linear_iterations) return;
     report.newton_steps.resize(frame, 0);
     report.cg_iterations.resize(frame, 0);
     report.newton_steps.back() += done.iterations;
     report.cg_iterations.back() += *done.linear_iterations;
+  }
+
+  void add_contact(const StepReport& done, int frame) {
+    RunReport& report = result_.report;
+    report.contact_hits = report.contact_hits.value_or(0) + done.hits;
+    report.contact_zones = report.contact_zones.value_or(0) + done.zones;
+    if (!report.infeasible) report.infeasible.emplace();
+    for (const std::string& pair : done.infeasible) {
+      if (static_cast<int>(report.infeasible->size()) == kMostInfeasible) break;
+      report.infeasible->push_back("frame " + std::to_string(frame) + ": " + pair);
+    }
   }
 
   void finish() {

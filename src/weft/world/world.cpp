@@ -211,8 +211,29 @@ void World::advance(double time, double dt, StepReport& report) {
   // What has come too close all the same.
   if (!contact_) return;
   contact_system_.hold_off(*jobs_);
+  // What would still go through anything.
+  stop_crossings(report);
   const int wild = contact_system_.wild_cloth();
   if (wild >= 0) is_wild_[wild] = 1;
+}
+
+void World::stop_crossings(StepReport& report) {
+  const LastLineReport stopped = contact_system_.stop_crossings(*jobs_);
+  report.hits += stopped.hits;
+  report.zones += stopped.zones;
+  for (const Infeasible& pair : stopped.infeasible) report.infeasible.push_back(describe(pair));
+}
+
+/// `cloth "sheet" particle 12 and collider "ball"`
+std::string World::describe(const Infeasible& pair) const {
+  const auto name_of = [&](int vertex) {
+    const ContactSystem::Place place = contact_system_.place_of(vertex);
+    if (place.cloth < 0) return "collider \"" + colliders_[place.collider].name + '"';
+    return "cloth \"" + cloths_[place.cloth].name + "\" particle " + std::to_string(place.index);
+  };
+  const std::string other =
+      pair.shape >= 0 ? "collider \"" + colliders_[pair.shape].name + '"' : name_of(pair.other);
+  return name_of(pair.vertex) + " and " + other;
 }
 
 StepReport World::step(double dt) {

@@ -51,6 +51,9 @@ struct StepReport {
   int iterations = 0;                    // of nonlinear solvers, all cloths [1]
   std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
   std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
+  int hits = 0;                          // pairs left to the last line of contact (contact/last_line.h) [1]
+  int zones = 0;                         // zones that it moved rigidly [1]
+  std::vector<std::string> infeasible;   // what prescribed motions have pushed through each other, by name
 };
 
 class World {
@@ -125,6 +128,8 @@ class World {
   int num_substeps(double dt) const;
   void advance(double time, double dt, StepReport& report);
   void begin_contact(double time, double dt);
+  void stop_crossings(StepReport& report);
+  std::string describe(const Infeasible& pair) const;
   void save(Snapshot& snapshot) const;
   void aim_pins(Cloth& cloth, double time);
 

@@ -1,0 +1,386 @@
+#include "weft/contact/last_line.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "weft/geometry/distance.h"
+
+namespace weft {
+namespace {
+
+constexpr int kPairGrain = 1024;     // pairs per chunk
+constexpr int kPushRounds = 10;      // of impulses, each followed by a search for new impacts
+constexpr int kPushPasses = 20;      // over all impulses in a round
+constexpr int kZoneRounds = 60;      // zones halve what is not rigid, and grow
+constexpr double kLeastShare = 0.1;  // of the rest of a zone's motion: below, it moves rigidly
+
+/// Features keep this share of what they are held apart by; where that is little, the floor [m].
+constexpr double kSeparation = 0.1;
+constexpr double kFloor = 1e-5;
+
+/// Found nearer than their separation at the start, they are set apart by this share of what lacks.
+constexpr double kRecovery = 0.2;
+
+/// Of positions that are stored as floats, relative to their size [1].
+constexpr double kRounding = 1.2e-7;
+
+/// The pair's distance that its impulse asks for [m].
+double target_for(const ImpactLimit& limit, double start) {
+  const double recovered = start + kRecovery * (limit.separation - start);
+  return std::max(limit.gap(start) + 2 * limit.tolerance(start), std::min(limit.separation, recovered));
+}
+
+/// The rigid motion x ↦ R (x − from) + to that takes weighted points nearest to where they go.
+class RigidFit {
+ public:
+  void add(double weight, const Vec3& start, const Vec3& end) {
+    weights_ += weight;
+    points_.push_back({weight, start, end});
+    from_ += weight * start;
+    to_ += weight * end;
+  }
+
+  void solve() {
+    from_ /= weights_;
+    to_ /= weights_;
+    Mat3 covariance = Mat3::Zero();
+    for (const Point& p : points_) covariance += p.weight * (p.end - to_) * (p.start - from_).transpose();
+    const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Vec3 signs = Vec3::Ones();
+    if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
+    rotation_ = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  }
+
+  Vec3 apply(const Vec3& x) const { return to_ + rotation_ * (x - from_); }
+
+ private:
+  struct Point {
+    double weight;
+    Vec3 start, end;
+  };
+
+  double weights_ = 0;
+  std::vector<Point> points_;
+  Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();
+  Mat3 rotation_ = Mat3::Identity();
+};
+
+TriangleSignedDistance signed_distance_to(const ColliderShape& shape, const std::array<Vec3, 3>& x,
+                                          double reach) {
+  return std::visit(
+      [&](const auto& s) -> TriangleSignedDistance {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) {
+          return {kNoReach, Vec3::UnitX(), Vec3::UnitY()};
+        } else {
+          return signed_distance(s, x[0], x[1], x[2], reach);
+        }
+      },
+      shape);
+}
+
+}  // namespace
+
+LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion,
+                              JobSystem& jobs) {
+  step_ = step;
+  proximity_ = &proximity;
+  motion_ = &motion;
+  only_moved_ = false;
+  is_moved_.assign(motion.end.size(), 0);
+  LastLineReport report;
+  parent_.clear();
+  find_hits(jobs, report);
+  report.hits = static_cast<int>(hits_.size());
+  if (!hits_.empty()) push_apart(jobs, report);
+  if (!hits_.empty()) join_zones(jobs, report);
+  proximity.update(motion, jobs);
+  return report;
+}
+
+/// Of all pairs, or those with a vertex that has moved since.
+void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
+  hits_.clear();
+  proximity_->update(*motion_, jobs);
+  const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& test) {
+    const int count = static_cast<int>(pairs.size());
+    const std::size_t num_chunks = (count + kPairGrain - 1) / kPairGrain;
+    if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
+    parallel_for(jobs, count, kPairGrain, [&](int begin, int end) {
+      std::vector<Hit>& chunk = chunks_[begin / kPairGrain];
+      chunk.clear();
+      Hit hit;
+      for (int p = begin; p < end; ++p) {
+        if (test(pairs[p], hit)) chunk.push_back(hit);
+      }
+    });
+    for (std::size_t k = 0; k < num_chunks; ++k)
+      hits_.insert(hits_.end(), chunks_[k].begin(), chunks_[k].end());
+  };
+  collect(proximity_->vertex_triangle(),
+          [&](const FeaturePair& pair, Hit& hit) { return test_vertex_triangle(pair, hit); });
+  collect(proximity_->edge_edge(),
+          [&](const FeaturePair& pair, Hit& hit) { return test_edge_edge(pair, hit); });
+  for (int s = 0; s < static_cast<int>(step_.shapes->size()); ++s) {
+    if (!(*step_.shapes)[s].is_mesh()) find_shape_hits(s);
+  }
+  std::fill(is_moved_.begin(), is_moved_.end(), char{0});
+  only_moved_ = true;
+  // What nobody may move.
+  std::erase_if(hits_, [&](const Hit& hit) {
+    if (hit.constraint.inverse_mass > 0) return false;
+    add_infeasible(hit, report);
+    return true;
+  });
+}
+
+void LastLine::add_infeasible(const Hit& hit, LastLineReport& report) const {
+  const Constraint& c = hit.constraint;
+  report.infeasible.push_back({c.vertex[0], c.shape >= 0 ? -1 : c.vertex[3], c.shape});
+}
+
+bool LastLine::is_asked_for(const std::array<int, 4>& vertices, int count) const {
+  if (!only_moved_) return true;
+  return std::any_of(vertices.begin(), vertices.begin() + count, [&](int v) { return is_moved_[v] != 0; });
+}
+
+/// All of one zone, and what moves rigidly meets nothing of its own: the straight lines between are an affine
+/// map at every time.
+bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
+  if (parent_.empty()) return false;
+  const auto root = [&](int v) { return v < num_cloth_vertices() ? find_root(v) : -1; };
+  const int first = root(vertices[0]);
+  return first >= 0 && share_[first] == 0 && root(vertices[1]) == first && root(vertices[2]) == first &&
+         root(vertices[3]) == first;
+}
+
+/// `thickness` is what contact holds the pair apart by; `vertex` is one of the pair's.
+ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
+  const int cloth = cloth_of(std::min(vertex, num_cloth_vertices() - 1));
+  const Vec3 offset = motion_->start[vertex] - (*step_.origins)[cloth];
+  const double separation = std::max(kSeparation * thickness, kFloor);
+  return {separation, std::min(kFloor, separation), kRounding * (1 + offset.norm())};
+}
+
+bool LastLine::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
+  const auto [i, j, k] = proximity_->surface().triangles[pair.b];
+  const std::array<int, 4> vertex = {i, j, k, pair.a};
+  return test_pair(pair, vertex, find_vertex_triangle_impact, hit);
+}
+
+bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
+  const std::array<int, 2>&a = proximity_->surface().edges[pair.a], &b = proximity_->surface().edges[pair.b];
+  const std::array<int, 4> vertex = {a[0], a[1], b[0], b[1]};
+  return test_pair(pair, vertex, find_edge_edge_impact, hit);
+}
+
+template <class Find>
+bool LastLine::test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find,
+                         Hit& hit) const {
+  if (!is_asked_for(vertex, 4) || is_rigid(vertex)) return false;
+  const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
+  const double thickness = motion_->half_thickness[vertex[0]] + motion_->half_thickness[vertex[3]];
+  const ImpactLimit limit = limit_for(std::min(thickness, double{pair.max_gap}), vertex[0]);
+  const std::optional<Impact> impact = find({x[vertex[0]], x[vertex[1]], x[vertex[2]], x[vertex[3]]},
+                                            {y[vertex[0]], y[vertex[1]], y[vertex[2]], y[vertex[3]]}, limit);
+  if (!impact || impact->distance_before <= 0) return false;
+  Constraint& c = hit.constraint;
+  c = {};
+  c.num_vertices = 4;
+  c.vertex = vertex;
+  c.weight = impact->weights;
+  c.normal = impact->normal;
+  c.target = target_for(limit, impact->distance_before);
+  c.inverse_mass = c.inverse_mass_of(*step_.inverse_mass);
+  return true;
+}
+
+void LastLine::find_shape_hits(int s) {
+  const MovingShape& shape = (*step_.shapes)[s];
+  const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
+  const bool is_still = shape.collider->motion.is_still();
+  const bool is_plane = std::holds_alternative<Plane>(shape.before);
+  const double reach = is_plane ? 0 : proximity_->longest_edge();
+  is_near_.assign(num_cloth_vertices(), 0);
+  bool is_any_near = false;
+  for (int v = 0; v < num_cloth_vertices(); ++v) {
+    const double travel = (is_still ? y[v] - x[v] : shape.at_start(y[v]) - x[v]).norm();
+    const double most = travel + reach + 2 * limit_for(motion_->half_thickness[v], v).separation;
+    if (signed_distance(shape.before, x[v]).distance > most) continue;
+    is_near_[v] = 1;
+    is_any_near = true;
+  }
+  if (!is_any_near) return;
+  Hit hit;
+  for (const Triangle& t : proximity_->surface().triangles) {
+    if (t[0] >= num_cloth_vertices()) break;
+    if (!is_near_[t[0]] && !is_near_[t[1]] && !is_near_[t[2]]) continue;
+    if (!is_asked_for({t[0], t[1], t[2], 0}, 3)) continue;
+    if (test_triangle_shape(s, t, hit)) hits_.push_back(hit);
+  }
+}
+
+/// In the shape's own frame, where it stays and the triangle moves in straight lines. What is in the shape at
+/// the start may be as deep at the end.
+bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
+  const MovingShape& shape = (*step_.shapes)[s];
+  std::array<Vec3, 3> x, way;
+  double travel = 0;
+  for (int k = 0; k < 3; ++k) {
+    x[k] = motion_->start[t[k]];
+    way[k] = shape.at_start(motion_->end[t[k]]) - x[k];
+    travel = std::max(travel, way[k].norm());
+  }
+  const ImpactLimit limit = limit_for(motion_->half_thickness[t[0]], t[0]);
+  const double reach = travel + 3 * limit.separation;
+  const TriangleSignedDistance before = signed_distance_to(shape.before, x, reach);
+  const double lift = std::max(0.0, limit.floor - before.distance);
+  struct Place {
+    double distance;
+    TriangleSignedDistance nearest;
+  };
+  const auto at = [&](double time) -> Place {
+    const TriangleSignedDistance d = signed_distance_to(
+        shape.before, {x[0] + time * way[0], x[1] + time * way[1], x[2] + time * way[2]}, reach);
+    return {d.distance + lift, d};
+  };
+  const auto impact = find_impact(at, travel, limit);
+  if (!impact) return false;
+  const TriangleSignedDistance& d = impact->place.nearest;
+  const Vec3 foot = point_at(d.weights, x[0] + impact->time * way[0], x[1] + impact->time * way[1],
+                             x[2] + impact->time * way[2]) -
+                    d.distance * d.normal;
+  hit.foot_start = foot;
+  hit.foot_end = shape.at_end(foot);
+  Constraint& c = hit.constraint;
+  c = {};
+  c.num_vertices = 3;
+  c.vertex = {t[0], t[1], t[2], 0};
+  c.weight = {d.weights[0], d.weights[1], d.weights[2], 0};
+  c.normal = shape.pose_after.rotation * shape.pose_before.rotation.transpose() * d.normal;
+  c.target = c.normal.dot(hit.foot_end) + target_for(limit, before.distance + lift) - lift;
+  c.shape = s;
+  c.inverse_mass = c.inverse_mass_of(*step_.inverse_mass);
+  return true;
+}
+
+/// To the nearest place that can be stored.
+void LastLine::move(int vertex, const Vec3& to) {
+  const Vec3& origin = (*step_.origins)[cloth_of(vertex)];
+  motion_->end[vertex] = origin + (to - origin).cast<float>().cast<double>();
+  is_moved_[vertex] = 1;
+}
+
+void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
+  pushes_.clear();
+  pushed_ = motion_->end;
+  for (int round = 0; round < kPushRounds && !hits_.empty(); ++round) {
+    for (const Hit& hit : hits_) pushes_.push_back(hit.constraint);
+    project_positions(*step_.inverse_mass, kPushPasses, pushes_, pushed_);
+    for (const Constraint& c : pushes_) {
+      for (int k = 0; k < c.num_vertices; ++k) {
+        if ((*step_.inverse_mass)[c.vertex[k]] > 0) move(c.vertex[k], pushed_[c.vertex[k]]);
+      }
+    }
+    find_hits(jobs, report);
+  }
+}
+
+void LastLine::join_zones(JobSystem& jobs, LastLineReport& report) {
+  wanted_.assign(motion_->end.begin(), motion_->end.begin() + num_cloth_vertices());
+  parent_.assign(num_cloth_vertices(), -1);
+  share_.assign(num_cloth_vertices(), 1.0);
+  guides_.clear();
+  for (int round = 0; round < kZoneRounds && !hits_.empty(); ++round) {
+    has_grown_ = false;
+    is_halved_.assign(num_cloth_vertices(), 0);
+    for (const Hit& hit : hits_) add_to_zones(hit);
+    if (!has_grown_) break;
+    gather_zones();
+    for (const Zone& zone : zones_) scale_zone(zone);
+    find_hits(jobs, report);
+  }
+  for (const Hit& hit : hits_) add_infeasible(hit, report);
+  report.zones = static_cast<int>(zones_.size());
+  for (const Zone& zone : zones_) report.zone_vertices += static_cast<int>(zone.vertices.size());
+}
+
+int LastLine::find_root(int vertex) const {
+  int root = vertex;
+  if (parent_[root] < 0) return -1;
+  while (parent_[root] != root) root = parent_[root];
+  return root;
+}
+
+/// Its vertices become one zone, which keeps half of what it kept of its own motion.
+void LastLine::add_to_zones(const Hit& hit) {
+  const Constraint& c = hit.constraint;
+  int root = -1;
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    if (v >= num_cloth_vertices() || (*step_.inverse_mass)[v] == 0) continue;
+    if (parent_[v] < 0) {
+      parent_[v] = v;
+      has_grown_ = true;
+    }
+    const int other = find_root(v);
+    if (root < 0 || root == other) {
+      root = other;
+      continue;
+    }
+    parent_[other] = root;
+    share_[root] = std::min(share_[root], share_[other]);
+    is_halved_[root] |= is_halved_[other];
+    has_grown_ = true;
+  }
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    if (v < num_cloth_vertices() && (*step_.inverse_mass)[v] > 0) continue;
+    guides_.push_back({root, motion_->start[v], motion_->end[v]});
+  }
+  if (c.shape >= 0) guides_.push_back({root, hit.foot_start, hit.foot_end});
+  if (is_halved_[root] || share_[root] == 0) return;
+  is_halved_[root] = 1;
+  has_grown_ = true;
+  share_[root] = share_[root] > kLeastShare ? share_[root] / 2 : 0;
+}
+
+void LastLine::gather_zones() {
+  zones_.clear();
+  std::vector<int> zone_of(parent_.size(), -1);
+  for (int v = 0; v < num_cloth_vertices(); ++v) {
+    const int root = find_root(v);
+    if (root < 0) continue;
+    if (zone_of[root] < 0) {
+      zone_of[root] = static_cast<int>(zones_.size());
+      zones_.push_back({root, {}, {}});
+    }
+    zones_[zone_of[root]].vertices.push_back(v);
+  }
+  for (const Guide& guide : guides_) zones_[zone_of[find_root(guide.vertex)]].guides.push_back(&guide);
+}
+
+/// Guides count so much more than the zone's own motion that this only decides what they leave open.
+void LastLine::scale_zone(const Zone& zone) {
+  constexpr double kGuideWeight = 1e6;
+  RigidFit fit;
+  double mass = 0;
+  for (const int v : zone.vertices) {
+    const double m = 1 / (*step_.inverse_mass)[v];
+    mass += m;
+    fit.add(m, motion_->start[v], wanted_[v]);
+  }
+  for (const Guide* guide : zone.guides) fit.add(kGuideWeight * mass, guide->start, guide->end);
+  fit.solve();
+  for (const int v : zone.vertices) {
+    const Vec3 rigid = fit.apply(motion_->start[v]);
+    move(v, rigid + share_[zone.root] * (wanted_[v] - rigid));
+  }
+}
+
+int LastLine::cloth_of(int vertex) const {
+  const std::vector<int>& first = *step_.first_vertex;
+  return static_cast<int>(std::upper_bound(first.begin(), first.end(), vertex) - first.begin()) - 1;
+}
+
+}  // namespace weft
