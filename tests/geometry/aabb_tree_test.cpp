@@ -136,6 +136,40 @@ TEST_P(EveryLevelAndThread, RefittedTreeEqualsBruteForce) {
   EXPECT_GT(tree.looseness(), 2.0) << "items that have changed places make a tree loose";
 }
 
+TEST_P(EveryLevelAndThread, PairsThatMayMeetEqualBruteForce) {
+  // Half of them fly together, as cloth does; what is reported may not depend on the common part.
+  for (const auto& [name, boxes] : inputs()) {
+    if (name == "huge" || name == "of all sizes" || name == "empty boxes") continue;
+    Random random(5);
+    std::vector<MovingAabb> moving;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const Vec3 way = (i % 2 ? Vec3(3, -2, 1) : Vec3::Zero()) + test::random_vector(random, 0.05);
+      moving.push_back({boxes[i], box_around(way, 0.01)});
+    }
+    AabbTree tree, other;
+    tree.build(boxes, {}, *jobs_);
+    tree.refit([&](int i) { return moving[i]; }, *jobs_);
+    other.build(boxes, {}, *jobs_);
+    other.refit([&](int i) { return moving[i]; }, *jobs_);
+    std::vector<ItemPair> self_pairs, all_pairs;
+    for (int a = 0; a < static_cast<int>(boxes.size()); ++a) {
+      for (int b = 0; b < static_cast<int>(boxes.size()); ++b) {
+        if (!moving[a].may_meet(moving[b])) continue;
+        all_pairs.push_back({a, b});
+        if (a < b) self_pairs.push_back({a, b});
+      }
+    }
+    PairSearch search;
+    tree.find_self_pairs(*jobs_, search);
+    EXPECT_EQ(sorted(search.pairs), self_pairs) << name;
+    tree.find_pairs(other, *jobs_, search);
+    EXPECT_EQ(sorted(search.pairs), all_pairs) << name;
+    tree.refit([&](int i) { return boxes[i]; }, *jobs_);
+    tree.find_self_pairs(*jobs_, search);
+    EXPECT_EQ(sorted(search.pairs), brute_self_pairs(boxes, {})) << name << ", at rest again";
+  }
+}
+
 TEST_P(EveryLevelAndThread, OrderOfPairsDoesNotDependOnThreadsOrVectors) {
   const Boxes boxes = inputs()[7].second;
   const auto serial = make_serial_jobs();
@@ -153,6 +187,33 @@ INSTANTIATE_TEST_SUITE_P(AabbTree, EveryLevelAndThread,
                          testing::Combine(testing::Values(SimdLevel::baseline, SimdLevel::avx2,
                                                           SimdLevel::avx512),
                                           testing::Values(1, 3)));
+
+TEST(MovingAabb, MeetsWhateverAWalkThroughTheStepFindsOverlapping) {
+  Random random(9);
+  int met = 0, apart = 0;
+  for (int i = 0; i < 20000; ++i) {
+    MovingAabb a, b;
+    for (MovingAabb* m : {&a, &b}) {
+      const Vec3 at = test::random_vector(random, 1), way = test::random_vector(random, 1);
+      *m = {box_around(at, 0.1), box_around(way, 0)};
+    }
+    bool walk_meets = false;
+    for (int s = 0; s <= 50 && !walk_meets; ++s) {
+      const float t = static_cast<float>(s) / 50;
+      bool overlap = true;
+      for (int k = 0; k < 3; ++k) {
+        const float shift = t * (b.way.min[k] - a.way.min[k]);
+        overlap &= a.box.min[k] <= b.box.max[k] + shift && b.box.min[k] + shift <= a.box.max[k];
+      }
+      walk_meets = overlap;
+    }
+    EXPECT_TRUE(!walk_meets || a.may_meet(b)) << i;
+    EXPECT_EQ(a.may_meet(b), b.may_meet(a)) << i;
+    walk_meets ? ++met : ++apart;
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_GT(apart, 100);
+}
 
 TEST(AabbTree, BoxQueryVisitsWhatOverlaps) {
   Random random(11);

@@ -32,7 +32,7 @@ void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_ver
   num_cloth_triangles_ = num_cloth_triangles;
   slack_ = slack;
   cloth_tree_ = body_tree_ = AabbTree();
-  reference_.clear();
+  made_for_.end.clear();
 }
 
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
@@ -40,38 +40,40 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
   rebuild(motion, jobs);
 }
 
+/// Whatever two features do in straight lines, each corner stays within the slack of where it was in the
+/// motion that the lists were made for, at every time.
 bool Proximity::still_holds(const SurfaceMotion& motion) {
-  if (reference_.size() != motion.end.size() || motion.half_thickness != half_thickness_) return false;
-  for (const std::vector<Vec3>* places : {&motion.start, &motion.end}) {
-    Vec3 mean = Vec3::Zero();
-    for (int v = 0; v < num_cloth_vertices_; ++v) mean += (*places)[v] - reference_[v];
-    mean /= std::max(1, num_cloth_vertices_);
-    double farthest_sq = 0;
-    for (std::size_t v = 0; v < reference_.size(); ++v) {
-      farthest_sq = std::max(farthest_sq, ((*places)[v] - reference_[v] - mean).squaredNorm());
-    }
-    if (farthest_sq > slack_ * slack_) return false;
-  }
-  return true;
+  if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness)
+    return false;
+  return is_within_slack(motion.start, made_for_.start) && is_within_slack(motion.end, made_for_.end);
+}
+
+/// But for what all cloth has moved in common.
+bool Proximity::is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const {
+  Vec3 mean = Vec3::Zero();
+  for (int v = 0; v < num_cloth_vertices_; ++v) mean += x[v] - reference[v];
+  mean /= std::max(1, num_cloth_vertices_);
+  double farthest_sq = 0;
+  for (std::size_t v = 0; v < x.size(); ++v)
+    farthest_sq = std::max(farthest_sq, (x[v] - reference[v] - mean).squaredNorm());
+  return farthest_sq <= slack_ * slack_;
 }
 
 void Proximity::box_vertices(const SurfaceMotion& motion) {
-  drift_ = Vec3::Zero();
-  for (int v = 0; v < num_cloth_vertices_; ++v) drift_ += motion.end[v] - motion.start[v];
-  drift_ /= std::max(1, num_cloth_vertices_);
+  constexpr double kRounding = 1e-6;  // of sums of floats, relative to the size of what is looked at
   const std::size_t n = motion.start.size();
   vertex_box_.resize(n);
-  travel_.resize(n);
+  const Vec3 origin = motion.start[0];
   for (std::size_t v = 0; v < n; ++v) {
-    const Vec3 a = motion.start[v] - motion.start[0], b = motion.end[v] - drift_ - motion.start[0];
-    travel_[v] = (b - a).norm();
-    vertex_box_[v] = make_aabb(a.cwiseMin(b), a.cwiseMax(b), motion.half_thickness[v] + slack_);
+    const Vec3 at = motion.start[v] - origin, way = motion.end[v] - motion.start[v];
+    const double margin = motion.half_thickness[v] + slack_ + kRounding * (at.norm() + way.norm());
+    vertex_box_[v] = {make_aabb(at, at, margin), make_aabb(way, way)};
   }
 }
 
-Aabb Proximity::box_of_triangle(int triangle) const {
+MovingAabb Proximity::box_of_triangle(int triangle) const {
   const Triangle& t = surface_.triangles[triangle];
-  Aabb box = vertex_box_[t[0]];
+  MovingAabb box = vertex_box_[t[0]];
   box.merge(vertex_box_[t[1]]);
   box.merge(vertex_box_[t[2]]);
   return box;
@@ -79,37 +81,44 @@ Aabb Proximity::box_of_triangle(int triangle) const {
 
 /// Over the triangles [begin, end).
 void Proximity::fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
+  const auto box_of = [&](int item) { return box_of_triangle(begin + item); };
   if (tree.num_items() == end - begin) {
-    tree.refit([&](int item) { return box_of_triangle(begin + item); }, jobs);
+    tree.refit(box_of, jobs);
     if (tree.looseness() < kLoosest) return;
   }
   std::vector<Aabb> boxes;
-  for (int t = begin; t < end; ++t) boxes.push_back(box_of_triangle(t));
+  for (int t = begin; t < end; ++t) boxes.push_back(box_of_triangle(t).box);
   tree.build(boxes, {surface_.triangles.begin() + begin, surface_.triangles.begin() + end}, jobs);
+  tree.refit(box_of, jobs);
 }
 
 /// -1 if cloth moves against itself by less than its own size on the average.
 int Proximity::find_wildest(const SurfaceMotion& motion) const {
   if (num_cloth_vertices_ == 0) return -1;
-  Vec3 low = motion.start[0], high = low;
-  double sum = 0;
+  Vec3 low = motion.start[0], high = low, drift = Vec3::Zero();
+  for (int v = 0; v < num_cloth_vertices_; ++v) drift += motion.end[v] - motion.start[v];
+  drift /= num_cloth_vertices_;
+  double sum = 0, farthest = 0;
   int wildest = 0;
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     low = low.cwiseMin(motion.start[v]);
     high = high.cwiseMax(motion.start[v]);
-    sum += travel_[v];
-    if (!(travel_[v] <= travel_[wildest])) wildest = v;
+    const double travel = (motion.end[v] - motion.start[v] - drift).norm();
+    sum += travel;
+    if (travel <= farthest) continue;
+    farthest = travel;
+    wildest = v;
   }
   const double size = num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : kFarthest;
   return sum <= num_cloth_vertices_ * size ? -1 : wildest;
 }
 
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
-  box_vertices(motion);
   vertex_triangle_.clear();
   edge_edge_.clear();
   wildest_ = find_wildest(motion);
-  if (wildest_ >= 0) return reference_.clear();
+  if (wildest_ >= 0) return made_for_.end.clear();
+  box_vertices(motion);
   const int num_triangles = static_cast<int>(surface_.triangles.size());
   fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
   cloth_tree_.find_self_pairs(jobs, search_);
@@ -131,8 +140,7 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
     pairs->erase(std::unique(pairs->begin(), pairs->end(), is_same), pairs->end());
   }
   measure_edges(motion);
-  reference_ = motion.end;
-  half_thickness_ = motion.half_thickness;
+  made_for_ = motion;
 }
 
 /// Each end may move by the slack before this is done again.
@@ -162,10 +170,18 @@ void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPa
   }
 }
 
-/// How near two features must be at the start to become close during the step, but for their travel; v and w
-/// are any vertices of theirs.
-double Proximity::reach_between(const SurfaceMotion& motion, int v, int w) const {
-  return motion.half_thickness[v] + motion.half_thickness[w] + 2 * slack_;
+/// How near two features must be at the start to become close during the step: a and b are their corners.
+/// However far both move, only what they move against each other brings them nearer.
+template <std::size_t kA, std::size_t kB>
+double Proximity::reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
+                                const std::array<int, kB>& b) const {
+  double travel_sq = 0;
+  for (const int v : a) {
+    const Vec3 way = motion.end[v] - motion.start[v];
+    for (const int w : b)
+      travel_sq = std::max(travel_sq, (way - (motion.end[w] - motion.start[w])).squaredNorm());
+  }
+  return motion.half_thickness[a[0]] + motion.half_thickness[b[0]] + 2 * slack_ + std::sqrt(travel_sq);
 }
 
 /// distance(x) is that of the two features where vertices are at x. Neighbours on the mesh, in one fan, may
@@ -179,29 +195,26 @@ void Proximity::add_pair(const SurfaceMotion& motion, FeaturePair pair, double r
 }
 
 void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan) {
-  if (!vertex_box_[vertex].overlaps(box_of_triangle(triangle))) return;
+  if (!vertex_box_[vertex].may_meet(box_of_triangle(triangle))) return;
   const Triangle& t = surface_.triangles[triangle];
-  const double reach = reach_between(motion, vertex, t[0]) + travel_[vertex] +
-                       std::max({travel_[t[0]], travel_[t[1]], travel_[t[2]]});
   const auto distance = [&](const std::vector<Vec3>& x) {
     return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
   };
+  const double reach = reach_between(motion, std::array{vertex}, t);
   add_pair(motion, {vertex, triangle}, reach, is_fan, distance, vertex_triangle_);
 }
 
 void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan) {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
-  Aabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
+  MovingAabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
   box_a.merge(vertex_box_[e[1]]);
   box_b.merge(vertex_box_[f[1]]);
-  if (!box_a.overlaps(box_b)) return;
-  const double reach = reach_between(motion, e[0], f[0]) + std::max(travel_[e[0]], travel_[e[1]]) +
-                       std::max(travel_[f[0]], travel_[f[1]]);
+  if (!box_a.may_meet(box_b)) return;
   const auto distance = [&](const std::vector<Vec3>& x) {
     return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
   };
-  add_pair(motion, {a, b}, reach, is_fan, distance, edge_edge_);
+  add_pair(motion, {a, b}, reach_between(motion, e, f), is_fan, distance, edge_edge_);
 }
 
 /// Marks the vertices at which the cloth makes a point, where it is at x.

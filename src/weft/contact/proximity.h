@@ -22,10 +22,10 @@ struct FeaturePair {
   float max_gap = std::numeric_limits<float>::infinity();  // neighbours on the mesh may come this close [m]
 };
 
-/// Finds close pairs with an AABB tree, and keeps them as long as nothing has moved farther than `slack`:
-/// most steps only look whether that still holds. All is seen from a frame that moves with the cloth on the
-/// average, so that free fall keeps its pairs. A list may hold pairs that are not close, never misses one
-/// that is, and is in a fixed order.
+/// Finds close pairs with an AABB tree of moving boxes: what moves together does not meet, however fast it
+/// is. The lists are kept as long as all vertices move as they did then, to within `slack`, or so but for a
+/// motion that is common to all cloth: many steps only look whether that still holds. A list may hold pairs
+/// that are not close, never misses one that is, and is in a fixed order.
 class Proximity {
  public:
   /// The first `num_cloth_triangles` triangles are cloth, the first `num_cloth_vertices` vertices too; the
@@ -50,6 +50,7 @@ class Proximity {
 
  private:
   bool still_holds(const SurfaceMotion& motion);
+  bool is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
   void measure_edges(const SurfaceMotion& motion);
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
   void box_vertices(const SurfaceMotion& motion);
@@ -61,10 +62,12 @@ class Proximity {
   template <class Distance>
   void add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
                 const Distance& distance, std::vector<FeaturePair>& pairs);
-  double reach_between(const SurfaceMotion& motion, int v, int w) const;
+  template <std::size_t kA, std::size_t kB>
+  double reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
+                       const std::array<int, kB>& b) const;
   void mark_sharp(const std::vector<Vec3>& x);
   void add_fans(const SurfaceMotion& motion);
-  Aabb box_of_triangle(int triangle) const;
+  MovingAabb box_of_triangle(int triangle) const;
 
   struct FanShape {
     Vec3 normal;
@@ -77,16 +80,13 @@ class Proximity {
   double slack_ = 0;
 
   AabbTree cloth_tree_, body_tree_;
-  std::vector<Vec3> reference_;         // (num_vertices) where the lists were made, empty if there are none
-  std::vector<double> half_thickness_;  // (num_vertices) for which they were made [m]
+  SurfaceMotion made_for_;  // what the lists were made for; nothing in it if there are none
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   double longest_edge_ = 0;  // [m]
   int wildest_ = -1;
 
   // Work space of rebuild().
-  Vec3 drift_ = Vec3::Zero();
-  std::vector<Aabb> vertex_box_;
-  std::vector<double> travel_;  // of each vertex during the step, against the common motion [m]
+  std::vector<MovingAabb> vertex_box_;
   PairSearch search_;
   std::vector<char> is_sharp_;       // (num_cloth_vertices)
   std::vector<FanShape> fan_shape_;  // (num_cloth_triangles)

@@ -62,6 +62,27 @@ struct Aabb {
   }
 };
 
+/// What is somewhere in `box` at first and moves by something in `way`, in a straight line.
+struct MovingAabb {
+  Aabb box;  // at the start [m]
+  Aabb way;  // displacements, not places [m]
+
+  /// False if nothing in the one can be where something in the other is at the same time: however far both
+  /// move, only what they move against each other counts. Six comparisons at most.
+  bool may_meet(const MovingAabb& other) const {
+    for (int k = 0; k < 3; ++k) {
+      if (box.min[k] > other.box.max[k] + std::max(0.0f, other.way.max[k] - way.min[k])) return false;
+      if (other.box.min[k] > box.max[k] + std::max(0.0f, way.max[k] - other.way.min[k])) return false;
+    }
+    return true;
+  }
+
+  void merge(const MovingAabb& other) {
+    box.merge(other.box);
+    way.merge(other.way);
+  }
+};
+
 /// The next larger float: what std::nextafter(x, infinity) gives for any x below infinity, and faster.
 inline float next_above(float x) {
   if (x == 0) return std::numeric_limits<float>::denorm_min();

@@ -104,6 +104,8 @@ using aabb_tree::kLanes;
 struct TreeView {
   const aabb_tree::Node* nodes;
   const aabb_tree::Leaf* leaves;
+  const Aabb* node_ways;
+  const aabb_tree::LeafWays* leaf_ways;
 };
 
 constexpr unsigned kBit[kLanes] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -120,6 +122,26 @@ WEFT_ALWAYS_INLINE unsigned find_overlapping(const Leaf& leaf, const float* min,
                               (min_z <= leaf.max[2][j]) & (leaf.min[2][j] <= max_z);
     bits |= kBit[j] & (0u - overlaps);
   }
+  return bits;
+}
+
+/// Bit j: the leaf's item j may meet what is in the box from min to max and moves by way_min to way_max.
+template <class Leaf>
+WEFT_ALWAYS_INLINE unsigned find_meeting(const Leaf& leaf, const aabb_tree::LeafWays& ways, const float* min,
+                                         const float* max, const float* way_min, const float* way_max) {
+  unsigned apart[kLanes] = {};
+  for (int k = 0; k < 3; ++k) {
+    const float low = min[k], high = max[k], least = way_min[k], most = way_max[k];
+    WEFT_ROLLED
+    for (int j = 0; j < kLanes; ++j) {
+      const float ahead = ways.max[k][j] - least, behind = most - ways.min[k][j];
+      apart[j] |= static_cast<unsigned>(low > leaf.max[k][j] + (ahead > 0 ? ahead : 0.0f)) |
+                  static_cast<unsigned>(leaf.min[k][j] > high + (behind > 0 ? behind : 0.0f));
+    }
+  }
+  unsigned bits = 0;
+  WEFT_ROLLED
+  for (int j = 0; j < kLanes; ++j) bits |= kBit[j] & (apart[j] - 1);
   return bits;
 }
 
@@ -140,24 +162,40 @@ WEFT_ALWAYS_INLINE unsigned find_joined(const Leaf& leaf, int p, int q, int r) {
 /// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once. First the items
 /// of one leaf are held against the whole other one, then those that overlap it against its items. Returns
 /// how many boxes were compared with boxes.
-template <bool kIsSelf>
+template <bool kIsSelf, bool kMoves>
 WEFT_ALWAYS_INLINE std::int64_t test_leaf_pairs(const TreeView& left, const TreeView& right,
                                                 const std::vector<aabb_tree::NodePair>& leaf_pairs,
                                                 std::vector<ItemPair>& pairs) {
   std::int64_t box_pairs = 0;
   for (const auto& [n, m] : leaf_pairs) {
-    const aabb_tree::Leaf& a = left.leaves[left.nodes[n].leaf];
-    const aabb_tree::Leaf& b = right.leaves[right.nodes[m].leaf];
+    const int leaf_a = left.nodes[n].leaf, leaf_b = right.nodes[m].leaf;
+    const aabb_tree::Leaf &a = left.leaves[leaf_a], &b = right.leaves[leaf_b];
     const Aabb& whole = right.nodes[m].box;
     const bool is_same = kIsSelf && n == m;
-    unsigned rows = is_same ? 0xff : find_overlapping(a, whole.min.data(), whole.max.data());
+    unsigned rows = 0xff;
+    if (!is_same) {
+      if constexpr (kMoves) {
+        rows = find_meeting(a, left.leaf_ways[leaf_a], whole.min.data(), whole.max.data(),
+                            right.node_ways[m].min.data(), right.node_ways[m].max.data());
+      } else {
+        rows = find_overlapping(a, whole.min.data(), whole.max.data());
+      }
+    }
     box_pairs += (is_same ? 0 : kLanes) + kLanes * std::popcount(rows);
     std::uint64_t hits = 0;  // bit 8 i + j
     for (; rows != 0; rows &= rows - 1) {
       const int i = std::countr_zero(rows);
       const float min[3] = {a.min[0][i], a.min[1][i], a.min[2][i]};
       const float max[3] = {a.max[0][i], a.max[1][i], a.max[2][i]};
-      unsigned row = find_overlapping(b, min, max);
+      unsigned row;
+      if constexpr (kMoves) {
+        const aabb_tree::LeafWays& ways = left.leaf_ways[leaf_a];
+        const float way_min[3] = {ways.min[0][i], ways.min[1][i], ways.min[2][i]};
+        const float way_max[3] = {ways.max[0][i], ways.max[1][i], ways.max[2][i]};
+        row = find_meeting(b, right.leaf_ways[leaf_b], min, max, way_min, way_max);
+      } else {
+        row = find_overlapping(b, min, max);
+      }
       if constexpr (kIsSelf) row &= ~find_joined(b, a.key[0][i], a.key[1][i], a.key[2][i]);
       if (is_same) row &= 0xfeu << i;
       hits |= std::uint64_t{row & 0xff} << (kLanes * i);
@@ -183,13 +221,21 @@ WEFT_ALWAYS_INLINE std::int64_t test_leaf_pairs(const TreeView& left, const Tree
 #define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, chunk, box_pairs)
 
 WEFT_ALWAYS_INLINE void test_within_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<true>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<true, false>(left, right, chunk.leaf_pairs, chunk.pairs);
 }
 WEFT_ALWAYS_INLINE void test_between_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<false>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<false, false>(left, right, chunk.leaf_pairs, chunk.pairs);
+}
+WEFT_ALWAYS_INLINE void test_moving_within_body WEFT_LEAF_PAIRS {
+  box_pairs = test_leaf_pairs<true, true>(left, right, chunk.leaf_pairs, chunk.pairs);
+}
+WEFT_ALWAYS_INLINE void test_moving_between_body WEFT_LEAF_PAIRS {
+  box_pairs = test_leaf_pairs<false, true>(left, right, chunk.leaf_pairs, chunk.pairs);
 }
 WEFT_MULTIVERSION(test_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
+WEFT_MULTIVERSION(test_moving_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
+WEFT_MULTIVERSION(test_moving_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 
 }  // namespace
 
@@ -254,8 +300,9 @@ bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direct
 }
 
 /// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
-template <bool kCounts>
-void AabbTree::collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& chunk) const {
+template <class MayMeet>
+void AabbTree::collect(const AabbTree& other, NodePair start, const MayMeet& may_meet,
+                       aabb_tree::Chunk& chunk) const {
   NodePair stack[2 * kMaxDepth];
   int depth = 0;
   stack[depth++] = start;
@@ -263,7 +310,7 @@ void AabbTree::collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& 
     const auto [n, m] = stack[--depth];
     const Node &a = nodes_[n], &b = other.nodes_[m];
     ++chunk.box_pairs;
-    if (!(kCounts ? a.box.overlaps(b.box, chunk.comparisons) : a.box.overlaps(b.box))) continue;
+    if (!may_meet(n, m)) continue;
     if (a.right == 0 && b.right == 0) {
       chunk.leaf_pairs.push_back({n, m});
     } else if (b.right == 0 || (a.right != 0 && a.right - n >= b.right - m)) {
@@ -276,12 +323,26 @@ void AabbTree::collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& 
   }
 }
 
-/// Runs find_leaf_pairs(begin, end, chunk) over [0, num_starts) in chunks, tests the leaves' items against
+void AabbTree::find_leaf_pairs(const AabbTree& other, NodePair start, bool counts,
+                               aabb_tree::Chunk& chunk) const {
+  if (moves_ && other.moves_) {
+    collect(
+        other, start, [&](int n, int m) { return moving(n).may_meet(other.moving(m)); }, chunk);
+  } else if (counts) {
+    collect(
+        other, start,
+        [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box, chunk.comparisons); }, chunk);
+  } else {
+    collect(
+        other, start, [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box); }, chunk);
+  }
+}
+
+/// Runs find_below(begin, end, chunk) over [0, num_starts) in chunks, tests the leaves' items against
 /// each other, and strings the chunks' results together in order.
-template <class FindLeafPairs>
-void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs,
-                              const AabbTree& other, bool is_self, JobSystem& jobs,
-                              PairSearch& search) const {
+template <class FindBelow>
+void AabbTree::find_in_chunks(int num_starts, int grain, const FindBelow& find_below, const AabbTree& other,
+                              bool is_self, JobSystem& jobs, PairSearch& search) const {
   const std::size_t num_chunks = (num_starts + grain - 1) / grain;
   if (search.chunks.size() < num_chunks) search.chunks.resize(num_chunks);
   parallel_for(jobs, num_starts, grain, [&](int begin, int end) {
@@ -289,10 +350,14 @@ void AabbTree::find_in_chunks(int num_starts, int grain, const FindLeafPairs& fi
     chunk.leaf_pairs.clear();
     chunk.pairs.clear();
     chunk.box_pairs = chunk.comparisons = 0;
-    find_leaf_pairs(begin, end, chunk);
+    find_below(begin, end, chunk);
     std::int64_t box_pairs = 0;
-    (is_self ? test_within : test_between)({nodes_.data(), leaves_.data()},
-                                           {other.nodes_.data(), other.leaves_.data()}, chunk, box_pairs);
+    const auto view = [](const AabbTree& tree) -> TreeView {
+      return {tree.nodes_.data(), tree.leaves_.data(), tree.node_ways_.data(), tree.leaf_ways_.data()};
+    };
+    const auto test = moves_ && other.moves_ ? (is_self ? test_moving_within : test_moving_between)
+                                             : (is_self ? test_within : test_between);
+    test(view(*this), view(other), chunk, box_pairs);
     chunk.box_pairs += box_pairs;
     chunk.comparisons += 6 * box_pairs;  // side by side: none is left out
   });
@@ -320,32 +385,28 @@ void AabbTree::string_together(std::size_t num_chunks, JobSystem& jobs, PairSear
 
 void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
   // Each node's two halves are held against each other, and each leaf against itself.
-  const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
+  const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
     for (int n = begin; n < end; ++n) {
       const Node& node = nodes_[n];
       if (node.right != 0) {
-        const NodePair halves = {n + 1, node.right};
-        search.counts_comparisons ? collect<true>(*this, halves, chunk)
-                                  : collect<false>(*this, halves, chunk);
+        find_leaf_pairs(*this, {n + 1, node.right}, search.counts_comparisons, chunk);
       } else {
         chunk.leaf_pairs.push_back({n, n});
       }
     }
   };
-  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, find_leaf_pairs, *this, true, jobs, search);
+  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, find_below, *this, true, jobs, search);
 }
 
 void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const {
   search.pairs.clear();
   search.num_box_pairs = search.num_comparisons = 0;
   if (nodes_.empty() || other.nodes_.empty()) return;
-  const auto find_leaf_pairs = [&](int begin, int end, aabb_tree::Chunk& chunk) {
-    for (int s = begin; s < end; ++s) {
-      const NodePair start = {starts_[s], 0};
-      search.counts_comparisons ? collect<true>(other, start, chunk) : collect<false>(other, start, chunk);
-    }
+  const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
+    for (int s = begin; s < end; ++s)
+      find_leaf_pairs(other, {starts_[s], 0}, search.counts_comparisons, chunk);
   };
-  find_in_chunks(static_cast<int>(starts_.size()), 1, find_leaf_pairs, other, false, jobs, search);
+  find_in_chunks(static_cast<int>(starts_.size()), 1, find_below, other, false, jobs, search);
 }
 
 /// Halves the tree, and its halves, into a few dozen parts.

@@ -8,6 +8,7 @@
 /// What a query reports does not depend on the tree's shape; the order in which it does, does.
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "weft/core/job_system.h"
@@ -31,6 +32,11 @@ struct Leaf {
   float min[3][kLanes], max[3][kLanes];
   int key[3][kLanes];
   int item[kLanes];
+};
+
+/// The ways of a leaf's items.
+struct LeafWays {
+  float min[3][kLanes], max[3][kLanes];
 };
 
 /// In preorder: the left child follows its parent.
@@ -74,22 +80,19 @@ class AabbTree {
   /// Builds the tree over `boxes` (num_items), split at medians. `keys` is (num_items) or empty.
   void build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs);
 
-  /// Fits the tree to boxes that have moved: box_of(item) gives an item's box.
+  /// Fits the tree to boxes that have moved: box_of(item) gives an item's box, an Aabb or a MovingAabb.
+  /// Pairs that are looked for in trees of which both were last fitted to moving boxes are those that may
+  /// meet; in all others, those that overlap where they are.
   template <class BoxOf>
   void refit(const BoxOf& box_of, JobSystem& jobs) {
+    moves_ = std::is_same_v<decltype(box_of(0)), MovingAabb>;
+    if (moves_) {
+      node_ways_.resize(nodes_.size());
+      leaf_ways_.resize(leaves_.size());
+    }
     parallel_for(jobs, static_cast<int>(starts_.size()), 1, [&](int s, int) {
       for (int n = start_ends_[s] - 1; n >= starts_[s]; --n) {
-        Node& node = nodes_[n];
-        if (node.right != 0) {
-          refit_node(n);
-          continue;
-        }
-        node.box = Aabb();
-        for (int lane = 0; lane < num_items_in(node.leaf); ++lane) {
-          const Aabb box = box_of(leaves_[node.leaf].item[lane]);
-          set_box(node.leaf, lane, box);
-          node.box.merge(box);
-        }
+        nodes_[n].right != 0 ? refit_node(n) : refit_leaf(n, box_of);
       }
     });
     for (auto n = above_starts_.rbegin(); n != above_starts_.rend(); ++n) refit_node(*n);
@@ -195,22 +198,58 @@ class AabbTree {
   void build_nodes(int first_leaf, int num_leaves);
   void choose_starts();
   void refit_node(int n) {
-    Aabb box = nodes_[n + 1].box;
-    box.merge(nodes_[nodes_[n].right].box);
-    nodes_[n].box = box;
+    const int right = nodes_[n].right;
+    nodes_[n].box = nodes_[n + 1].box;
+    nodes_[n].box.merge(nodes_[right].box);
+    if (!moves_) return;
+    node_ways_[n] = node_ways_[n + 1];
+    node_ways_[n].merge(node_ways_[right]);
   }
+
+  template <class BoxOf>
+  void refit_leaf(int n, const BoxOf& box_of) {
+    const int leaf = nodes_[n].leaf;
+    MovingAabb all;
+    if (moves_) leaf_ways_[leaf] = {};
+    for (int lane = 0; lane < num_items_in(leaf); ++lane) {
+      const auto item = box_of(leaves_[leaf].item[lane]);
+      if constexpr (std::is_same_v<decltype(box_of(0)), MovingAabb>) {
+        set_box(leaf, lane, item.box);
+        set_way(leaf, lane, item.way);
+        all.merge(item);
+      } else {
+        set_box(leaf, lane, item);
+        all.box.merge(item);
+      }
+    }
+    nodes_[n].box = all.box;
+    if (moves_) node_ways_[n] = all.way;
+  }
+
+  void set_way(int leaf, int lane, const Aabb& way) {
+    for (int k = 0; k < 3; ++k) {
+      leaf_ways_[leaf].min[k][lane] = way.min[k];
+      leaf_ways_[leaf].max[k][lane] = way.max[k];
+    }
+  }
+
+  MovingAabb moving(int n) const { return {nodes_[n].box, node_ways_[n]}; }
   float total_area() const;
-  template <bool kCounts>
-  void collect(const AabbTree& other, NodePair start, aabb_tree::Chunk& chunk) const;
+  template <class MayMeet>
+  void collect(const AabbTree& other, NodePair start, const MayMeet& may_meet, aabb_tree::Chunk& chunk) const;
+  void find_leaf_pairs(const AabbTree& other, NodePair start, bool counts, aabb_tree::Chunk& chunk) const;
   static void string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search);
-  template <class FindLeafPairs>
-  void find_in_chunks(int num_starts, int grain, const FindLeafPairs& find_leaf_pairs, const AabbTree& other,
+  template <class FindBelow>
+  void find_in_chunks(int num_starts, int grain, const FindBelow& find_below, const AabbTree& other,
                       bool is_self, JobSystem& jobs, PairSearch& search) const;
 
   int num_items_ = 0;
   float built_area_ = 0;
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
+  bool moves_ = false;  // fitted to moving boxes
+  std::vector<aabb_tree::LeafWays> leaf_ways_;
+  std::vector<Aabb> node_ways_;
   std::vector<int> starts_;  // nodes side by side that hold everything: parts that can be dealt with at once
   std::vector<int> start_ends_;    // one past the last node below each
   std::vector<int> above_starts_;  // all nodes above them, ascending
