@@ -50,7 +50,7 @@ struct Scene {
     Surface finished = surface;
     finished.build_fans();
     Proximity proximity;
-    proximity.reset(finished, rest, num_cloth_vertices, num_cloth_triangles, kSlack);
+    proximity.reset(finished, rest, num_cloth_vertices, num_cloth_triangles, {kSlack, kSlack});
     return proximity;
   }
 

@@ -98,25 +98,23 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   const std::vector<Vec3>& x = motion_.start;
   c.num_vertices = 4;
   c.vertex = {i, j, k, pair.a};
+  const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
+  double distance = d.distance();
+  const double gap = gap_of(pair, c);
+  if (distance > gap + relative_travel(c)) return false;
   if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
     const std::array<Vec3, 4> p = places_at(c, *time);
-    const PointTriangleDistance d = point_triangle_distance(p[3], p[0], p[1], p[2]);
-    if (d.region == TriangleRegion::face) {
-      c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
+    const PointTriangleDistance there = point_triangle_distance(p[3], p[0], p[1], p[2]);
+    if (there.region == TriangleRegion::face) {
+      c.weight = {-there.weights[0], -there.weights[1], -there.weights[2], 1};
       c.normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
       return finish_crossing(pair, c);
     }
   }
-  const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
   if (d.region != TriangleRegion::face) return false;
   c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
-  double distance = d.distance();
-  const double gap = gap_of(pair, c);
   const std::vector<Vec3>& y = motion_.end;
-  if (!is_close(distance, gap, c,
-                [&] { return point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance(); })) {
-    return false;
-  }
+  if (distance > gap && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > gap) return false;
   if (is_on_closed_body(i)) {
     // The outside is known, so that what is inside by a little is pushed out.
     c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
@@ -140,23 +138,24 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   const auto are_parallel = [](const Vec3& u, const Vec3& v) {
     return u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm();
   };
+  const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
+  const double distance = d.distance(), gap = gap_of(pair, c);
+  if (distance > gap + relative_travel(c)) return false;
   if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
     const std::array<Vec3, 4> p = places_at(c, *time);
-    const EdgeEdgeDistance d = edge_edge_distance(p[0], p[1], p[2], p[3]);
+    const EdgeEdgeDistance there = edge_edge_distance(p[0], p[1], p[2], p[3]);
     const double meeting = kMeeting * (p[1] - p[0]).norm();
-    if (is_inside(d) && d.distance_sq < meeting * meeting && !are_parallel(p[1] - p[0], p[3] - p[2])) {
-      c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
+    if (is_inside(there) && there.distance_sq < meeting * meeting &&
+        !are_parallel(p[1] - p[0], p[3] - p[2])) {
+      c.weight = {1 - there.s, there.s, -(1 - there.t), -there.t};
       c.normal = (p[1] - p[0]).cross(p[3] - p[2]).stableNormalized();
       return finish_crossing(pair, c);
     }
   }
-  const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
   if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
-  const double distance = d.distance(), gap = gap_of(pair, c);
   if (distance < kTouching) return false;
   const std::vector<Vec3>& y = motion_.end;
-  if (!is_close(distance, gap, c, [&] { return edge_edge_distance(y[i], y[j], y[k], y[l]).distance(); }))
-    return false;
+  if (distance > gap && edge_edge_distance(y[i], y[j], y[k], y[l]).distance() > gap) return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
   return finish_pair(distance, gap, c);
@@ -185,18 +184,14 @@ double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const
   return std::min(thickness, double{pair.max_gap});
 }
 
-/// Whether the pair is close at the start of the step or at its end. Lists hold all such pairs, and others by
-/// chance: these must not count. `distance` is that at the start.
-template <class Distance>
-bool ContactSystem::is_close(double distance, double gap, const Constraint& c,
-                             const Distance& distance_at_end) const {
-  if (distance <= gap) return true;
+/// By how much the pair's distance can change during the step, at most [m].
+double ContactSystem::relative_travel(const Constraint& c) const {
   double travel = 0;
   const Vec3 common = motion_.end[c.vertex[0]] - motion_.start[c.vertex[0]];
   for (int k = 1; k < 4; ++k) {
     travel = std::max(travel, (motion_.end[c.vertex[k]] - motion_.start[c.vertex[k]] - common).norm());
   }
-  return distance <= gap + 2 * travel && distance_at_end() <= gap;
+  return 2 * travel;
 }
 
 /// False if nothing of the pair can move.

@@ -14,14 +14,16 @@ namespace {
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
-constexpr int kRounds = 8;         // planes of round shapes are taken anew this often
-constexpr int kPasses = 8;         // over all constraints between
+constexpr int kRounds = 8;            // planes of round shapes are taken anew this often
+constexpr int kPasses = 8;            // over all constraints between
+constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of contacts: little is left to do
+constexpr int kPassesAfterSolve = 4;
 constexpr int kSearches = 6;       // after friction, contacts are looked for anew this often
 constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
 
-/// How far cloth may move before pairs are looked for anew: a share of its cells.
-double slack_of(const ClothTopology& topology, double thickness) {
-  constexpr double kShareOfEdge = 0.15;
+/// How far cloth may move before pairs are looked for anew: a share of its cells, or of its thickness.
+Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
+  constexpr double kMostOfEdge = 0.15, kLeastOfEdge = 0.03;
   double sum = 0;
   int count = 0;
   for (const Spring& s : topology.springs) {
@@ -29,7 +31,8 @@ double slack_of(const ClothTopology& topology, double thickness) {
     sum += s.rest_length;
     ++count;
   }
-  return std::max(thickness, count > 0 ? kShareOfEdge * sum / count : 0.0);
+  const double edge = count > 0 ? sum / count : 0.0;
+  return {std::max(thickness, kMostOfEdge * edge), std::max(thickness / 2, kLeastOfEdge * edge)};
 }
 
 }  // namespace
@@ -38,6 +41,8 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
                                const ContactStep& step) {
   cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
+  is_predicted_ = false;
+  wild_cloth_ = -1;
   shapes_.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
@@ -79,14 +84,16 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   bodies_.clear();
   Surface surface;
   std::vector<Vec3> rest;
-  double slack = std::numeric_limits<double>::infinity();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Proximity::Slack slack{kInfinity, kInfinity};
   for (const ContactCloth& cloth : cloths_) {
     const ClothTopology& topology = *cloth.model->topology;
     numbered_cloths_.push_back(cloth.model->topology);
     first_vertex_.push_back(surface.num_vertices);
     surface.add(topology.mesh.triangles, topology.num_particles());
     rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
-    slack = std::min(slack, slack_of(topology, cloth.model->material.thickness));
+    const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
+    slack = {std::min(slack.most, own.most), std::min(slack.least, own.least)};
   }
   const int num_cloth_vertices = surface.num_vertices;
   const int num_cloth_triangles = static_cast<int>(surface.triangles.size());
@@ -108,6 +115,11 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   velocity_.assign(n, Vec3::Zero());
   slowed_.assign(n, Vec3::Zero());
   is_touched_.assign(n, 0);
+  is_solid_.assign(n, 0);
+  for (const Body& body : bodies_) {
+    if (body.is_closed)
+      std::fill(&is_solid_[body.first_vertex], &is_solid_[body.end_vertex - 1] + 1, char{1});
+  }
   proximity_.reset(std::move(surface), std::move(rest), num_cloth_vertices, num_cloth_triangles, slack);
 }
 
@@ -131,6 +143,7 @@ void ContactSystem::end_of(int cloth) {
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
+  is_predicted_ = true;
   const double h = step_.step;
   std::size_t pin = 0;
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -148,7 +161,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   collect_shapes(1.0);
   collect_pairs(jobs);
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
-  project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+  project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end);
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
   collect_pairs(jobs);
@@ -185,10 +198,6 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
   }
 }
 
-int ContactSystem::wild_cloth() const {
-  return proximity_.wildest() < 0 ? -1 : cloth_of(proximity_.wildest());
-}
-
 void ContactSystem::hold_off(JobSystem& jobs) {
   proximity_.update(motion_, jobs);
   constraints_.clear();
@@ -201,16 +210,17 @@ void ContactSystem::hold_off(JobSystem& jobs) {
 }
 
 LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
-  if (proximity_.wildest() >= 0) return {};
   origins_.clear();
   for (int c = 0; c < static_cast<int>(cloths_.size()); ++c) {
     end_of(c);
     origins_.push_back(cloths_[c].state->origin);
   }
   arrived_ = motion_.end;
-  const LastLineReport report =
-      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_}, proximity_, motion_, jobs);
-  if (report.hits == 0) return report;
+  const bool is_wild = proximity_.wildest() >= 0;
+  if (is_wild && !cut_short(jobs)) return {};
+  const LastLineReport report = last_line_.hold(
+      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
+  if (report.hits == 0 && !is_wild) return report;
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
@@ -224,9 +234,31 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   return report;
 }
 
+/// Halves how cloth moves against its common motion until pairs can be looked for. False if it cannot be
+/// done.
+bool ContactSystem::cut_short(JobSystem& jobs) {
+  constexpr int kHalvings = 60;
+  const int n = first_vertex_.back();
+  Vec3 drift = Vec3::Zero();
+  for (int v = 0; v < n; ++v) drift += (motion_.end[v] - motion_.start[v]) / n;
+  if (!drift.allFinite()) return false;
+  wild_cloth_ = cloth_of(proximity_.wildest());
+  for (int h = 0; h < kHalvings && proximity_.wildest() >= 0; ++h) {
+    for (int v = 0; v < n; ++v) {
+      if (inverse_mass_[v] == 0) continue;
+      const Vec3 way = motion_.end[v] - motion_.start[v];
+      motion_.end[v] = motion_.start[v] + drift + 0.5 * (way - drift);
+    }
+    proximity_.update(motion_, jobs);
+  }
+  return proximity_.wildest() < 0;
+}
+
 void ContactSystem::settle_positions() {
-  for (int round = 0; round < kRounds; ++round) {
-    const double moved = project_positions(inverse_mass_, kPasses, constraints_, motion_.end);
+  const int rounds = is_predicted_ ? kRoundsAfterSolve : kRounds;
+  const int passes = is_predicted_ ? kPassesAfterSolve : kPasses;
+  for (int round = 0; round < rounds; ++round) {
+    const double moved = project_positions(inverse_mass_, passes, constraints_, motion_.end);
     if (moved < kSettled) return;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;

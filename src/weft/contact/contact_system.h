@@ -71,8 +71,8 @@ class ContactSystem {
   };
   Place place_of(int vertex) const;
 
-  /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
-  int wild_cloth() const;
+  /// The cloth that moved so far in this step that its motion was cut short, -1 if none did.
+  int wild_cloth() const { return wild_cloth_; }
 
  private:
   struct Body {
@@ -100,8 +100,7 @@ class ContactSystem {
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
   bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
-  template <class Distance>
-  bool is_close(double distance, double gap, const Constraint& c, const Distance& distance_at_end) const;
+  double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
   int cloth_of(int vertex) const;
   double friction_of(int vertex) const;
@@ -111,6 +110,7 @@ class ContactSystem {
   void collect_shape(int shape, double share_of_travel);
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
+  bool cut_short(JobSystem& jobs);
   void settle_positions();
   void project(JobSystem& jobs);
   bool has_left_reach() const;
@@ -123,12 +123,15 @@ class ContactSystem {
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
+  std::vector<char> is_solid_;  // (num_vertices) on a closed mesh
   Proximity proximity_;
 
   // The step.
   std::vector<ContactCloth> cloths_;
   std::vector<MovingShape> shapes_;
   ContactStep step_;
+  bool is_predicted_ = false;  // the solve knows of contacts
+  int wild_cloth_ = -1;
   SurfaceMotion motion_;
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;

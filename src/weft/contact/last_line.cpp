@@ -165,13 +165,36 @@ ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
 bool LastLine::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
   const auto [i, j, k] = proximity_->surface().triangles[pair.b];
   const std::array<int, 4> vertex = {i, j, k, pair.a};
-  return test_pair(pair, vertex, find_vertex_triangle_impact, hit);
+  if (!test_pair(pair, vertex, find_vertex_triangle_impact, hit)) return false;
+  const std::vector<Vec3>& x = motion_->start;
+  if ((*step_.is_solid)[i]) return (x[j] - x[i]).cross(x[k] - x[i]).dot(x[pair.a] - x[i]) >= 0;
+  if (!(*step_.is_solid)[pair.a]) return true;
+  const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
+  return !is_behind_faces(pair.a, pair.a, point_at(d.weights, x[i], x[j], x[k]) - x[pair.a]);
 }
 
 bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
   const std::array<int, 2>&a = proximity_->surface().edges[pair.a], &b = proximity_->surface().edges[pair.b];
   const std::array<int, 4> vertex = {a[0], a[1], b[0], b[1]};
-  return test_pair(pair, vertex, find_edge_edge_impact, hit);
+  if (!test_pair(pair, vertex, find_edge_edge_impact, hit)) return false;
+  const bool is_a = (*step_.is_solid)[a[0]], is_b = (*step_.is_solid)[b[0]];
+  if (!is_a && !is_b) return true;
+  const std::vector<Vec3>& x = motion_->start;
+  const EdgeEdgeDistance d = edge_edge_distance(x[a[0]], x[a[1]], x[b[0]], x[b[1]]);
+  const Vec3 b_to_a = x[a[0]] + d.s * (x[a[1]] - x[a[0]]) - x[b[0]] - d.t * (x[b[1]] - x[b[0]]);
+  return is_a ? !is_behind_faces(a[0], a[1], -b_to_a) : !is_behind_faces(b[0], b[1], b_to_a);
+}
+
+/// Whether what lies in this direction is behind all faces that have both vertices: inside of a closed mesh.
+bool LastLine::is_behind_faces(int v, int w, const Vec3& direction) const {
+  const Surface& surface = proximity_->surface();
+  const std::vector<Vec3>& x = motion_->start;
+  for (int f = surface.fan_begin[v]; f < surface.fan_begin[v + 1]; ++f) {
+    const auto [i, j, k] = surface.triangles[surface.fan[f]];
+    if (w != i && w != j && w != k) continue;
+    if ((x[j] - x[i]).cross(x[k] - x[i]).dot(direction) >= 0) return false;
+  }
+  return true;
 }
 
 template <class Find>

@@ -44,13 +44,14 @@ struct LastLineStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
   const std::vector<MovingShape>* shapes = nullptr;   // those that are meshes are looked at as vertices
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
-  const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
+  const std::vector<Vec3>* origins = nullptr;   // (cloths) of which positions are stored as float offsets
+  const std::vector<char>* is_solid = nullptr;  // (num_vertices) on a closed mesh
 };
 
 class LastLine {
  public:
-  /// Changes motion.end of vertices of cloth where it must. motion.start must be free of crossings: pairs
-  /// that touch or cross at the start are left alone. `proximity` holds for the motion afterwards.
+  /// Changes motion.end of vertices of cloth where it must. Pairs that touch at the start are left alone, and
+  /// so is what is inside a closed mesh: it may leave. `proximity` holds for the motion afterwards.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
 
  private:
@@ -76,6 +77,7 @@ class LastLine {
   void add_infeasible(const Hit& hit, LastLineReport& report) const;
   bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
+  bool is_behind_faces(int v, int w, const Vec3& direction) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;
   bool test_edge_edge(const FeaturePair& pair, Hit& hit) const;

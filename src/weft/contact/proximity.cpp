@@ -17,7 +17,7 @@ constexpr double kSharp = 0.87;
 
 /// So few triangles may all be near to each other, as long as they do not fly off [m].
 constexpr int kFewTriangles = 500;
-constexpr double kFarthest = 1e6;
+constexpr double kFarthest = 100;
 
 /// Of two neighbours' distance at rest, what contact may ask for.
 constexpr float kShareOfRest = 0.5f;
@@ -25,12 +25,13 @@ constexpr float kShareOfRest = 0.5f;
 }  // namespace
 
 void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices,
-                      int num_cloth_triangles, double slack) {
+                      int num_cloth_triangles, const Slack& slack) {
   surface_ = std::move(surface);
   rest_ = std::move(rest);
   num_cloth_vertices_ = num_cloth_vertices;
   num_cloth_triangles_ = num_cloth_triangles;
-  slack_ = slack;
+  slacks_ = slack;
+  slack_ = slack.most;
   cloth_tree_ = body_tree_ = AabbTree();
   made_for_.end.clear();
 }
@@ -56,7 +57,7 @@ bool Proximity::is_within_slack(const std::vector<Vec3>& x, const std::vector<Ve
   double farthest_sq = 0;
   for (std::size_t v = 0; v < x.size(); ++v)
     farthest_sq = std::max(farthest_sq, (x[v] - reference[v] - mean).squaredNorm());
-  return farthest_sq <= slack_ * slack_;
+  return farthest_sq <= made_with_ * made_with_;
 }
 
 void Proximity::box_vertices(const SurfaceMotion& motion) {
@@ -109,7 +110,8 @@ int Proximity::find_wildest(const SurfaceMotion& motion) const {
     farthest = travel;
     wildest = v;
   }
-  const double size = num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : kFarthest;
+  const double size =
+      num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : std::max((high - low).norm(), kFarthest);
   return sum <= num_cloth_vertices_ * size ? -1 : wildest;
 }
 
@@ -122,25 +124,29 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   const int num_triangles = static_cast<int>(surface_.triangles.size());
   fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
   cloth_tree_.find_self_pairs(jobs, search_);
-  for (const ItemPair& pair : search_.pairs) add_pairs_of_triangles(motion, pair, false);
-  add_fans(motion);
+  add_pairs(motion, search_.pairs, 0, false, jobs);
+  find_fans(motion);
+  add_pairs(motion, fans_, 0, true, jobs);
   if (num_triangles > num_cloth_triangles_) {
     fit_tree(body_tree_, num_cloth_triangles_, num_triangles, jobs);
     cloth_tree_.find_pairs(body_tree_, jobs, search_);
-    for (const ItemPair& pair : search_.pairs) {
-      add_pairs_of_triangles(motion, {pair.a, pair.b + num_cloth_triangles_}, false);
-    }
+    add_pairs(motion, search_.pairs, num_cloth_triangles_, false, jobs);
   }
   // The tree's shape, and with it the order, depends on what came before; contact must not.
-  for (auto* pairs : {&vertex_triangle_, &edge_edge_}) {
-    std::sort(pairs->begin(), pairs->end(), [](const FeaturePair& x, const FeaturePair& y) {
-      return x.a < y.a || (x.a == y.a && x.b < y.b);
-    });
-    const auto is_same = [](const FeaturePair& x, const FeaturePair& y) { return x.a == y.a && x.b == y.b; };
-    pairs->erase(std::unique(pairs->begin(), pairs->end(), is_same), pairs->end());
-  }
+  put_in_order(surface_.num_vertices, vertex_triangle_);
+  put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
   measure_edges(motion);
   made_for_ = motion;
+  made_with_ = slack_;
+  choose_slack();
+}
+
+/// Where cloth lies in layers, each moment of keeping would cost many pairs more.
+void Proximity::choose_slack() {
+  constexpr std::size_t kMany = 20, kFew = 4;  // pairs per vertex
+  const std::size_t pairs = vertex_triangle_.size() + edge_edge_.size(), n = num_cloth_vertices_;
+  if (pairs > kMany * n) slack_ = slacks_.least;
+  if (pairs < kFew * n) slack_ = slacks_.most;
 }
 
 /// Each end may move by the slack before this is done again.
@@ -153,19 +159,61 @@ void Proximity::measure_edges(const SurfaceMotion& motion) {
   longest_edge_ = std::sqrt(longest_sq) + 2 * slack_;
 }
 
-void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan) {
+/// Of all these pairs of triangles, the second one counted from `first`.
+void Proximity::add_pairs(const SurfaceMotion& motion, const std::vector<ItemPair>& triangles, int first,
+                          bool is_fan, JobSystem& jobs) {
+  constexpr int kGrain = 2048;
+  const int count = static_cast<int>(triangles.size());
+  const std::size_t num_chunks = (count + kGrain - 1) / kGrain;
+  if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
+  parallel_for(jobs, count, kGrain, [&](int begin, int end) {
+    PairChunk& chunk = chunks_[begin / kGrain];
+    chunk.vertex_triangle.clear();
+    chunk.edge_edge.clear();
+    for (int p = begin; p < end; ++p)
+      add_pairs_of_triangles(motion, {triangles[p].a, triangles[p].b + first}, is_fan, chunk);
+  });
+  for (std::size_t c = 0; c < num_chunks; ++c) {
+    const PairChunk& chunk = chunks_[c];
+    vertex_triangle_.insert(vertex_triangle_.end(), chunk.vertex_triangle.begin(),
+                            chunk.vertex_triangle.end());
+    edge_edge_.insert(edge_edge_.end(), chunk.edge_edge.begin(), chunk.edge_edge.end());
+  }
+}
+
+/// By a, then by b, each once; a is below `end_of_a`.
+void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
+  begin_of_a_.assign(end_of_a + 1, 0);
+  for (const FeaturePair& p : pairs) ++begin_of_a_[p.a + 1];
+  for (int a = 0; a < end_of_a; ++a) begin_of_a_[a + 1] += begin_of_a_[a];
+  ordered_.resize(pairs.size());
+  std::vector<int>& next = begin_of_a_;
+  for (const FeaturePair& p : pairs) ordered_[next[p.a]++] = p;
+  // Now next[a] is where a's pairs end.
+  pairs.clear();
+  for (int a = 0; a < end_of_a; ++a) {
+    const auto begin = ordered_.begin() + (a > 0 ? next[a - 1] : 0), end = ordered_.begin() + next[a];
+    std::sort(begin, end, [](const FeaturePair& x, const FeaturePair& y) { return x.b < y.b; });
+    for (auto p = begin; p != end; ++p) {
+      if (p == begin || p->b != (p - 1)->b) pairs.push_back(*p);
+    }
+  }
+}
+
+void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan,
+                                       PairChunk& chunk) const {
   const Surface::OwnedFeatures &a = surface_.owned[pair.a], &b = surface_.owned[pair.b];
   const Triangle &ta = surface_.triangles[pair.a], &tb = surface_.triangles[pair.b];
   const auto has = [](const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; };
   for (const int v : a.vertex) {
-    if (v >= 0 && !has(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan);
+    if (v >= 0 && !has(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan, chunk);
   }
   for (const int v : b.vertex) {
-    if (v >= 0 && !has(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan);
+    if (v >= 0 && !has(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan, chunk);
   }
   for (const int e : a.edge) {
     for (const int f : b.edge) {
-      if (e >= 0 && f >= 0) add_edge_edge(motion, std::min(e, f), std::max(e, f), is_fan);
+      if (e >= 0 && f >= 0) add_edge_edge(motion, std::min(e, f), std::max(e, f), is_fan, chunk);
     }
   }
 }
@@ -188,23 +236,25 @@ double Proximity::reach_between(const SurfaceMotion& motion, const std::array<in
 /// always come nearer than at rest.
 template <class Distance>
 void Proximity::add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
-                         const Distance& distance, std::vector<FeaturePair>& pairs) {
+                         const Distance& distance, std::vector<FeaturePair>& pairs) const {
   if (distance(motion.start).distance_sq > reach * reach) return;
   if (is_fan) pair.max_gap = kShareOfRest * static_cast<float>(distance(rest_).distance());
   pairs.push_back(pair);
 }
 
-void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan) {
+void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan,
+                                    PairChunk& chunk) const {
   if (!vertex_box_[vertex].may_meet(box_of_triangle(triangle))) return;
   const Triangle& t = surface_.triangles[triangle];
   const auto distance = [&](const std::vector<Vec3>& x) {
     return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
   };
   const double reach = reach_between(motion, std::array{vertex}, t);
-  add_pair(motion, {vertex, triangle}, reach, is_fan, distance, vertex_triangle_);
+  add_pair(motion, {vertex, triangle}, reach, is_fan, distance, chunk.vertex_triangle);
 }
 
-void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan) {
+void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan,
+                              PairChunk& chunk) const {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
   MovingAabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
@@ -214,7 +264,7 @@ void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is
   const auto distance = [&](const std::vector<Vec3>& x) {
     return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
   };
-  add_pair(motion, {a, b}, reach_between(motion, e, f), is_fan, distance, edge_edge_);
+  add_pair(motion, {a, b}, reach_between(motion, e, f), is_fan, distance, chunk.edge_edge);
 }
 
 /// Marks the vertices at which the cloth makes a point, where it is at x.
@@ -242,7 +292,8 @@ void Proximity::mark_sharp(const std::vector<Vec3>& x) {
 
 /// Triangles that share a vertex or an edge are not reported by the tree. They matter only where the cloth
 /// makes a point or a fold. Two that share an edge are found at both of its ends.
-void Proximity::add_fans(const SurfaceMotion& motion) {
+void Proximity::find_fans(const SurfaceMotion& motion) {
+  fans_.clear();
   is_sharp_.assign(num_cloth_vertices_, 0);
   mark_sharp(motion.start);
   mark_sharp(motion.end);
@@ -250,7 +301,7 @@ void Proximity::add_fans(const SurfaceMotion& motion) {
     if (!is_sharp_[v]) continue;
     for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
       for (int g = f + 1; g < surface_.fan_begin[v + 1]; ++g) {
-        add_pairs_of_triangles(motion, {surface_.fan[f], surface_.fan[g]}, true);
+        fans_.push_back({surface_.fan[f], surface_.fan[g]});
       }
     }
   }

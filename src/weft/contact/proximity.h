@@ -28,11 +28,17 @@ struct FeaturePair {
 /// that are not close, never misses one that is, and is in a fixed order.
 class Proximity {
  public:
+  /// How far vertices may move before pairs are looked for anew: the most where few are near, the least where
+  /// many are [m].
+  struct Slack {
+    double most = 0, least = 0;
+  };
+
   /// The first `num_cloth_triangles` triangles are cloth, the first `num_cloth_vertices` vertices too; the
   /// others are colliders', which are not held against each other. `rest` (num_cloth_vertices) are the cloth
   /// at rest, by which neighbours on the mesh are told from folds [m].
   void reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices, int num_cloth_triangles,
-             double slack);
+             const Slack& slack);
 
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
   /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
@@ -49,35 +55,47 @@ class Proximity {
   double longest_edge() const { return longest_edge_; }
 
  private:
-  bool still_holds(const SurfaceMotion& motion);
-  bool is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
-  void measure_edges(const SurfaceMotion& motion);
-  void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
-  void box_vertices(const SurfaceMotion& motion);
-  int find_wildest(const SurfaceMotion& motion) const;
-  void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
-  void add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan);
-  void add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan);
-  void add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan);
-  template <class Distance>
-  void add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
-                const Distance& distance, std::vector<FeaturePair>& pairs);
-  template <std::size_t kA, std::size_t kB>
-  double reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
-                       const std::array<int, kB>& b) const;
-  void mark_sharp(const std::vector<Vec3>& x);
-  void add_fans(const SurfaceMotion& motion);
-  MovingAabb box_of_triangle(int triangle) const;
+  struct PairChunk {
+    std::vector<FeaturePair> vertex_triangle, edge_edge;
+  };
 
   struct FanShape {
     Vec3 normal;
     double height;  // the least of three [m]
   };
 
+  bool still_holds(const SurfaceMotion& motion);
+  bool is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
+  void choose_slack();
+  void measure_edges(const SurfaceMotion& motion);
+  void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
+  void box_vertices(const SurfaceMotion& motion);
+  int find_wildest(const SurfaceMotion& motion) const;
+  void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
+  void add_pairs(const SurfaceMotion& motion, const std::vector<ItemPair>& triangles, int first, bool is_fan,
+                 JobSystem& jobs);
+  void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
+  void add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan,
+                              PairChunk& chunk) const;
+  void add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan,
+                           PairChunk& chunk) const;
+  void add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan, PairChunk& chunk) const;
+  template <class Distance>
+  void add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
+                const Distance& distance, std::vector<FeaturePair>& pairs) const;
+  template <std::size_t kA, std::size_t kB>
+  double reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
+                       const std::array<int, kB>& b) const;
+  void mark_sharp(const std::vector<Vec3>& x);
+  void find_fans(const SurfaceMotion& motion);
+  MovingAabb box_of_triangle(int triangle) const;
+
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
-  double slack_ = 0;
+  Slack slacks_;
+  double slack_ = 0;      // for the next lists [m]
+  double made_with_ = 0;  // for those at hand [m]
 
   AabbTree cloth_tree_, body_tree_;
   SurfaceMotion made_for_;  // what the lists were made for; nothing in it if there are none
@@ -88,6 +106,10 @@ class Proximity {
   // Work space of rebuild().
   std::vector<MovingAabb> vertex_box_;
   PairSearch search_;
+  std::vector<PairChunk> chunks_;
+  std::vector<int> begin_of_a_;
+  std::vector<FeaturePair> ordered_;
+  std::vector<ItemPair> fans_;       // triangles that share a vertex at which the cloth makes a point
   std::vector<char> is_sharp_;       // (num_cloth_vertices)
   std::vector<FanShape> fan_shape_;  // (num_cloth_triangles)
 };

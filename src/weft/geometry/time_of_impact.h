@@ -65,7 +65,7 @@ auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
     decltype(at(0.0)) place;
   };
   constexpr double kShare = 0.9;
-  constexpr int kMostAdvances = 20000;  // enough but for features that graze each other for long
+  constexpr int kMostAdvances = 1000;  // enough but for features that graze each other for long
   Found now{0, 0, at(0.0)};
   const double start = now.distance_before = now.place.distance;
   if (start - travel > 2 * limit.separation) return std::optional<Found>();

@@ -70,8 +70,8 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   using Pair = std::pair<int, int>;
 
-  /// Makes the matrix hold a block for every spring and for every two particles of a contact. Analysed anew
-  /// only when a pair comes that was not there before.
+  /// Makes the matrix hold a block for every spring and for every two particles of a contact, and for no
+  /// others: the order of elimination, and with it rounding, must not depend on contacts of the past.
   void fit_pattern() {
     const std::vector<Spring>& springs = model_->topology->springs;
     if (analyzed_ != model_->topology || analyzed_elements_ != model_->elements) {
@@ -100,8 +100,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     std::sort(wanted_pairs_.begin(), wanted_pairs_.end());
     wanted_pairs_.erase(std::unique(wanted_pairs_.begin(), wanted_pairs_.end()), wanted_pairs_.end());
-    if (!std::includes(contact_pairs_.begin(), contact_pairs_.end(), wanted_pairs_.begin(),
-                       wanted_pairs_.end())) {
+    if (wanted_pairs_ != contact_pairs_) {
       contact_pairs_ = wanted_pairs_;
       is_analyzed_ = false;
     }
