@@ -218,6 +218,7 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   arrived_ = motion_.end;
   const bool is_wild = proximity_.wildest() >= 0;
   if (is_wild && !cut_short(jobs)) return {};
+  if (!is_of_this_world()) return {};
   const LastLineReport report = last_line_.hold(
       {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
   if (report.hits == 0 && !is_wild) return report;
@@ -232,6 +233,16 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
     }
   }
   return report;
+}
+
+/// Cloth of more than ten kilometres has no places fine enough to keep it apart: floats are too coarse.
+bool ContactSystem::is_of_this_world() const {
+  constexpr double kLargest = 1e4;
+  for (int v = 0; v < first_vertex_.back(); ++v) {
+    const Vec3 offset = motion_.start[v] - origins_[cloth_of(v)];
+    if (!(offset.cwiseAbs().maxCoeff() < kLargest)) return false;
+  }
+  return true;
 }
 
 /// Halves how cloth moves against its common motion until pairs can be looked for. False if it cannot be

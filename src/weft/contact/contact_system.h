@@ -111,6 +111,7 @@ class ContactSystem {
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
   bool cut_short(JobSystem& jobs);
+  bool is_of_this_world() const;
   void settle_positions();
   void project(JobSystem& jobs);
   bool has_left_reach() const;

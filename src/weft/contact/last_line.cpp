@@ -10,9 +10,9 @@ namespace weft {
 namespace {
 
 constexpr int kPairGrain = 1024;     // pairs per chunk
-constexpr int kPushRounds = 10;      // of impulses, each followed by a search for new impacts
+constexpr int kPushRounds = 6;       // of impulses, each followed by a search for new impacts
 constexpr int kPushPasses = 20;      // over all impulses in a round
-constexpr int kZoneRounds = 60;      // zones halve what is not rigid, and grow
+constexpr int kZoneRounds = 24;      // zones halve what is not rigid, and grow
 constexpr double kLeastShare = 0.1;  // of the rest of a zone's motion: below, it moves rigidly
 
 /// Features keep this share of what they are held apart by; where that is little, the floor [m].
@@ -126,8 +126,9 @@ void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   }
   std::fill(is_moved_.begin(), is_moved_.end(), char{0});
   only_moved_ = true;
-  // What nobody may move.
+  // What has crossed before, and what nobody may move.
   std::erase_if(hits_, [&](const Hit& hit) {
+    if (is_tangled(hit)) return true;
     if (hit.constraint.inverse_mass > 0) return false;
     add_infeasible(hit, report);
     return true;
@@ -166,6 +167,7 @@ bool LastLine::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
   const auto [i, j, k] = proximity_->surface().triangles[pair.b];
   const std::array<int, 4> vertex = {i, j, k, pair.a};
   if (!test_pair(pair, vertex, find_vertex_triangle_impact, hit)) return false;
+  hit.is_edge_edge = false;
   const std::vector<Vec3>& x = motion_->start;
   if ((*step_.is_solid)[i]) return (x[j] - x[i]).cross(x[k] - x[i]).dot(x[pair.a] - x[i]) >= 0;
   if (!(*step_.is_solid)[pair.a]) return true;
@@ -177,12 +179,55 @@ bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
   const std::array<int, 2>&a = proximity_->surface().edges[pair.a], &b = proximity_->surface().edges[pair.b];
   const std::array<int, 4> vertex = {a[0], a[1], b[0], b[1]};
   if (!test_pair(pair, vertex, find_edge_edge_impact, hit)) return false;
+  hit.is_edge_edge = true;
   const bool is_a = (*step_.is_solid)[a[0]], is_b = (*step_.is_solid)[b[0]];
   if (!is_a && !is_b) return true;
   const std::vector<Vec3>& x = motion_->start;
   const EdgeEdgeDistance d = edge_edge_distance(x[a[0]], x[a[1]], x[b[0]], x[b[1]]);
   const Vec3 b_to_a = x[a[0]] + d.s * (x[a[1]] - x[a[0]]) - x[b[0]] - d.t * (x[b[1]] - x[b[0]]);
   return is_a ? !is_behind_faces(a[0], a[1], -b_to_a) : !is_behind_faces(b[0], b[1], b_to_a);
+}
+
+/// Whether triangles at the one feature cross triangles at the other at the start. What has gone through each
+/// other must be free to come back; to hold it would hold it where it is.
+bool LastLine::is_tangled(const Hit& hit) const {
+  const Constraint& c = hit.constraint;
+  if (c.shape >= 0) return false;
+  const int middle = hit.is_edge_edge ? 2 : 3;
+  std::vector<int> first, second;
+  triangles_at(c.vertex, 0, middle, first);
+  triangles_at(c.vertex, middle, 4, second);
+  const std::vector<Vec3>& x = motion_->start;
+  const auto pierces = [&](const Triangle& s, const Triangle& t) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = s[k], w = s[(k + 1) % 3];
+      const bool is_joined =
+          std::find(t.begin(), t.end(), v) != t.end() || std::find(t.begin(), t.end(), w) != t.end();
+      if (!is_joined && segment_triangle_distance(x[v], x[w], x[t[0]], x[t[1]], x[t[2]]).distance_sq == 0)
+        return true;
+    }
+    return false;
+  };
+  const std::vector<Triangle>& triangles = proximity_->surface().triangles;
+  for (const int s : first) {
+    for (const int t : second) {
+      if (pierces(triangles[s], triangles[t]) || pierces(triangles[t], triangles[s])) return true;
+    }
+  }
+  return false;
+}
+
+/// The triangles that have all of these vertices.
+void LastLine::triangles_at(const std::array<int, 4>& vertices, int begin, int end,
+                            std::vector<int>& found) const {
+  const Surface& surface = proximity_->surface();
+  const int v = vertices[begin];
+  for (int f = surface.fan_begin[v]; f < surface.fan_begin[v + 1]; ++f) {
+    const Triangle& t = surface.triangles[surface.fan[f]];
+    const bool has_all = std::all_of(vertices.begin() + begin, vertices.begin() + end,
+                                     [&](int w) { return std::find(t.begin(), t.end(), w) != t.end(); });
+    if (has_all) found.push_back(surface.fan[f]);
+  }
 }
 
 /// Whether what lies in this direction is behind all faces that have both vertices: inside of a closed mesh.

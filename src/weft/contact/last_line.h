@@ -50,14 +50,16 @@ struct LastLineStep {
 
 class LastLine {
  public:
-  /// Changes motion.end of vertices of cloth where it must. Pairs that touch at the start are left alone, and
-  /// so is what is inside a closed mesh: it may leave. `proximity` holds for the motion afterwards.
+  /// Changes motion.end of vertices of cloth where it must. Pairs that touch or cross at the start are left
+  /// alone, and so is what is inside a closed mesh: it may leave. `proximity` holds for the motion
+  /// afterwards.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
 
  private:
   /// A pair that meets, as what would keep it apart.
   struct Hit {
     Constraint constraint;
+    bool is_edge_edge = false;
     Vec3 foot_start, foot_end;  // of a plain shape: its point there, and where it goes
   };
 
@@ -77,6 +79,8 @@ class LastLine {
   void add_infeasible(const Hit& hit, LastLineReport& report) const;
   bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
+  bool is_tangled(const Hit& hit) const;
+  void triangles_at(const std::array<int, 4>& vertices, int begin, int end, std::vector<int>& found) const;
   bool is_behind_faces(int v, int w, const Vec3& direction) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;

@@ -19,6 +19,9 @@ constexpr double kSharp = 0.87;
 constexpr int kFewTriangles = 500;
 constexpr double kFarthest = 100;
 
+/// No vertex may move farther against the rest than this many times the cloth's size [1].
+constexpr double kMostOfSize = 10;
+
 /// Of two neighbours' distance at rest, what contact may ask for.
 constexpr float kShareOfRest = 0.5f;
 
@@ -112,7 +115,7 @@ int Proximity::find_wildest(const SurfaceMotion& motion) const {
   }
   const double size =
       num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : std::max((high - low).norm(), kFarthest);
-  return sum <= num_cloth_vertices_ * size ? -1 : wildest;
+  return sum <= num_cloth_vertices_ * size && farthest <= kMostOfSize * size ? -1 : wildest;
 }
 
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {

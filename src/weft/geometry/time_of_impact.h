@@ -65,12 +65,14 @@ auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
     decltype(at(0.0)) place;
   };
   constexpr double kShare = 0.9;
-  constexpr int kMostAdvances = 1000;  // enough but for features that graze each other for long
+  constexpr int kMostAdvances = 1000,
+                kMostWhereTouching = 100;  // enough but for features that graze each other for long
   Found now{0, 0, at(0.0)};
   const double start = now.distance_before = now.place.distance;
   if (start - travel > 2 * limit.separation) return std::optional<Found>();
   const double gap = limit.gap(start), tolerance = limit.tolerance(start);
-  for (int advance = 0; advance < kMostAdvances && start > 0; ++advance) {
+  const int most = start > limit.floor ? kMostAdvances : kMostWhereTouching;
+  for (int advance = 0; advance < most && start > 0; ++advance) {
     const double free = now.place.distance - gap;
     if (free > (1 - now.time) * travel) return std::optional<Found>();
     if (free <= tolerance) break;
