@@ -58,6 +58,13 @@ int largest_size(const std::string& integrator) {
   return 1 << 20;
 }
 
+/// What a step is for the integrator [s].
+double usual_step(const std::string& integrator, const ClothModel& model) {
+  if (integrator == "desbrun" || integrator == "implicit_euler" || integrator == "newton") return 1.0 / 60;
+  if (integrator == "xpbd") return 1.0 / 60 / XpbdSettings{}.substeps;
+  return 0.5 * explicit_step_limit(model, {});
+}
+
 /// Median over batches of the seconds per step.
 double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem& jobs, double seconds) {
   const auto run = [&](int steps) {
@@ -79,8 +86,7 @@ double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem
 void bench_one(const std::string& name, int size, int threads, const IntegratorBenchOptions& options,
                double clock) {
   Sheet sheet = make_sheet(size, options.model);
-  const bool is_implicit = name == "desbrun" || name == "implicit_euler" || name == "newton";
-  const double step = is_implicit ? 1.0 / 60 : 0.5 * explicit_step_limit(*sheet.model, {});
+  const double step = usual_step(name, *sheet.model);
   const auto jobs = make_jobs(threads);
   const auto integrator = make_integrator({.integrator = name});
   const double seconds = measure_step(*integrator, sheet, step, *jobs, options.seconds);

@@ -168,7 +168,8 @@ TEST_P(FrictionOnCloth, WithoutFrictionTheSheetKeepsItsSpeed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FrictionOnCloth,
-                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"),
+                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler", "newton",
+                                         "xpbd"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
