@@ -13,35 +13,11 @@
 namespace weft {
 namespace {
 
+using test::Hung;
+using test::rms_distance;
 using test::square;
 
 const Environment kNothing{.gravity = Vec3::Zero()};
-
-/// A cloth hung by the two corners of its first row, released horizontally.
-struct Hung {
-  std::shared_ptr<const ClothModel> model;
-  ClothState state;
-  Environment environment;
-
-  Hung(const std::shared_ptr<const ClothTopology>& topology, int cells, const ClothMaterial& material = {})
-      : model(build_cloth_model(topology, material)), state(make_state(topology->mesh.positions)) {
-    for (const int i : {0, cells}) {
-      environment.pins.particle.push_back(i);
-      environment.pins.position.push_back(state.position(i));
-    }
-  }
-
-  void advance(const char* integrator_name, int substeps) {
-    test::advance(*test::integrator(integrator_name), *model, environment, 1.0 / 60 / substeps, substeps,
-                  state);
-  }
-};
-
-double rms_distance(const ClothState& a, const ClothState& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) sum += (a.position(i) - b.position(i)).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(a.x.size()));
-}
 
 TEST(Xpbd, MovesTwoParticlesAndASpringByImplicitEuler) {
   // Along the spring, C' = C + h Ċ', Ċ' = Ċ − h W (k C' + b Ċ'), solved by hand.
@@ -107,13 +83,14 @@ Accuracy measure_hanging_sheet(int particles_per_side, const std::vector<int>& s
   Hung exact(topology, cells);
   std::vector<Hung> sheets(substeps.size(), exact);
   const double limit = explicit_step_limit(*exact.model, {});
+  const auto explicit_euler = test::integrator("explicit"), xpbd = test::integrator("xpbd");
   Accuracy reference;
   results.assign(substeps.size(), {});
   for (int frame = 0; frame < kFrames; ++frame) {
-    exact.advance("explicit", static_cast<int>(std::ceil(1.0 / 60 / (0.25 * limit))));
+    exact.advance_frame(*explicit_euler, static_cast<int>(std::ceil(1.0 / 60 / (0.25 * limit))));
     reference.strain = std::max(reference.strain, compute_strain(*exact.model, exact.state).max);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
-      sheets[s].advance("xpbd", substeps[s]);
+      sheets[s].advance_frame(*xpbd, substeps[s]);
       results[s].error += rms_distance(sheets[s].state, exact.state) / kFrames;
       results[s].strain = std::max(results[s].strain, compute_strain(*exact.model, sheets[s].state).max);
     }

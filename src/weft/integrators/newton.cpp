@@ -7,7 +7,7 @@
 /// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
 ///
 /// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
-/// it is more than a fifth of E; so does the last of several Newton steps if it has still lowered E by a
+/// it is more than a fifth of E; so does, in stiff cloth, a last Newton step that has still lowered E by a
 /// third; a potential that rises makes the step shorter.
 
 #include <algorithm>
@@ -214,8 +214,8 @@ class NewtonIntegrator final : public Integrator {
       const double predicted = share * (2 - share) * linear.decrease;
       const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
       // The first step's decrease tells nothing: most of it is what the prediction had ignored.
-      const bool is_falling =
-          report.iterations > 0 && !has_contact_diagonal_ && before - after > kFallingShare * after + noise_;
+      const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !has_contact_diagonal_ &&
+                              before - after > kFallingShare * after + noise_;
       if ((missed || is_falling) && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
