@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "weft/core/error.h"
 
@@ -107,13 +108,19 @@ class SvgWriter {
     if (plot_.mark_y > 0)
       line(0, py(plot_.mark_y), kWidth, py(plot_.mark_y), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
     words(kWidth / 2, kHeight + 36, plot_.x_title, "text-anchor=\"middle\"");
-    words(-kHeight / 2, -42, plot_.y_title, "text-anchor=\"middle\" transform=\"rotate(-90)\"");
+    const double middle = kHeight / 2;
+    words(-42, middle, plot_.y_title,
+          fmt::format("text-anchor=\"middle\" transform=\"rotate(-90 -42 {})\"", middle).c_str());
     for (const PlotSeries& series : panel.series) write_series(series);
   }
 
   void write_series(const PlotSeries& series) {
     std::string points;
-    for (const PlotPoint& p : series.points) points += fmt::format("{:.1f},{:.1f} ", px(p.x), py(p.y));
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const PlotPoint& p : series.points) {
+      if (p.y < lowest) points += fmt::format("{:.1f},{:.1f} ", px(p.x), py(p.y));
+      lowest = std::min(lowest, p.y);
+    }
     text_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
                          points, colour(series.name));
     for (const PlotPoint& p : series.points) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Curves on logarithmic axes, as SVG.
+/// Points on logarithmic axes, as SVG; of each series a line joins those that none on the left of them beats.
 
 #include <filesystem>
 #include <string>
@@ -13,8 +13,8 @@ struct PlotPoint {
 };
 
 struct PlotSeries {
-  std::string name;  // the same name has the same colour in all panels
-  std::vector<PlotPoint> points;
+  std::string name;               // the same name has the same colour in all panels
+  std::vector<PlotPoint> points;  // by ascending x
 };
 
 struct PlotPanel {
