@@ -98,15 +98,17 @@ WEFT_ALWAYS_INLINE void project_pack(const GridArrays& a, const SpringNumbers& s
   store_sum(a.c, q, cj, 0.0f - mask * wj, by);
 }
 
-/// The springs of a strip that start in places [begin, end); exists[0] belongs to place 0.
+/// The springs of a strip that start in places [begin, end) of a block whose first place is `first`.
 template <int W, bool kDamped>
 WEFT_ALWAYS_INLINE void project_places(const GridArrays& a, const Strip& strip, const SpringNumbers& spring,
-                                       std::ptrdiff_t begin, std::ptrdiff_t end, const float* exists) {
+                                       std::ptrdiff_t first, std::ptrdiff_t begin, std::ptrdiff_t end) {
   std::ptrdiff_t i = begin;
-  for (; i + W <= end; i += W) project_pack<W, kDamped>(a, spring, strip.from + i, strip.to + i, exists + i);
+  for (; i + W <= end; i += W)
+    project_pack<W, kDamped>(a, spring, strip.from + i, strip.to + i, strip.exists + (i - first));
   for (; W > 4 && i + 4 <= end; i += 4)
-    project_pack<4, kDamped>(a, spring, strip.from + i, strip.to + i, exists + i);
-  for (; i < end; ++i) project_pack<1, kDamped>(a, spring, strip.from + i, strip.to + i, exists + i);
+    project_pack<4, kDamped>(a, spring, strip.from + i, strip.to + i, strip.exists + (i - first));
+  for (; i < end; ++i)
+    project_pack<1, kDamped>(a, spring, strip.from + i, strip.to + i, strip.exists + (i - first));
 }
 
 /// The springs inside the block of plane rows [row_begin, row_end), or those that leave it.
@@ -133,8 +135,8 @@ WEFT_ALWAYS_INLINE void project_strips(const GridPass& pass, const Block& block)
     // Springs that would start at a row's last place, or end before its first, do not exist: at the block's
     // edge not even their ends may be touched, for they belong to another thread.
     const std::ptrdiff_t pitch = pass.arrays.pitch;
-    project_places<W, kDamped>(pass.arrays, strip, spring, begin * pitch + (strip.columns < 0),
-                               end * pitch - (strip.columns > 0), strip.exists - block.row_begin * pitch);
+    project_places<W, kDamped>(pass.arrays, strip, spring, block.row_begin * pitch,
+                               begin * pitch + (strip.columns < 0), end * pitch - (strip.columns > 0));
   }
 }
 
