@@ -5,41 +5,13 @@
 #include <algorithm>
 #include <optional>
 
+#include "bench/hung_cloth.h"
 #include "bench/machine.h"
-#include "weft/core/error.h"
 #include "weft/core/simd.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft::bench {
 namespace {
-
-/// A 1 m sheet hung by two corners with the stiffness of real fabric: 0.2 kg/m², 2000 N/m.
-struct Sheet {
-  std::shared_ptr<const ClothModel> model;
-  ClothState state;
-  Environment environment;
-};
-
-Sheet make_sheet(int particles_per_side, const std::string& spring_model) {
-  const Grid grid{.cells_x = particles_per_side - 1, .cells_z = particles_per_side - 1};
-  std::shared_ptr<const ClothTopology> topology;
-  if (spring_model == "mesh") {
-    topology = build_mesh_topology(build_grid_mesh(grid, GridDiagonals::alternating));
-  } else {
-    for (const SpringModel m : {SpringModel::basic, SpringModel::simplified, SpringModel::alternating}) {
-      if (to_string(m) == spring_model) topology = build_grid_topology(grid, m);
-    }
-  }
-  if (!topology)
-    throw InputError("--model must be basic, simplified, alternating or mesh, not " + spring_model);
-  Sheet sheet{
-      build_cloth_model(topology, ClothMaterial{.damping = 1e-4}), make_state(topology->mesh.positions), {}};
-  for (const int i : {0, grid.cells_x}) {
-    sheet.environment.pins.particle.push_back(i);
-    sheet.environment.pins.position.push_back(topology->mesh.positions[i]);
-  }
-  return sheet;
-}
 
 /// Bytes that a step must move between memory and registers per particle if every array is touched once per
 /// pass; empty for the solvers with a factorised matrix.
@@ -58,8 +30,15 @@ int largest_size(const std::string& integrator) {
   return 1 << 20;
 }
 
+/// What a step is for the integrator [s].
+double usual_step(const std::string& integrator, const ClothModel& model) {
+  if (integrator == "desbrun" || integrator == "implicit_euler" || integrator == "newton") return 1.0 / 60;
+  if (integrator == "xpbd") return 1.0 / 60 / XpbdSettings{}.substeps;
+  return 0.5 * explicit_step_limit(model, {});
+}
+
 /// Median over batches of the seconds per step.
-double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem& jobs, double seconds) {
+double measure_step(Integrator& integrator, HungCloth& sheet, double step, JobSystem& jobs, double seconds) {
   const auto run = [&](int steps) {
     const double begin = seconds_now();
     for (int s = 0; s < steps; ++s)
@@ -78,9 +57,8 @@ double measure_step(Integrator& integrator, Sheet& sheet, double step, JobSystem
 
 void bench_one(const std::string& name, int size, int threads, const IntegratorBenchOptions& options,
                double clock) {
-  Sheet sheet = make_sheet(size, options.model);
-  const bool is_implicit = name == "desbrun" || name == "implicit_euler" || name == "newton";
-  const double step = is_implicit ? 1.0 / 60 : 0.5 * explicit_step_limit(*sheet.model, {});
+  HungCloth sheet = make_hung_sheet(size, options.model, {.damping = 1e-4});
+  const double step = usual_step(name, *sheet.model);
   const auto jobs = make_jobs(threads);
   const auto integrator = make_integrator({.integrator = name});
   const double seconds = measure_step(*integrator, sheet, step, *jobs, options.seconds);

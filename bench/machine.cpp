@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <vector>
+
+#ifdef __linux__
+#include <unistd.h>
+#endif
 
 #include "weft/core/job_system.h"
 #include "weft/core/simd.h"
@@ -21,6 +26,18 @@ WEFT_MULTIVERSION(stream, (float* x, int count), (x, count))
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double resident_bytes() {
+#ifdef __linux__
+  // In pages: the program's size, and what of it is in memory.
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+#else
+  return 0;
+#endif
 }
 
 double measure_bandwidth(std::size_t bytes, int num_threads) {

@@ -12,6 +12,9 @@ double measure_bandwidth(std::size_t bytes, int num_threads);
 /// Clock frequency under load [Hz], from a chain of dependent additions; 0 where it cannot be measured.
 double measure_clock();
 
+/// Memory of this process that is in use [bytes]; 0 where it cannot be told (only Linux tells it).
+double resident_bytes();
+
 /// A clock that never goes back [s].
 double seconds_now();
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What several tests need: small cloths, chains, random motion.
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -58,6 +59,32 @@ inline void advance(Integrator& integrator, const ClothModel& model, const Envir
 
 inline std::unique_ptr<Integrator> integrator(std::string_view name) {
   return make_integrator({.integrator = std::string(name)});
+}
+
+/// A cloth hung by the two corners of its first row, released horizontally.
+struct Hung {
+  std::shared_ptr<const ClothModel> model;
+  ClothState state;
+  Environment environment;
+
+  Hung(const std::shared_ptr<const ClothTopology>& topology, int cells, const ClothMaterial& material = {})
+      : model(build_cloth_model(topology, material)), state(make_state(topology->mesh.positions)) {
+    for (const int i : {0, cells}) {
+      environment.pins.particle.push_back(i);
+      environment.pins.position.push_back(state.position(i));
+    }
+  }
+
+  /// A sixtieth of a second in equal steps.
+  void advance_frame(Integrator& integrator, int num_steps) {
+    advance(integrator, *model, environment, 1.0 / 60 / num_steps, num_steps, state);
+  }
+};
+
+inline double rms_distance(const ClothState& a, const ClothState& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.x.size(); ++i) sum += (a.position(i) - b.position(i)).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.x.size()));
 }
 
 }  // namespace weft::test

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian/Ubuntu packages that Weft needs and that are missing. --fuzz adds those for `make fuzz`.
+# Installs the Debian/Ubuntu packages that Weft needs and that are missing. --fuzz adds those for `make fuzz`,
+# --bench what `weft bench frontier` compares with.
 # Does nothing, and needs no rights, where nothing is missing.
 set -euo pipefail
 
@@ -20,7 +21,13 @@ packages=(
   libgtest-dev            # tests
   xvfb xdotool            # tests of the window
 )
-if [ "${1:-}" = --fuzz ]; then packages+=(clang libclang-rt-dev); fi
+for flag in "$@"; do
+  case "$flag" in
+    --fuzz) packages+=(clang libclang-rt-dev) ;;
+    --bench) packages+=(libbullet-dev) ;;
+    *) echo "install_deps.sh takes --fuzz and --bench, not $flag" >&2; exit 2 ;;
+  esac
+done
 
 is_installed() { dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q '^install ok installed$'; }
 

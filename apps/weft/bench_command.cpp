@@ -3,8 +3,11 @@
 #include <memory>
 
 #include "bench/collision.h"
+#include "bench/frontier.h"
 #include "bench/integrators.h"
 #include "bench/pictures.h"
+#include "bench/random_scenes.h"
+#include "bench/scaling.h"
 #include "commands.h"
 #include "weft/core/error.h"
 #include "weft/core/simd.h"
@@ -51,6 +54,28 @@ void add_integrators(CLI::App& bench) {
   });
 }
 
+void add_frontier(CLI::App& bench) {
+  auto options = std::make_shared<bench::FrontierOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "frontier", "How right the cloth is for how much time, for each integrator at several settings");
+  command->add_option("--methods", options->methods, "Integrators, or Bullet (default: all there are)")
+      ->delimiter(',');
+  command->add_option("--sizes", options->sizes, "Particles per side of the sheets")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 1024))
+      ->capture_default_str();
+  command->add_option("--rings", options->rings, "Rings of particles of the disc; 0: no disc")
+      ->check(CLI::Range(0, 500))
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "Of a sixtieth of a second")
+      ->check(CLI::Range(1, 6000))
+      ->capture_default_str();
+  command->add_option("--cache", options->cache,
+                      "Folder where references are kept (default: $XDG_CACHE_HOME/weft or ~/.cache/weft)");
+  command->add_option("--out", options->out, "Folder for frontier.csv and frontier.svg");
+  command->callback([options] { bench::bench_frontier(*options); });
+}
+
 void add_collision(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<bench::CollisionBenchOptions>();
   auto simd = std::make_shared<std::string>();
@@ -89,14 +114,59 @@ void add_pictures(CLI::App& bench) {
   command->callback([options] { bench::bench_pictures(*options); });
 }
 
+void add_scaling(CLI::App& bench) {
+  auto options = std::make_shared<bench::ScalingBenchOptions>();
+  CLI::App* command =
+      bench.add_subcommand("scaling", "How the cost of newton grows with the cloth, at the same accuracy");
+  command->add_option("--sizes", options->sizes, "Particles per side")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 4096))
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--model", options->model, "Springs: basic, simplified, alternating, or mesh")
+      ->capture_default_str();
+  command->add_option("--iterations", options->iterations, "Of conjugate gradients")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--steps", options->steps, "Per measurement")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  command->callback([options] { bench::bench_scaling(*options); });
+}
+
+void add_random(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<bench::RandomBenchOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "random", "Energy and momentum in random scenes, from soft and light to stiff and heavy");
+  command->add_option("--integrator", options->integrator, "Which")->capture_default_str();
+  command->add_option("--scenes", options->scenes, "How many")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--first", options->first_seed, "Seed of the first")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->capture_default_str();
+  command->add_option("--steps", options->steps, "Per scene")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->callback([options, &exit_code] {
+    if (!bench::bench_random(*options)) exit_code = 1;
+  });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bench", "Measure speed");
   command->require_subcommand(1);
   add_integrators(*command);
+  add_frontier(*command);
   add_collision(*command, exit_code);
   add_pictures(*command);
+  add_random(*command, exit_code);
+  add_scaling(*command);
 }
 
 }  // namespace weft::app

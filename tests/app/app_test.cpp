@@ -295,6 +295,33 @@ TEST_F(App, BenchMeasures) {
   EXPECT_TRUE(contains(done.out, "paper")) << done.out;
 }
 
+TEST_F(App, BenchFrontierWritesItsPointsAndKeepsItsReferences) {
+  const std::string command =
+      "weft bench frontier --sizes 8 --rings 3 --frames 12 --methods newton,xpbd --cache kept --out results";
+  const Finished done = shell(command);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "sheet 8²: 64 particles")) << done.out;
+  EXPECT_TRUE(contains(done.out, "disc of 37, at an error of 0.045 m")) << done.out;
+  EXPECT_TRUE(contains(read_text("results/frontier.csv"), "sheet 8²,64,xpbd,\"50 substeps\",")) << done.out;
+  EXPECT_TRUE(contains(read_text("results/frontier.svg"), "<title>newton, default</title>"));
+  EXPECT_TRUE(contains(done.err, "computing the reference")) << done.err;
+  EXPECT_EQ(shell(command).err, "") << "the second time it reads what it has kept";
+  expect_bad_input("weft bench frontier --methods magic", "magic");
+}
+
+TEST_F(App, BenchScalingFitsAnExponent) {
+  const Finished done = shell("weft bench scaling --sizes 4,8 --threads 1 --steps 2");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "| 64 |")) << done.out;
+  EXPECT_TRUE(contains(done.out, "1 thread: time grows like n^")) << done.out;
+}
+
+TEST_F(App, BenchRandomCountsWhatWentWrong) {
+  const Finished done = shell("weft bench random --scenes 5 --first 86 --steps 20");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "newton, 5 scenes of 20 steps: 0 became infinite")) << done.out;
+}
+
 TEST_F(App, BenchComparesWaysToFindPairs) {
   const Finished done =
       shell("weft bench collision --sizes 200,1000 --cells 4 --threads 1,2 --seconds 0.001");

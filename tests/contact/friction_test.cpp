@@ -99,7 +99,8 @@ INSTANTIATE_TEST_SUITE_P(
                     FrictionCase{Ground::plane, "desbrun"}, FrictionCase{Ground::plane, "implicit_euler"},
                     FrictionCase{Ground::plane, "newton"}, FrictionCase{Ground::box, "explicit"},
                     FrictionCase{Ground::box, "paper_fixed"}, FrictionCase{Ground::box, "desbrun"},
-                    FrictionCase{Ground::box, "implicit_euler"}, FrictionCase{Ground::box, "newton"}),
+                    FrictionCase{Ground::box, "implicit_euler"}, FrictionCase{Ground::box, "newton"},
+                    FrictionCase{Ground::plane, "xpbd"}, FrictionCase{Ground::box, "xpbd"}),
     [](const auto& test) {
       return std::string(test.param.ground == Ground::plane ? "plane_" : "box_") + test.param.integrator;
     });
@@ -168,7 +169,8 @@ TEST_P(FrictionOnCloth, WithoutFrictionTheSheetKeepsItsSpeed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FrictionOnCloth,
-                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"),
+                         testing::Values("explicit", "paper_fixed", "desbrun", "implicit_euler", "newton",
+                                         "xpbd"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

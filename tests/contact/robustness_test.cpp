@@ -89,7 +89,7 @@ TEST_P(Repeats, WithContactFromASnapshot) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Repeats,
                          testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler",
-                                         "newton"),
+                                         "newton", "xpbd"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {
@@ -159,7 +159,7 @@ TEST(World, ExplodingNextToCollidersEndsWithAReportThatNamesTheCloth) {
 }
 
 TEST(ContactSystem, EndsEveryStepWithAbsurdPositionsAndSpeeds) {
-  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
+  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
     for (const double size : {1e6, 1e18, 1e30, 1e38}) {
       for (const bool is_speed : {false, true}) {
         World world = make_heap(integrator, 6);
@@ -177,7 +177,7 @@ TEST(ContactSystem, EndsEveryStepWithAbsurdPositionsAndSpeeds) {
 }
 
 TEST(ContactSystem, EndsEveryStepWithPositionsThatAreNotNumbers) {
-  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
+  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
     for (const double value :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       for (const bool is_every : {false, true}) {

@@ -39,7 +39,7 @@ TEST_P(Momentum, OfAFreeShakenSheetStaysTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Momentum,
-                         testing::Values("explicit", "desbrun", "implicit_euler", "newton"));
+                         testing::Values("explicit", "desbrun", "implicit_euler", "newton", "xpbd"));
 
 TEST(Paper, DriftsInMomentumWhereBordersDiffer) {
   const auto topology = build_grid_topology(square(12), SpringModel::simplified);
@@ -110,7 +110,8 @@ TEST(Desbrun, IsStableAtAHundredTimesTheLargestStepOfExplicit) {
 TEST(Wind, TakesAFallingSheetToItsTerminalVelocityOnEveryMesh) {
   const Wind wind{.velocity = {2, 0, 1}, .drag = 0.5};
   const Vec3 expected = wind.velocity + Vec3(0, -9.81, 0) * 0.2 / wind.drag;
-  for (const std::string_view name : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
+  for (const std::string_view name :
+       {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
     for (const auto& topology :
          {build_grid_topology(square(4), SpringModel::simplified),
           build_grid_topology(square(11), SpringModel::simplified), test::mesh_of(square(6))}) {
@@ -182,7 +183,7 @@ double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 TEST(Integrators, AgreeAsTheStepGoesToZero) {
   const std::vector<Vec3> reference = swing("explicit", 12800);
-  for (const char* name : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
+  for (const char* name : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
     // First order divides the error by 4; the constant Jacobian's numerical damping gets there late.
     const double coarse = distance(swing(name, 800), reference),
                  fine = distance(swing(name, 3200), reference);

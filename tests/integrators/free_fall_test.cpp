@@ -59,7 +59,8 @@ TEST_P(FreeFall, IsExactToRoundOffHereAndTenKilometresAway) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FreeFall,
-                         testing::Values("explicit", "desbrun", "implicit_euler", "paper_fixed", "newton"));
+                         testing::Values("explicit", "desbrun", "implicit_euler", "paper_fixed", "newton",
+                                         "xpbd"));
 
 TEST(Paper, FiltersGravityByItsOwnFormulaOnEveryParticle) {
   const double h = 1.0 / 60;

@@ -25,7 +25,7 @@ namespace weft {
 namespace {
 
 TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
-  for (const char* name : {"explicit", "paper", "paper_fixed", "newton"}) {
+  for (const char* name : {"explicit", "paper", "paper_fixed", "newton", "xpbd"}) {
     for (const auto& topology :
          {build_grid_topology(test::square(12), SpringModel::simplified), test::mesh_of(test::square(12))}) {
       World world;

@@ -108,7 +108,7 @@ TEST_P(Changes, SnapshotsReplayBitByBit) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Changes,
                          testing::Values("explicit", "paper", "paper_fixed", "desbrun", "implicit_euler",
-                                         "newton"));
+                                         "newton", "xpbd"));
 
 TEST(World, MovesPinsAlongTheirKeyFrames) {
   for (const std::string_view name : integrator_names()) {
@@ -140,7 +140,7 @@ double slide_of_sheet(std::string_view integrator, double angle_deg, double fric
 }
 
 TEST(World, ClothOnASlopeSlidesByCoulombsLaw) {
-  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
+  for (const char* integrator : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
     EXPECT_LT(slide_of_sheet(integrator, 20, 0.4), 1e-3) << integrator << ": tan 20° is below 0.4";
     for (const double friction : {0.0, 0.2}) {
       const double radians = 30 * 3.14159265358979 / 180;

@@ -5,8 +5,8 @@
 namespace weft {
 
 const std::vector<std::string_view>& integrator_names() {
-  static const std::vector<std::string_view> names = {"explicit", "paper",          "paper_fixed",
-                                                      "desbrun",  "implicit_euler", "newton"};
+  static const std::vector<std::string_view> names = {"explicit",       "paper",  "paper_fixed", "desbrun",
+                                                      "implicit_euler", "newton", "xpbd"};
   return names;
 }
 
@@ -18,6 +18,7 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) 
   if (name == "desbrun") return make_desbrun();
   if (name == "implicit_euler") return make_implicit_euler(settings.implicit_euler);
   if (name == "newton") return make_newton(settings.newton);
+  if (name == "xpbd") return make_xpbd(settings.xpbd);
   std::string known;
   for (const std::string_view n : integrator_names()) known += (known.empty() ? "" : ", ") + std::string(n);
   throw InputError("there is no integrator \"" + name + "\"; there are " + known);

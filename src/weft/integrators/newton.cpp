@@ -7,7 +7,8 @@
 /// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
 ///
 /// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
-/// it is more than a fifth of E; a potential that rises makes the step shorter.
+/// it is more than a fifth of E; so does, in stiff cloth, a last Newton step that has still lowered E by a
+/// third; a potential that rises makes the step shorter.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,8 @@
 namespace weft {
 namespace {
 
-constexpr double kMissedShare = 0.2;      // of the energy: if the model missed more, one more Newton step
+constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
+constexpr double kFallingShare = 0.5;  // of the energy that is left: likewise if the last step took off more
 constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
 constexpr int kMaxHalvings = 8;           // of a Newton step after which the potential is higher than before
 
@@ -211,10 +213,13 @@ class NewtonIntegrator final : public Integrator {
       std::swap(correction_, trial_);
       const double predicted = share * (2 - share) * linear.decrease;
       const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
-      if (missed && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
+      // The first step's decrease tells nothing: most of it is what the prediction had ignored.
+      const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !has_contact_diagonal_ &&
+                              before - after > kFallingShare * after + noise_;
+      if ((missed || is_falling) && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
-        more *= 2;
+        if (missed) more *= 2;
       }
     }
     return report;

@@ -106,6 +106,7 @@ void read_solver(TomlTable table, SceneDesc& scene) {
   table.table("explicit").read("substeps", solver.explicit_euler.substeps, IntegerRule{0, INT_MAX});
   table.table("paper").read_choice<bool>("damping_sign", solver.paper.printed_damping_sign,
                                          {{"corrected", false}, {"as_printed", true}});
+  table.table("xpbd").read("substeps", solver.xpbd.substeps, IntegerRule{1, 100000});
 }
 
 SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file) {

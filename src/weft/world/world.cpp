@@ -62,6 +62,7 @@ std::string advice(const std::string& integrator) {
   if (integrator == "explicit")
     return "raise solver.explicit.substeps (0 chooses them), or soften the springs";
   if (integrator == "implicit_euler" || integrator == "newton") return "raise solver.steps_per_frame";
+  if (integrator == "xpbd") return "raise solver.xpbd.substeps or solver.steps_per_frame";
   return "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
 }
 

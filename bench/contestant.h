@@ -1,0 +1,38 @@
+#pragma once
+/// What the frontier compares: something that moves a hung cloth, frame by frame.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/hung_cloth.h"
+
+namespace weft::bench {
+
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+
+  /// Moves by a sixtieth of a second: this is what is timed.
+  virtual void advance_frame() = 0;
+
+  /// Where the cloth is.
+  virtual const ClothState& state() = 0;
+};
+
+/// A method with one of its settings.
+struct Entry {
+  std::string method;   // an integrator's name, or another engine's
+  std::string setting;  // what was chosen, in words
+  IntegratorSettings settings;
+  int steps_per_frame = 1;
+  int most_particles = 1 << 20;  // larger cloth would take hours
+};
+
+/// Every integrator at several settings, from cheap to good.
+std::vector<Entry> list_integrator_entries();
+
+/// On one thread.
+std::unique_ptr<Contestant> make_integrator_contestant(const Entry& entry, const HungCloth& cloth);
+
+}  // namespace weft::bench

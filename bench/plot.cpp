@@ -1,0 +1,158 @@
+#include "bench/plot.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "weft/core/error.h"
+
+namespace weft::bench {
+namespace {
+
+constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
+constexpr double kLeft = 60, kTop = 40, kPitchX = kWidth + 90, kPitchY = kHeight + 95;
+constexpr const char* kColours[] = {"#c0392b", "#2060b0", "#2e8b57", "#8e44ad",
+                                    "#d08000", "#555555", "#10a0a0", "#a06040"};
+
+std::string escape(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return safe;
+}
+
+/// Powers of ten around all values of all panels, so that panels can be compared.
+struct Axis {
+  double low = 0, high = 1;  // exponents
+
+  template <class Value>
+  static Axis around(const Plot& plot, const Value& value) {
+    Axis axis{1e9, -1e9};
+    for (const PlotPanel& panel : plot.panels) {
+      for (const PlotSeries& series : panel.series) {
+        for (const PlotPoint& p : series.points) {
+          axis.low = std::min(axis.low, std::floor(std::log10(value(p))));
+          axis.high = std::max(axis.high, std::ceil(std::log10(value(p))));
+        }
+      }
+    }
+    return axis.low < axis.high ? axis : Axis{};
+  }
+
+  /// 0 … 1
+  double place(double value) const { return (std::log10(value) - low) / (high - low); }
+};
+
+class SvgWriter {
+ public:
+  explicit SvgWriter(const Plot& plot)
+      : plot_(plot),
+        x_(Axis::around(plot, [](const PlotPoint& p) { return p.x; })),
+        y_(Axis::around(plot, [](const PlotPoint& p) { return p.y; })) {
+    for (const PlotPanel& panel : plot.panels) {
+      for (const PlotSeries& s : panel.series) {
+        if (std::find(names_.begin(), names_.end(), s.name) == names_.end()) names_.push_back(s.name);
+      }
+    }
+  }
+
+  std::string write() {
+    const auto num_rows = (plot_.panels.size() + 1) / 2;
+    const double width = kLeft + 2 * kPitchX, height = kTop + kPitchY * static_cast<double>(num_rows) + 30;
+    text_ = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"sans-serif\" "
+        "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+        width, height);
+    for (std::size_t i = 0; i < plot_.panels.size(); ++i) {
+      text_ += fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n",
+                           kLeft + kPitchX * static_cast<double>(i % 2),
+                           kTop + kPitchY * static_cast<double>(i / 2));
+      write_panel(plot_.panels[i]);
+      text_ += "</g>\n";
+    }
+    write_legend(height - 15);
+    return text_ + "</svg>\n";
+  }
+
+ private:
+  const char* colour(const std::string& name) const {
+    const auto i = std::find(names_.begin(), names_.end(), name) - names_.begin();
+    return kColours[static_cast<std::size_t>(i) % std::size(kColours)];
+  }
+
+  double px(double x) const { return kWidth * x_.place(x); }
+  double py(double y) const { return kHeight * (1 - y_.place(y)); }
+
+  void line(double x0, double y0, double x1, double y1, const char* style) {
+    text_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x0, y0, x1,
+                         y1, style);
+  }
+
+  void words(double x, double y, const std::string& text, const char* style) {
+    text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, style, escape(text));
+  }
+
+  void write_panel(const PlotPanel& panel) {
+    words(kWidth / 2, -12, panel.title, "text-anchor=\"middle\" font-size=\"14\"");
+    for (double e = x_.low; e <= x_.high; ++e) {
+      line(px(std::pow(10, e)), 0, px(std::pow(10, e)), kHeight, "stroke=\"#ddd\"");
+      words(px(std::pow(10, e)), kHeight + 16, fmt::format("{:g}", std::pow(10, e)),
+            "text-anchor=\"middle\"");
+    }
+    for (double e = y_.low; e <= y_.high; ++e) {
+      line(0, py(std::pow(10, e)), kWidth, py(std::pow(10, e)), "stroke=\"#ddd\"");
+      words(-6, py(std::pow(10, e)) + 4, fmt::format("{:g}", std::pow(10, e)), "text-anchor=\"end\"");
+    }
+    if (plot_.mark_y > 0)
+      line(0, py(plot_.mark_y), kWidth, py(plot_.mark_y), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
+    words(kWidth / 2, kHeight + 36, plot_.x_title, "text-anchor=\"middle\"");
+    const double middle = kHeight / 2;
+    words(-42, middle, plot_.y_title,
+          fmt::format("text-anchor=\"middle\" transform=\"rotate(-90 -42 {})\"", middle).c_str());
+    for (const PlotSeries& series : panel.series) write_series(series);
+  }
+
+  void write_series(const PlotSeries& series) {
+    std::string points;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const PlotPoint& p : series.points) {
+      if (p.y < lowest) points += fmt::format("{:.1f},{:.1f} ", px(p.x), py(p.y));
+      lowest = std::min(lowest, p.y);
+    }
+    text_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
+                         points, colour(series.name));
+    for (const PlotPoint& p : series.points) {
+      text_ += fmt::format(
+          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}</title></circle>\n", px(p.x),
+          py(p.y), colour(series.name), escape(p.label));
+    }
+  }
+
+  void write_legend(double y) {
+    double x = kLeft;
+    for (const std::string& name : names_) {
+      text_ +=
+          fmt::format("<circle cx=\"{:.0f}\" cy=\"{:.0f}\" r=\"5\" fill=\"{}\"/>\n", x, y - 4, colour(name));
+      words(x + 10, y, name, "");
+      x += 40 + 7.0 * static_cast<double>(name.size());
+    }
+  }
+
+  const Plot& plot_;
+  Axis x_, y_;
+  std::vector<std::string> names_;
+  std::string text_;
+};
+
+}  // namespace
+
+void write_svg(const Plot& plot, const std::filesystem::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  out << SvgWriter(plot).write();
+  out.close();
+  if (!out) throw InputError("cannot write " + file.string());
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,102 @@
+#include "bench/scaling.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/hung_cloth.h"
+#include "bench/machine.h"
+#include "bench/reference.h"
+#include "weft/core/simd.h"
+
+namespace weft::bench {
+namespace {
+
+constexpr int kStepsBefore = 3;  // which allocate, and hang the cloth up
+
+struct Cost {
+  double particles = 0;
+  std::vector<double> ms;  // median step for each number of threads
+  double bytes = 0;        // of memory that cloth and integrator hold; 0 where it cannot be told
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_step_ms(HungCloth& cloth, Integrator& integrator, int steps, int threads) {
+  const auto jobs = make_jobs(threads);
+  std::vector<double> ms;
+  for (int s = 0; s < kStepsBefore + steps; ++s) {
+    const double begin = seconds_now();
+    integrator.advance(*cloth.model, cloth.environment, kFrame, *jobs, cloth.state);
+    if (s >= kStepsBefore) ms.push_back(1000 * (seconds_now() - begin));
+  }
+  return median(ms);
+}
+
+Cost measure(int size, const ScalingBenchOptions& options) {
+  const double before = resident_bytes();
+  HungCloth cloth = make_hung_sheet(size, options.model, {});
+  const auto integrator = make_newton({.iterations = options.iterations});
+  const ClothState start = cloth.state;
+  Cost cost{.particles = static_cast<double>(cloth.model->num_particles())};
+  for (const int threads : options.threads) {
+    cloth.state = start;
+    cost.ms.push_back(median_step_ms(cloth, *integrator, options.steps, threads));
+  }
+  cost.bytes = resident_bytes() - before;
+  return cost;
+}
+
+/// The slope of the straight line nearest to the points (log x, log y).
+double fit_exponent(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double a = std::log(x[i]), b = std::log(y[i]);
+    sx += a;
+    sy += b;
+    sxx += a * a;
+    sxy += a * b;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace
+
+void bench_scaling(const ScalingBenchOptions& options) {
+  fmt::print(
+      "SIMD {}, newton with {} iterations, springs \"{}\"; wall time, median of {} steps of 1/60 s.\n\n",
+      to_string(simd_level()), options.iterations, options.model, options.steps);
+  fmt::print("| particles |");
+  for (const int t : options.threads)
+    fmt::print(" ms per step, {} thread{} | ns per particle |", t, t > 1 ? "s" : "");
+  fmt::print(" memory MB | bytes per particle |\n|--:|");
+  for (std::size_t t = 0; t < options.threads.size(); ++t) fmt::print("--:|--:|");
+  fmt::print("--:|--:|\n");
+  std::vector<double> particles;
+  std::vector<std::vector<double>> ms(options.threads.size());
+  for (const int size : options.sizes) {
+    const Cost cost = measure(size, options);
+    fmt::print("| {:.0f} |", cost.particles);
+    for (std::size_t t = 0; t < ms.size(); ++t) {
+      fmt::print(" {:.2f} | {:.0f} |", cost.ms[t], 1e6 * cost.ms[t] / cost.particles);
+      ms[t].push_back(cost.ms[t]);
+    }
+    fmt::print(" {:.1f} | {:.0f} |\n", 1e-6 * cost.bytes, cost.bytes / cost.particles);
+    std::fflush(stdout);
+    particles.push_back(cost.particles);
+  }
+  fmt::print("\n");
+  if (particles.size() < 2) return;
+  for (std::size_t t = 0; t < ms.size(); ++t) {
+    fmt::print("{} thread{}: time grows like n^{:.2f}\n", options.threads[t],
+               options.threads[t] > 1 ? "s" : "", fit_exponent(particles, ms[t]));
+  }
+}
+
+}  // namespace weft::bench
