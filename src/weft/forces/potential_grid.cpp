@@ -1,6 +1,6 @@
 /// The incremental potential on a grid: springs as stencils, family by family and row by row.
 
-#include "weft/core/pack.h"
+#include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
 namespace weft::kernels {
@@ -168,16 +168,6 @@ WEFT_ALWAYS_INLINE void add_multi_body(const float* a, const float* b, float* su
 WEFT_MULTIVERSION(add_multi, (const float* a, const float* b, float* sum, int begin, int end),
                   (a, b, sum, begin, end))
 
-template <int W>
-struct Three {
-  Pack<W> x, y, z;
-};
-
-template <int W>
-WEFT_ALWAYS_INLINE Three<W> load3(ConstRows a, std::ptrdiff_t i) {
-  return {load<W>(a.x + i), load<W>(a.y + i), load<W>(a.z + i)};
-}
-
 /// Adds K (p_i − p_j) of the springs whose Hessian begins at h.
 template <int W>
 WEFT_ALWAYS_INLINE void add_product(const float* h, std::ptrdiff_t pitch, const Three<W>& a, ConstRows p,
@@ -211,11 +201,13 @@ WEFT_ALWAYS_INLINE void multiply_rows(const GridPotential& g, ConstRows p, Rows 
         add_product<W>(h + plane, pitch, a, p, c + offset, out);
         add_product<W>(from + plane - columns, pitch, a, p, c - offset, out);
       };
-      both(0, h, 0, 1);
-      both(1, above, 1, 0);
-      both(2, above, 1, 1);
-      both(3, h, 0, 2);
-      both(4, above2, 2, 0);
+      if (kFamilies > 0) {
+        both(0, h, 0, 1);
+        both(1, above, 1, 0);
+        both(2, above, 1, 1);
+        both(3, h, 0, 2);
+        both(4, above2, 2, 0);
+      }
       if (kFamilies == 6) both(5, above, 1, -1);
       store(q.x + c, out.x);
       store(q.y + c, out.y);
@@ -229,6 +221,7 @@ WEFT_ALWAYS_INLINE void multiply_rows(const GridPotential& g, ConstRows p, Rows 
 template <int W>
 WEFT_ALWAYS_INLINE void multiply_body(const GridPotential& g, ConstRows p, Rows q, int row_begin, int row_end,
                                       double* dot) {
+  if (g.num_families == 0) return multiply_rows<W, 0>(g, p, q, row_begin, row_end, dot);
   if (g.num_families == 6) return multiply_rows<W, 6>(g, p, q, row_begin, row_end, dot);
   multiply_rows<W, 5>(g, p, q, row_begin, row_end, dot);
 }

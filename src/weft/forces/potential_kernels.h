@@ -21,7 +21,7 @@ inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2
 /// Everything that the kernels of a grid read and write.
 struct GridPotential {
   PaddedRows rows;
-  int num_families = 5;                // 5, or 6 with both diagonals
+  int num_families = 5;                // 5, 6 with both diagonals, 0 without springs
   bool alternates = false;             // diagonals start only where row + column is even
   const float* stiffness = nullptr;    // of each family
   const float* rest_length = nullptr;  // of each family

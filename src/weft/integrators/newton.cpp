@@ -1,8 +1,8 @@
 /// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
 /// V-cycle on the paper's constant matrix. A step minimises the incremental potential
 ///
-///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and
-///     gravity
+///     E(x) = ½ |x − y|²_D + springs or elements + dissipation,   D = (β/h)² M + wind,   y from two past
+///     states and gravity
 ///
 /// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
 ///
@@ -145,9 +145,7 @@ class NewtonIntegrator final : public Integrator {
     const bool same_springs = key.model_id == key_.model_id && key.step == key_.step && key.drag == key_.drag;
     key_ = key;
     set_weights(model, wind, 1 / scheme.step);
-    if (!same_springs)
-      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight,
-                                  pinned_);
+    if (!same_springs) preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
     set_weights(model, wind, rate);
     preconditioner_.set_diagonal(potential_.weight, jobs);
     has_contact_diagonal_ = false;
@@ -164,6 +162,7 @@ class NewtonIntegrator final : public Integrator {
   void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs,
                   ClothState& state) {
     noise_ = energy_noise(model, state);
+    potential_.remember(state.x, state.history.displacement, scheme.memory, jobs);
     pin_motion_.prepare(pins, scheme.step, state);
     predict(scheme, rows_, jobs, state, potential_.target);
     for (std::size_t p = 0; p < pinned_.size(); ++p) {

@@ -51,6 +51,11 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
       ++springs_around[p];
     }
   }
+  if (model->elements) {
+    for (const Coupling& c : model->elements->couplings) {
+      for (const int p : {c.i, c.j}) model->stiffness_sum[p] += c.stiffness;
+    }
+  }
   for (const int s : t.table.spring) {
     const double k = s < 0 ? 0.0 : model->stiffness(t.springs[s].kind);
     model->entry_stiffness.push_back(static_cast<float>(k));

@@ -57,10 +57,10 @@ struct ClothModel {
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
   /// A fabric's membranes and bending, besides the springs (whose stiffness is then 0 as a rule); null: none.
-  /// Only `implicit_euler` knows them.
+  /// `newton` and `implicit_euler` know them.
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
-  std::vector<double> stiffness_sum;   // Σ_j k_ij, (num_particles) [N/m]
+  std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]
   std::vector<float> entry_stiffness;  // k of each entry of topology->table, 0 in its padding [N/m]
   double max_stiffness_rate = 0;       // max_i Σ_j k_ij / m_i [1/s²]
   double max_damping_rate = 0;         // max_i Σ_j d_ij / m_i [1/s]
