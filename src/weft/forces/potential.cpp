@@ -22,6 +22,7 @@ PaddedRows padded_rows_of(const ClothTopology& topology) {
 
 void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
   damping_ = static_cast<float>(model.material.damping * damping_rate);
+  damping_time_ = static_cast<float>(model.material.damping_time * damping_rate);
   is_projected_ = model.material.damping_kind == DampingKind::projected;
   if (model.id == model_id_) return elements_.fit(model, rows_, damping_rate);
   if (model.topology != topology_) {
@@ -48,8 +49,10 @@ void IncrementalPotential::fit_grid(const ClothModel& model) {
   const double dx = grid.spacing_x(), dz = grid.spacing_z(), diagonal = std::sqrt(dx * dx + dz * dz);
   const ClothMaterial& m = model.material;
   const int num_families = topology_->spring_model == SpringModel::simplified ? 5 : 6;
+  has_soft_border_ = m.structural_z.has_value();
   num_families_ = has_springs_ ? num_families : 0;
-  const double stiffness[] = {m.structural, m.structural, m.shear, m.bend, m.bend, m.shear};
+  const double stiffness[] = {m.structural, m.structural_z.value_or(m.structural), m.shear, m.bend, m.bend,
+                              m.shear};
   const double rest_length[] = {dx, dz, diagonal, 2 * dx, 2 * dz, diagonal};
   for (int f = 0; f < 6; ++f) {
     stiffness_[f] = static_cast<float>(stiffness[f]);
@@ -114,7 +117,9 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
           .alternates = topology_->spring_model == SpringModel::alternating,
           .stiffness = stiffness_,
           .rest_length = rest_length_,
+          .has_soft_border = has_soft_border_,
           .damping = damping_,
+          .damping_time = damping_time_,
           .is_projected = is_projected_,
           .weight = weight.data(),
           .x = kernels::rows(std::as_const(x_)),

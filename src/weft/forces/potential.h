@@ -40,7 +40,7 @@ class IncrementalPotential {
   void fit(const ClothModel& model, double damping_rate);
 
   const PaddedRows& rows() const { return rows_; }
-  bool is_damped() const { return damping_ > 0 || elements_.is_damped(); }
+  bool is_damped() const { return damping_ > 0 || damping_time_ > 0 || elements_.is_damped(); }
 
   // Set before use; zero where no particle is (rows().size() each).
   std::vector<float> weight;  // D [N/m]
@@ -78,6 +78,7 @@ class IncrementalPotential {
   float rest_length_[6] = {};          // of each family [m]
   std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
   float damping_ = 0;                  // c [N/m]
+  float damping_time_ = 0;             // c of a spring, over its stiffness, besides [1]
   bool is_projected_ = true;
 
   std::vector<float> hessian_;  // t, wx, wy, wz of each spring
@@ -87,6 +88,7 @@ class IncrementalPotential {
   std::vector<double> parts_;   // sums of rows or slices
   NeighbourTable no_springs_;   // on a mesh whose springs have no stiffness
   bool has_springs_ = true;
+  bool has_soft_border_ = false;  // on a grid
   ElementPotential elements_;
 };
 

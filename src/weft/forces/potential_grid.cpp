@@ -25,6 +25,16 @@ WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, std
   return exists;
 }
 
+/// A half where a structural spring is on a border that is soft, else 1.
+template <int W>
+WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
+  const Pack<W> half = broadcast<W>(0.5f), one = broadcast<W>(1);
+  if (!g.has_soft_border || family > 1) return one;
+  if (family == 0) return j == 0 || j + 1 == g.rows.num_rows ? half : one;
+  const Pack<W> column = count_from<W>(i), last = broadcast<W>(static_cast<float>(g.rows.row_length - 1));
+  return select_less(column, broadcast<W>(1), half, select_less(column, last, one, half));
+}
+
 /// The springs of one family that start in row j.
 template <int W, bool kStore, bool kDamped>
 WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy) {
@@ -43,13 +53,13 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     const V length_sq = larger(dx * dx + dy * dy + dz * dz, broadcast<W>(kMinLengthSq));
     const V length = square_root(length_sq), inverse = 1.0f / length;
     const V exists = spring_exists<W>(g, family, i, j);
-    const V k = stiffness * exists;
+    const V k = stiffness * exists * border_share<W>(g, family, i, j);
     const V extension = length - rest_length;
     V slope = k * extension * inverse;
     energy.add(part, 0.5f * k * extension * extension);
     V axial = broadcast<W>(0), plain = broadcast<W>(0);
     if (kDamped) {
-      const V c = g.damping * exists;
+      const V c = g.damping * exists + g.damping_time * k;
       const V zx = load<W>(g.damped.x + q) - load<W>(g.damped.x + p);
       const V zy = load<W>(g.damped.y + q) - load<W>(g.damped.y + p);
       const V zz = load<W>(g.damped.z + q) - load<W>(g.damped.z + p);
@@ -102,7 +112,7 @@ WEFT_ALWAYS_INLINE void springs_of_rows(const GridPotential& g, int row_begin, i
 template <int W>
 WEFT_ALWAYS_INLINE void springs_body(const GridPotential& g, bool store, int row_begin, int row_end,
                                      double* energy) {
-  if (g.damping > 0) {
+  if (g.damping > 0 || g.damping_time > 0) {
     if (store) return springs_of_rows<W, true, true>(g, row_begin, row_end, energy);
     return springs_of_rows<W, false, true>(g, row_begin, row_end, energy);
   }

@@ -25,7 +25,9 @@ struct GridPotential {
   bool alternates = false;             // diagonals start only where row + column is even
   const float* stiffness = nullptr;    // of each family
   const float* rest_length = nullptr;  // of each family
+  bool has_soft_border = false;        // structural springs on it have half their stiffness
   float damping = 0;
+  float damping_time = 0;  // damping that every spring has more, over its stiffness
   bool is_projected = true;
   const float* weight = nullptr;
   ConstRows x{}, offset{}, damped{};

@@ -14,7 +14,7 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
     return i;
   };
   for (const Spring& s : model.topology->springs) {
-    if (model.stiffness(s.kind) > 0) parent[root(s.i)] = root(s.j);
+    if (model.stiffness(s) > 0) parent[root(s.i)] = root(s.j);
   }
   if (model.elements) {
     for (const MembraneElement& m : model.elements->membranes) {

@@ -25,6 +25,8 @@ Lists springs_of_mesh(const ClothModel& model, double damping) {
   return lists;
 }
 
+bool has_membranes(const ClothModel& model) { return model.elements && !model.elements->membranes.empty(); }
+
 /// What damping makes of the stiffness of elements.
 double stiffening(const ClothElements& elements, double step) { return 1 + elements.damping / step; }
 
@@ -50,10 +52,10 @@ void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows
     return build_mesh(model, step);
   }
   grid_.resize(rows);
-  if (model.elements) {
+  if (has_membranes(model)) {
     fill_grid_by_elements(*model.elements, step);
   } else {
-    fill_grid_by_springs(model, model.material.damping / step);
+    fill_grid_by_springs(model, step);
   }
   pin_grid();
 }
@@ -74,8 +76,8 @@ void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobS
 }
 
 void ScalarPreconditioner::build_mesh(const ClothModel& model, double step) {
-  const Lists lists =
-      model.elements ? elements_of_mesh(model, step) : springs_of_mesh(model, model.material.damping / step);
+  const Lists lists = has_membranes(model) ? elements_of_mesh(model, step)
+                                           : springs_of_mesh(model, model.material.damping / step);
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
   for (const int p : pinned_) is_pinned[p] = 1;
@@ -97,20 +99,25 @@ void ScalarPreconditioner::build_mesh(const ClothModel& model, double step) {
   mesh_.build(couplings, excess);
 }
 
-void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double damping) {
+void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double step) {
   GridLevel& level = grid_.finest();
   const ClothMaterial& m = model.material;
+  const double damping = m.damping / step;
   const SpringModel spring_model = model.topology->spring_model;
-  const auto structural = static_cast<float>(m.structural + 4 * m.bend + 5 * damping);
-  const auto shear = static_cast<float>(m.shear + damping);
+  const double stiffening = 1 + m.damping_time / step;
+  const auto along = [&](double stiffness) {
+    return static_cast<float>(stiffening * stiffness + 4 * m.bend + 5 * damping);
+  };
+  const float along_x = along(m.structural), along_z = along(m.structural_z.value_or(m.structural));
+  const auto shear = static_cast<float>(stiffening * m.shear + damping);
   const int columns = level.rows.row_length, num_rows = level.rows.num_rows;
   level.has_down_left = spring_model != SpringModel::simplified;
   const bool alternates = spring_model == SpringModel::alternating;
   for (int j = 0; j < num_rows; ++j) {
     const int first = level.rows.row(j);
-    std::fill_n(level.right.begin() + first, columns - 1, structural);
+    std::fill_n(level.right.begin() + first, columns - 1, along_x);
     if (j + 1 == num_rows) break;
-    std::fill_n(level.down.begin() + first, columns, structural);
+    std::fill_n(level.down.begin() + first, columns, along_z);
     for (int i = 0; i < columns; ++i) {
       const float here = alternates && (i + j) % 2 == 1 ? 0.0f : shear;
       level.down_right[first + i] = i + 1 < columns ? here : 0.0f;

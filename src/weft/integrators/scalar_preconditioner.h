@@ -33,7 +33,7 @@ class ScalarPreconditioner {
 
  private:
   void build_mesh(const ClothModel& model, double step);
-  void fill_grid_by_springs(const ClothModel& model, double damping);
+  void fill_grid_by_springs(const ClothModel& model, double step);
   void fill_grid_by_elements(const ClothElements& elements, double step);
   void pin_grid();
 

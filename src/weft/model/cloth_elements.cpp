@@ -45,6 +45,15 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
+std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
+                                                                 const Fabric& fabric) {
+  ClothElements elements;
+  elements.bending = build_grid_bending(grid, warp, fabric);
+  elements.damping = fabric.damping;
+  elements.grid_warp = warp;
+  return std::make_shared<ClothElements>(std::move(elements));
+}
+
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric, BendingModel bending) {
   ClothElements elements = make_elements(mesh, warp, fabric, bending);

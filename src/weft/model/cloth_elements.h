@@ -37,6 +37,10 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 
+/// The grid's bending alone, beside springs that stand for the membranes.
+std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
+                                                                 const Fabric& fabric);
+
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);

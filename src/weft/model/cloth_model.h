@@ -33,6 +33,12 @@ struct ClothMaterial {
   DampingKind damping_kind = DampingKind::projected;
   double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
   double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
+
+  // Of a grid whose springs stand for a fabric (see make_grid_springs); `newton` and `implicit_euler` know
+  // them.
+  std::optional<double> structural_z;  // of structural springs along the second axis; those on the border, of
+                                       // both axes, then have half their stiffness [N/m]
+  double damping_time = 0;  // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
 };
 
 struct ClothTopology {
@@ -56,7 +62,7 @@ struct ClothModel {
       0;  // no two models of a process share it: what is computed from a model can be kept by id
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
-  /// A fabric's membranes and bending, besides the springs (whose stiffness is then 0 as a rule); null: none.
+  /// A fabric's membranes and bending, or bending alone where springs stand for the membranes; null: none.
   /// `newton` and `implicit_euler` know them.
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
@@ -78,6 +84,11 @@ struct ClothModel {
         break;
     }
     return material.bend;
+  }
+
+  double stiffness(const Spring& spring) const;  // [N/m]
+  double damping(const Spring& spring) const {   // [N·s/m]
+    return material.damping + material.damping_time * stiffness(spring);
   }
 };
 
