@@ -19,6 +19,7 @@ done
 "$weft" render paper/fig6_ball --frames 0,26,120 --columns 3 --size 480x360 --out "$images/fig6_ball.jpg"
 
 # Real fabric with the default integrator.
+"$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
 # The moving picture at the top of the README.

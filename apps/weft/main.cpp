@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_scenes_command(app, exit_code);
   add_fabrics_command(app, exit_code);
   add_check_command(app, exit_code);
+  add_study_command(app, exit_code);
   add_verify_command(app, exit_code);
   add_bench_command(app, exit_code);
   try {

@@ -34,6 +34,20 @@ TEST_F(App, RunTakesAFileAndWritesIntoOutAndTheScenesName) {
   EXPECT_TRUE(fs::exists("out/mine/report.json"));
 }
 
+TEST_F(App, StudyPrintsOneJsonObjectAndLeavesPictureAndData) {
+  const Finished done = shell("weft study shear --fabric silk --json --out lab");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json json = nlohmann::json::parse(done.out);
+  EXPECT_NEAR(json["g"].get<double>(), 14, 0.3);
+  EXPECT_EQ(json["units"]["g"], "N/m");
+  EXPECT_EQ(read_json("lab/study.json"), json);
+  EXPECT_EQ(read_text("lab/specimen.png").substr(1, 3), "PNG");
+  EXPECT_TRUE(contains(read_text("lab/specimen.obj"), "v "));
+  EXPECT_TRUE(contains(shell("weft study cantilever --fabric denim --direction bias").out, "bending_length"));
+  expect_bad_input("weft study drape --fabric slik", "did you mean \"silk\"?");
+  expect_bad_input("weft study drape", "--fabric");
+}
+
 TEST_F(App, RunReplacesTheFilesOfAnEarlierRun) {
   fs::create_directories("results");
   for (const char* file : {"results/animation.glb", "results/report.json", "results/notes.txt"}) {

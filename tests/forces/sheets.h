@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "weft/core/random.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane.h"
-#include "weft/mesh/grid.h"
+#include "weft/mesh/sample_meshes.h"
 
 namespace weft::test {
 
@@ -33,32 +32,9 @@ inline const char* to_string(SheetKind kind) {
 }
 
 inline TriangleMesh make_sheet(SheetKind kind, const Grid& grid, std::uint64_t seed = 1) {
+  if (kind == SheetKind::random) return build_random_mesh(grid, seed);
   const bool parallel = kind == SheetKind::parallel;
-  TriangleMesh mesh = build_grid_mesh(grid, parallel ? GridDiagonals::parallel : GridDiagonals::alternating);
-  if (kind != SheetKind::random) return mesh;
-  Random random(seed);
-  for (int j = 1; j < grid.cells_z; ++j) {
-    for (int i = 1; i < grid.cells_x; ++i) {
-      mesh.positions[grid.index(i, j)] +=
-          Vec3(random.uniform(-0.3, 0.3) * grid.spacing_x(), 0, random.uniform(-0.3, 0.3) * grid.spacing_z());
-    }
-  }
-  mesh.triangles.clear();
-  for (int j = 0; j < grid.cells_z; ++j) {
-    for (int i = 0; i < grid.cells_x; ++i) {
-      const int a = grid.index(i, j), b = grid.index(i + 1, j), c = grid.index(i + 1, j + 1),
-                d = grid.index(i, j + 1);
-      const auto& p = mesh.positions;
-      if ((p[a] - p[c]).norm() < (p[b] - p[d]).norm()) {
-        mesh.triangles.push_back({a, d, c});
-        mesh.triangles.push_back({a, c, b});
-      } else {
-        mesh.triangles.push_back({a, d, b});
-        mesh.triangles.push_back({d, c, b});
-      }
-    }
-  }
-  return mesh;
+  return build_grid_mesh(grid, parallel ? GridDiagonals::parallel : GridDiagonals::alternating);
 }
 
 inline TriangleMesh make_sheet(SheetKind kind, int cells) {

@@ -22,8 +22,9 @@ PaddedRows padded_rows_of(const ClothTopology& topology) {
 
 void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
   damping_ = static_cast<float>(model.material.damping * damping_rate);
+  damping_time_ = static_cast<float>(model.material.damping_time * damping_rate);
   is_projected_ = model.material.damping_kind == DampingKind::projected;
-  if (model.id == model_id_) return;
+  if (model.id == model_id_) return elements_.fit(model, rows_, damping_rate);
   if (model.topology != topology_) {
     topology_ = model.topology;
     rows_ = padded_rows_of(*topology_);
@@ -33,27 +34,33 @@ void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
     slope_.clear();
   }
   model_id_ = model.id;
+  const ClothMaterial& m = model.material;
+  has_springs_ = m.structural > 0 || m.shear > 0 || m.bend > 0 || m.damping > 0;
   if (topology_->grid) {
     fit_grid(model);
   } else {
     fit_mesh(model);
   }
+  elements_.fit(model, rows_, damping_rate);
 }
 
 void IncrementalPotential::fit_grid(const ClothModel& model) {
   const Grid& grid = *topology_->grid;
   const double dx = grid.spacing_x(), dz = grid.spacing_z(), diagonal = std::sqrt(dx * dx + dz * dz);
   const ClothMaterial& m = model.material;
-  num_families_ = topology_->spring_model == SpringModel::simplified ? 5 : 6;
-  const double stiffness[] = {m.structural, m.structural, m.shear, m.bend, m.bend, m.shear};
+  const int num_families = topology_->spring_model == SpringModel::simplified ? 5 : 6;
+  has_soft_border_ = m.structural_z.has_value();
+  num_families_ = has_springs_ ? num_families : 0;
+  const double stiffness[] = {m.structural, m.structural_z.value_or(m.structural), m.shear, m.bend, m.bend,
+                              m.shear};
   const double rest_length[] = {dx, dz, diagonal, 2 * dx, 2 * dz, diagonal};
   for (int f = 0; f < 6; ++f) {
     stiffness_[f] = static_cast<float>(stiffness[f]);
     rest_length_[f] = static_cast<float>(rest_length[f]);
   }
   if (!hessian_.empty()) return;
-  hessian_.assign(kernels::GridPotential::hessian_size(rows_, num_families_), 0.0f);
-  slope_.assign(num_families_ * rows_.size() + kPackLanes, 0.0f);
+  hessian_.assign(kernels::GridPotential::hessian_size(rows_, num_families), 0.0f);
+  slope_.assign(num_families * rows_.size() + kPackLanes, 0.0f);
   parts_.assign(rows_.num_rows, 0.0);
 }
 
@@ -63,6 +70,24 @@ void IncrementalPotential::fit_mesh(const ClothModel& model) {
   if (!hessian_.empty()) return;
   hessian_.assign(4 * table.neighbour.size(), 0.0f);
   parts_.assign(table.num_slices(), 0.0);
+  no_springs_.slice_begin.assign(table.slice_begin.size(), 0);
+}
+
+void IncrementalPotential::remember(const Vec3Array& x, const Vec3Array& displacement, double memory,
+                                    JobSystem& jobs) {
+  if (!elements_.is_damped()) return;
+  for (int j = 0; j < rows_.num_rows; ++j) {
+    const auto copy = [&](const float* from, const float* by, float* to, float* before) {
+      for (int i = j * rows_.row_length, at = rows_.row(j); i < (j + 1) * rows_.row_length; ++i, ++at) {
+        to[at] = from[i];
+        before[at] = from[i] - by[i];
+      }
+    };
+    copy(x.x(), displacement.x(), x_.x(), damped_.x());
+    copy(x.y(), displacement.y(), x_.y(), damped_.y());
+    copy(x.z(), displacement.z(), x_.z(), damped_.z());
+  }
+  elements_.remember(x_, damped_, memory, jobs);
 }
 
 /// x = y + e, and z = e + lag.
@@ -92,7 +117,9 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
           .alternates = topology_->spring_model == SpringModel::alternating,
           .stiffness = stiffness_,
           .rest_length = rest_length_,
+          .has_soft_border = has_soft_border_,
           .damping = damping_,
+          .damping_time = damping_time_,
           .is_projected = is_projected_,
           .weight = weight.data(),
           .x = kernels::rows(std::as_const(x_)),
@@ -103,7 +130,7 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
 }
 
 kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& e) {
-  return {.table = &topology_->table,
+  return {.table = has_springs_ ? &topology_->table : &no_springs_,
           .first = rows_.row(0),
           .num_particles = topology_->num_particles(),
           .stiffness = mesh_stiffness_.data(),
@@ -139,13 +166,22 @@ double IncrementalPotential::compute(const Vec3Array& e, JobSystem& jobs, Vec3Ar
   return sum_parts(num_slices);
 }
 
-double IncrementalPotential::energy(const Vec3Array& e, JobSystem& jobs) { return compute(e, jobs, nullptr); }
+double IncrementalPotential::energy(const Vec3Array& e, JobSystem& jobs) {
+  const double springs = compute(e, jobs, nullptr);
+  return elements_.empty() ? springs : springs + elements_.energy(x_, damped_, jobs);
+}
 
 double IncrementalPotential::linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force) {
-  return compute(e, jobs, &force);
+  const double springs = compute(e, jobs, &force);
+  return elements_.empty() ? springs : springs + elements_.linearise(x_, damped_, jobs, force);
 }
 
 double IncrementalPotential::multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) {
+  const double springs = multiply_springs(p, jobs, q);
+  return elements_.empty() ? springs : springs + elements_.multiply(p, jobs, q);
+}
+
+double IncrementalPotential::multiply_springs(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) {
   const kernels::ConstRows in = kernels::rows(p);
   const kernels::Rows out = kernels::rows(q);
   double* parts = parts_.data();

@@ -2,7 +2,7 @@
 /// The incremental potential of an implicit step, in floats, for the fast solver:
 ///
 ///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring, if damping is
-///     projected)
+///     projected) + a fabric's membranes and bending (element_potential.h)
 ///
 /// y is where the particles would go without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with
 /// the velocity v_y that goes with y, and c = b β/h: the dissipation of spring damping at the new velocity
@@ -21,6 +21,7 @@
 #include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
+#include "weft/forces/element_potential.h"
 #include "weft/model/cloth_model.h"
 
 namespace weft {
@@ -39,12 +40,16 @@ class IncrementalPotential {
   void fit(const ClothModel& model, double damping_rate);
 
   const PaddedRows& rows() const { return rows_; }
-  bool is_damped() const { return damping_ > 0; }
+  bool is_damped() const { return damping_ > 0 || damping_time_ > 0 || elements_.is_damped(); }
 
   // Set before use; zero where no particle is (rows().size() each).
   std::vector<float> weight;  // D [N/m]
   Vec3Array target;           // y [m]
   Vec3Array lag;              // (h/β) v_y; only used with damping [m]
+
+  /// Where the particles are before the step, and what has changed in the step before it: what the damping of
+  /// elements goes by (see ElementPotential). To be called before a step.
+  void remember(const Vec3Array& x, const Vec3Array& displacement, double memory, JobSystem& jobs);
 
   /// E(y + e) [J]. Offsets from y, for they are small: in floats x − y would lose them where steps are small.
   double energy(const Vec3Array& e, JobSystem& jobs);
@@ -61,17 +66,19 @@ class IncrementalPotential {
   kernels::GridPotential grid_view(const Vec3Array& e);
   kernels::MeshPotential mesh_view(const Vec3Array& e);
   double compute(const Vec3Array& e, JobSystem& jobs, Vec3Array* force);
+  double multiply_springs(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
   void place(const Vec3Array& e, JobSystem& jobs);
   double sum_parts(int count) const;
 
   std::shared_ptr<const ClothTopology> topology_;
   std::uint64_t model_id_ = 0;
   PaddedRows rows_;
-  int num_families_ = 0;               // of equal springs on a grid
+  int num_families_ = 0;               // of equal springs on a grid; 0 if none has any stiffness
   float stiffness_[6] = {};            // of each family [N/m]
   float rest_length_[6] = {};          // of each family [m]
   std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
   float damping_ = 0;                  // c [N/m]
+  float damping_time_ = 0;             // c of a spring, over its stiffness, besides [1]
   bool is_projected_ = true;
 
   std::vector<float> hessian_;  // t, wx, wy, wz of each spring
@@ -79,6 +86,10 @@ class IncrementalPotential {
   Vec3Array x_;                 // y + e
   Vec3Array damped_;            // z
   std::vector<double> parts_;   // sums of rows or slices
+  NeighbourTable no_springs_;   // on a mesh whose springs have no stiffness
+  bool has_springs_ = true;
+  bool has_soft_border_ = false;  // on a grid
+  ElementPotential elements_;
 };
 
 }  // namespace weft

@@ -1,6 +1,6 @@
 /// The incremental potential on a grid: springs as stencils, family by family and row by row.
 
-#include "weft/core/pack.h"
+#include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
 namespace weft::kernels {
@@ -25,6 +25,16 @@ WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, std
   return exists;
 }
 
+/// A half where a structural spring is on a border that is soft, else 1.
+template <int W>
+WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
+  const Pack<W> half = broadcast<W>(0.5f), one = broadcast<W>(1);
+  if (!g.has_soft_border || family > 1) return one;
+  if (family == 0) return j == 0 || j + 1 == g.rows.num_rows ? half : one;
+  const Pack<W> column = count_from<W>(i), last = broadcast<W>(static_cast<float>(g.rows.row_length - 1));
+  return select_less(column, broadcast<W>(1), half, select_less(column, last, one, half));
+}
+
 /// The springs of one family that start in row j.
 template <int W, bool kStore, bool kDamped>
 WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy) {
@@ -43,13 +53,13 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     const V length_sq = larger(dx * dx + dy * dy + dz * dz, broadcast<W>(kMinLengthSq));
     const V length = square_root(length_sq), inverse = 1.0f / length;
     const V exists = spring_exists<W>(g, family, i, j);
-    const V k = stiffness * exists;
+    const V k = stiffness * exists * border_share<W>(g, family, i, j);
     const V extension = length - rest_length;
     V slope = k * extension * inverse;
     energy.add(part, 0.5f * k * extension * extension);
     V axial = broadcast<W>(0), plain = broadcast<W>(0);
     if (kDamped) {
-      const V c = g.damping * exists;
+      const V c = g.damping * exists + g.damping_time * k;
       const V zx = load<W>(g.damped.x + q) - load<W>(g.damped.x + p);
       const V zy = load<W>(g.damped.y + q) - load<W>(g.damped.y + p);
       const V zz = load<W>(g.damped.z + q) - load<W>(g.damped.z + p);
@@ -102,7 +112,7 @@ WEFT_ALWAYS_INLINE void springs_of_rows(const GridPotential& g, int row_begin, i
 template <int W>
 WEFT_ALWAYS_INLINE void springs_body(const GridPotential& g, bool store, int row_begin, int row_end,
                                      double* energy) {
-  if (g.damping > 0) {
+  if (g.damping > 0 || g.damping_time > 0) {
     if (store) return springs_of_rows<W, true, true>(g, row_begin, row_end, energy);
     return springs_of_rows<W, false, true>(g, row_begin, row_end, energy);
   }
@@ -168,16 +178,6 @@ WEFT_ALWAYS_INLINE void add_multi_body(const float* a, const float* b, float* su
 WEFT_MULTIVERSION(add_multi, (const float* a, const float* b, float* sum, int begin, int end),
                   (a, b, sum, begin, end))
 
-template <int W>
-struct Three {
-  Pack<W> x, y, z;
-};
-
-template <int W>
-WEFT_ALWAYS_INLINE Three<W> load3(ConstRows a, std::ptrdiff_t i) {
-  return {load<W>(a.x + i), load<W>(a.y + i), load<W>(a.z + i)};
-}
-
 /// Adds K (p_i − p_j) of the springs whose Hessian begins at h.
 template <int W>
 WEFT_ALWAYS_INLINE void add_product(const float* h, std::ptrdiff_t pitch, const Three<W>& a, ConstRows p,
@@ -211,11 +211,13 @@ WEFT_ALWAYS_INLINE void multiply_rows(const GridPotential& g, ConstRows p, Rows 
         add_product<W>(h + plane, pitch, a, p, c + offset, out);
         add_product<W>(from + plane - columns, pitch, a, p, c - offset, out);
       };
-      both(0, h, 0, 1);
-      both(1, above, 1, 0);
-      both(2, above, 1, 1);
-      both(3, h, 0, 2);
-      both(4, above2, 2, 0);
+      if (kFamilies > 0) {
+        both(0, h, 0, 1);
+        both(1, above, 1, 0);
+        both(2, above, 1, 1);
+        both(3, h, 0, 2);
+        both(4, above2, 2, 0);
+      }
       if (kFamilies == 6) both(5, above, 1, -1);
       store(q.x + c, out.x);
       store(q.y + c, out.y);
@@ -229,6 +231,7 @@ WEFT_ALWAYS_INLINE void multiply_rows(const GridPotential& g, ConstRows p, Rows 
 template <int W>
 WEFT_ALWAYS_INLINE void multiply_body(const GridPotential& g, ConstRows p, Rows q, int row_begin, int row_end,
                                       double* dot) {
+  if (g.num_families == 0) return multiply_rows<W, 0>(g, p, q, row_begin, row_end, dot);
   if (g.num_families == 6) return multiply_rows<W, 6>(g, p, q, row_begin, row_end, dot);
   multiply_rows<W, 5>(g, p, q, row_begin, row_end, dot);
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "weft/core/pack.h"
+#include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
 namespace weft::kernels {
@@ -13,38 +13,6 @@ constexpr int kLanes = NeighbourTable::kLanes;
 constexpr float kMinLengthSq = 1e-30f;
 
 static_assert(kLanes == kPackLanes);
-
-template <int W>
-struct Three {
-  Pack<W> x, y, z;
-};
-
-template <int W>
-WEFT_ALWAYS_INLINE Three<W> load3(ConstRows a, int i) {
-  return {load<W>(a.x + i), load<W>(a.y + i), load<W>(a.z + i)};
-}
-
-template <int W>
-WEFT_ALWAYS_INLINE Pack<W> gather(const float* from, const int* index) {
-  Pack<W> v{};
-  for (int l = 0; l < W; ++l) v[l] = from[index[l]];
-  return v;
-}
-
-template <int W>
-WEFT_ALWAYS_INLINE Three<W> gather3(ConstRows a, int first, const int* index) {
-  return {gather<W>(a.x + first, index), gather<W>(a.y + first, index), gather<W>(a.z + first, index)};
-}
-
-template <int W>
-WEFT_ALWAYS_INLINE Pack<W> dot(const Three<W>& a, const Three<W>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-template <int W>
-WEFT_ALWAYS_INLINE Three<W> minus(const Three<W>& a, const Three<W>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
 
 /// The springs of W particles, which begin at lane `lane` of a slice.
 template <int W, bool kStore, bool kDamped>

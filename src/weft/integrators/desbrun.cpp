@@ -48,7 +48,7 @@ class DesbrunIntegrator final : public Integrator {
 
   /// The matrix's off-diagonal element of a spring, without its sign [kg].
   static double coupling(const ClothModel& model, const Spring& spring, double step) {
-    return step * step * model.stiffness(spring.kind) + step * model.material.damping;
+    return step * step * model.stiffness(spring) + step * model.material.damping;
   }
 
   void prepare(const ClothModel& model, const Environment& environment, double step) {
@@ -93,7 +93,7 @@ class DesbrunIntegrator final : public Integrator {
       right_side_.row(i) = step * force;
     }
     for (const Spring& s : topology.springs) {
-      const double k = model.stiffness(s.kind);
+      const double k = model.stiffness(s);
       const Vec3 d = state.x.get(s.j) - state.x.get(s.i), w = state.v.get(s.j) - state.v.get(s.i);
       const Vec3 damping = projected ? projected_damping_force(b, d, w) : plain_damping_force(b, w);
       const Vec3 impulse = step * (spring_force(k, s.rest_length, d) + damping + step * k * w);

@@ -14,7 +14,12 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
     return i;
   };
   for (const Spring& s : model.topology->springs) {
-    if (model.stiffness(s.kind) > 0) parent[root(s.i)] = root(s.j);
+    if (model.stiffness(s) > 0) parent[root(s.i)] = root(s.j);
+  }
+  if (model.elements) {
+    for (const MembraneElement& m : model.elements->membranes) {
+      for (const int c : {1, 2}) parent[root(m.vertices[0])] = root(m.vertices[c]);
+    }
   }
   std::vector<int> number(n, 0);
   for (const int p : pinned) number[root(p)] = -1;

@@ -9,7 +9,7 @@
 
 namespace weft {
 
-/// Pieces of cloth that hang together by springs, without a pinned particle among them.
+/// Pieces of cloth that hang together by springs or elements, without a pinned particle among them.
 class FreePieces {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);

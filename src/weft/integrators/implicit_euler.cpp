@@ -161,8 +161,8 @@ class ImplicitEulerIntegrator final : public Integrator {
                 0.5 * step_ * wind.drag * model_->topology->area[i] * slip.squaredNorm();
     }
     for (const Spring& s : model_->topology->springs) {
-      energy += spring_energy(model_->stiffness(s.kind), s.rest_length, x[s.j] - x[s.i]);
-      if (model_->material.damping > 0) {
+      energy += spring_energy(model_->stiffness(s), s.rest_length, x[s.j] - x[s.i]);
+      if (is_damped()) {
         energy += 0.5 * step_ * relative_velocity(s, x).dot(damping_force(s, relative_velocity(s, x)));
       }
     }
@@ -203,6 +203,8 @@ class ImplicitEulerIntegrator final : public Integrator {
     return 1 / (1 + c.stiffness * step_ * step_ * inverse);
   }
 
+  bool is_damped() const { return model_->material.damping > 0 || model_->material.damping_time > 0; }
+
   Vec3 relative_velocity(const Spring& s, const std::vector<Vec3>& x) const {
     return ((x[s.j] - start_[s.j]) - (x[s.i] - start_[s.i])) / step_;
   }
@@ -210,13 +212,13 @@ class ImplicitEulerIntegrator final : public Integrator {
   /// Projected damping acts along the spring as it was at the start of the step: the potential stays
   /// quadratic.
   Vec3 damping_force(const Spring& s, const Vec3& w) const {
-    const double b = model_->material.damping;
+    const double b = model_->damping(s);
     if (model_->material.damping_kind == DampingKind::plain) return plain_damping_force(b, w);
     return projected_damping_force(b, start_[s.j] - start_[s.i], w);
   }
 
   Mat3 damping_jacobian(const Spring& s) const {
-    const double b = model_->material.damping;
+    const double b = model_->damping(s);
     if (model_->material.damping_kind == DampingKind::plain) return plain_damping_jacobian(b);
     return projected_damping_jacobian(b, start_[s.j] - start_[s.i]);
   }
@@ -230,8 +232,8 @@ class ImplicitEulerIntegrator final : public Integrator {
                      wind_force(wind, model_->topology->area[i], velocity);
     }
     for (const Spring& s : model_->topology->springs) {
-      Vec3 force = spring_force(model_->stiffness(s.kind), s.rest_length, x_[s.j] - x_[s.i]);
-      if (model_->material.damping > 0) force += damping_force(s, relative_velocity(s, x_));
+      Vec3 force = spring_force(model_->stiffness(s), s.rest_length, x_[s.j] - x_[s.i]);
+      if (is_damped()) force += damping_force(s, relative_velocity(s, x_));
       gradient_[s.i] -= force;
       gradient_[s.j] += force;
     }
@@ -258,11 +260,11 @@ class ImplicitEulerIntegrator final : public Integrator {
     const std::vector<Spring>& springs = model_->topology->springs;
     for (std::size_t p = 0; p < springs.size(); ++p) {
       const Spring& s = springs[p];
-      const double k = model_->stiffness(s.kind);
+      const double k = model_->stiffness(s);
       const Vec3 d = x_[s.j] - x_[s.i];
       Mat3 block =
           true_hessian ? spring_jacobian(k, s.rest_length, d) : spring_jacobian_clamped(k, s.rest_length, d);
-      if (model_->material.damping > 0) block += damping_jacobian(s) / step_;
+      if (is_damped()) block += damping_jacobian(s) / step_;
       matrix_.diagonal[s.i] += block;
       matrix_.diagonal[s.j] += block;
       const bool pinned = is_pinned_[s.i] || is_pinned_[s.j];

@@ -10,6 +10,10 @@ const std::vector<std::string_view>& integrator_names() {
   return names;
 }
 
+bool moves_elements(std::string_view integrator) {
+  return integrator == "implicit_euler" || integrator == "newton";
+}
+
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;
   if (name == "explicit") return make_explicit(settings.explicit_euler);

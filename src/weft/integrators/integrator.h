@@ -107,6 +107,10 @@ class Integrator {
 /// Names that make_integrator knows, in the order of the list above.
 const std::vector<std::string_view>& integrator_names();
 
+/// Whether the integrator of this name moves a fabric's membranes and bending (ClothModel::elements); the
+/// others know springs alone.
+bool moves_elements(std::string_view integrator);
+
 /// Throws InputError for an unknown name.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);
 

@@ -1,8 +1,8 @@
 /// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
 /// V-cycle on the paper's constant matrix. A step minimises the incremental potential
 ///
-///     E(x) = ½ |x − y|²_D + springs + dissipation,   D = (β/h)² M + wind,   y from two past states and
-///     gravity
+///     E(x) = ½ |x − y|²_D + springs or elements + dissipation,   D = (β/h)² M + wind,   y from two past
+///     states and gravity
 ///
 /// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
 ///
@@ -29,6 +29,8 @@ namespace {
 constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
 constexpr double kFallingShare = 0.5;  // of the energy that is left: likewise if the last step took off more
 constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
+constexpr int kTimesCoasting = 2;         // as many iterations from x + h v: all of gravity is left to them
+constexpr double kNoise = 1e-9;           // of the decrease: below, iterations in floats only stir rounding
 constexpr int kMaxHalvings = 8;           // of a Newton step after which the potential is higher than before
 
 class NewtonIntegrator final : public Integrator {
@@ -46,6 +48,8 @@ class NewtonIntegrator final : public Integrator {
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
     prepare_matrices(model, environment.wind, scheme, jobs);
     begin_step(model, environment.pins, scheme, jobs, state);
+    coasts_ = false;
+    if (model.elements) choose_start(scheme, jobs, state);
     const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
     finish_step(environment.pins, scheme, jobs, state);
     return report;
@@ -147,9 +151,7 @@ class NewtonIntegrator final : public Integrator {
     const bool same_springs = key.model_id == key_.model_id && key.step == key_.step && key.drag == key_.drag;
     key_ = key;
     set_weights(model, wind, 1 / scheme.step);
-    if (!same_springs)
-      preconditioner_.set_springs(model, rows_, model.material.damping / scheme.step, potential_.weight,
-                                  pinned_);
+    if (!same_springs) preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
     set_weights(model, wind, rate);
     preconditioner_.set_diagonal(potential_.weight, jobs);
     has_contact_diagonal_ = false;
@@ -166,6 +168,7 @@ class NewtonIntegrator final : public Integrator {
   void begin_step(const ClothModel& model, const PinTargets& pins, const StepScheme& scheme, JobSystem& jobs,
                   ClothState& state) {
     noise_ = energy_noise(model, state);
+    potential_.remember(state.x, state.history.displacement, scheme.memory, jobs);
     pin_motion_.prepare(pins, scheme.step, state);
     predict(scheme, rows_, jobs, state, potential_.target);
     for (std::size_t p = 0; p < pinned_.size(); ++p) {
@@ -175,6 +178,25 @@ class NewtonIntegrator final : public Integrator {
     }
     if (potential_.is_damped()) copy_lag(scheme, state);
     clear(correction_);
+  }
+
+  /// Elements start from where velocities alone lead, x + h v, if their potential is lower there than at y.
+  /// Green strain's energy is quartic: of what gravity stretches in a step beside a pin, one Newton step
+  /// takes back two thirds alone, and cloth at rest would hang lower the longer the step is.
+  void choose_start(const StepScheme& scheme, JobSystem& jobs, const ClothState& state) {
+    clear(trial_);
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 coasting = scheme.step * state.history.velocity.get(i);
+      trial_.set(rows_.index(static_cast<int>(i)), coasting - state.history.displacement.get(i));
+    }
+    set_at_pins(Vec3::Zero(), trial_);
+    coasts_ = energy_at(trial_, jobs) < energy_at(correction_, jobs);
+    if (coasts_) std::swap(correction_, trial_);
+  }
+
+  double energy_at(const Vec3Array& offset, JobSystem& jobs) {
+    const double energy = potential_.energy(offset, jobs);
+    return energy + contacts_.energy(positions(offset));
   }
 
   /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
@@ -194,7 +216,7 @@ class NewtonIntegrator final : public Integrator {
       potential_.lag.set(rows_.index(static_cast<int>(i)), time * state.v.get(i));
   }
 
-  /// Newton steps from x = y.
+  /// Newton steps from the start.
   IntegratorReport minimise(const Effort& effort, JobSystem& jobs) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     int more = 1;  // times as many iterations, where the guard asks for another Newton step
@@ -250,8 +272,13 @@ class NewtonIntegrator final : public Integrator {
 
   CgReport solve(const Effort& effort, int more, JobSystem& jobs) {
     CgSettings settings = has_contact_diagonal_ ? effort.in_contact : effort.free;
+    if (coasts_ && settings_.iterations == 0) {
+      settings.iterations *= kTimesCoasting;
+      settings.least *= kTimesCoasting;
+      settings.enough /= kTimesCoasting;
+    }
     settings.iterations *= more;
-    settings.enough /= more;
+    settings.enough = std::max(settings.enough / more, kNoise);
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
       double dot = potential_.multiply(p, jobs, q);
       dot += contacts_.add_product(rows_, p, q);
@@ -269,8 +296,7 @@ class NewtonIntegrator final : public Integrator {
   double try_step(double share, JobSystem& jobs) {
     add_scaled(correction_, share, direction_, jobs, trial_);
     free_pieces_.remove_mean(rows_, potential_.weight, trial_);
-    const double energy = potential_.energy(trial_, jobs);
-    return energy + contacts_.energy(positions(trial_));
+    return energy_at(trial_, jobs);
   }
 
   OffsetPositions positions(const Vec3Array& offset) const { return {rows_, potential_.target, offset}; }
@@ -301,6 +327,7 @@ class NewtonIntegrator final : public Integrator {
   ScalarPreconditioner preconditioner_;
   ConjugateGradients gradients_;
   ContactTerms contacts_;
+  bool coasts_ = false;                // the step started from x + h v
   bool has_contact_diagonal_ = false;  // of the preconditioner
   std::vector<float> diagonal_;        // D and contacts [N/m]
   PinMotion pin_motion_;

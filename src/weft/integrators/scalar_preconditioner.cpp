@@ -4,17 +4,59 @@
 
 namespace weft {
 
-void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+namespace {
+
+/// The particles that each one is coupled to, and how stiffly [N/m].
+using Lists = std::vector<std::vector<std::pair<int, double>>>;
+
+Lists springs_of_mesh(const ClothModel& model, double damping) {
+  constexpr int kLanes = NeighbourTable::kLanes;
+  const NeighbourTable& table = model.topology->table;
+  Lists lists(model.num_particles());
+  for (int i = 0; i < model.num_particles(); ++i) {
+    const int slice = i / kLanes;
+    for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1]; ++row) {
+      const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
+      if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
+      lists[i].emplace_back(table.neighbour[entry],
+                            model.stiffness(model.topology->springs[spring].kind) + damping);
+    }
+  }
+  return lists;
+}
+
+bool has_membranes(const ClothModel& model) { return model.elements && !model.elements->membranes.empty(); }
+
+/// What damping makes of the stiffness of elements.
+double stiffening(const ClothElements& elements, double step) { return 1 + elements.damping / step; }
+
+Lists elements_of_mesh(const ClothModel& model, double step) {
+  Lists lists(model.num_particles());
+  const double share = stiffening(*model.elements, step);
+  for (const Coupling& c : model.elements->couplings) {
+    lists[c.i].emplace_back(c.j, share * c.stiffness);
+    lists[c.j].emplace_back(c.i, share * c.stiffness);
+  }
+  return lists;
+}
+
+}  // namespace
+
+void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double step,
                                        const std::vector<float>& least, const std::vector<int>& pinned) {
   is_grid_ = model.topology->grid.has_value();
   first_ = rows.row(0);
   pinned_ = pinned;
   if (!is_grid_) {
     least_.assign(least.begin() + first_, least.begin() + first_ + model.num_particles());
-    return build_mesh(model, damping);
+    return build_mesh(model, step);
   }
   grid_.resize(rows);
-  fill_grid(model, damping);
+  if (has_membranes(model)) {
+    fill_grid_by_elements(*model.elements, step);
+  } else {
+    fill_grid_by_springs(model, step);
+  }
   pin_grid();
 }
 
@@ -33,8 +75,9 @@ void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobS
   grid_.build(jobs);
 }
 
-void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping) {
-  const NeighbourTable& table = model.topology->table;
+void ScalarPreconditioner::build_mesh(const ClothModel& model, double step) {
+  const Lists lists = has_membranes(model) ? elements_of_mesh(model, step)
+                                           : springs_of_mesh(model, model.material.damping / step);
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
   for (const int p : pinned_) is_pinned[p] = 1;
@@ -42,17 +85,13 @@ void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping) {
   couplings.num_columns = n;
   std::vector<double> excess(least_.begin(), least_.end());
   for (int i = 0; i < n; ++i) {
-    constexpr int kLanes = NeighbourTable::kLanes;
-    const int slice = i / kLanes;
     if (is_pinned[i]) excess[i] = 0;
-    for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1] && !is_pinned[i]; ++row) {
-      const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
-      if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
-      const double c = model.stiffness(model.topology->springs[spring].kind) + damping;
-      if (is_pinned[table.neighbour[entry]]) {
+    for (const auto& [j, c] : lists[i]) {
+      if (is_pinned[i]) break;
+      if (is_pinned[j]) {
         excess[i] += c;
       } else if (c > 0) {
-        couplings.add_entry(table.neighbour[entry], c);
+        couplings.add_entry(j, c);
       }
     }
     couplings.end_row();
@@ -60,25 +99,44 @@ void ScalarPreconditioner::build_mesh(const ClothModel& model, double damping) {
   mesh_.build(couplings, excess);
 }
 
-void ScalarPreconditioner::fill_grid(const ClothModel& model, double damping) {
+void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double step) {
   GridLevel& level = grid_.finest();
   const ClothMaterial& m = model.material;
+  const double damping = m.damping / step;
   const SpringModel spring_model = model.topology->spring_model;
-  const auto structural = static_cast<float>(m.structural + 4 * m.bend + 5 * damping);
-  const auto shear = static_cast<float>(m.shear + damping);
+  const double stiffening = 1 + m.damping_time / step;
+  const auto along = [&](double stiffness) {
+    return static_cast<float>(stiffening * stiffness + 4 * m.bend + 5 * damping);
+  };
+  const float along_x = along(m.structural), along_z = along(m.structural_z.value_or(m.structural));
+  const auto shear = static_cast<float>(stiffening * m.shear + damping);
   const int columns = level.rows.row_length, num_rows = level.rows.num_rows;
   level.has_down_left = spring_model != SpringModel::simplified;
   const bool alternates = spring_model == SpringModel::alternating;
   for (int j = 0; j < num_rows; ++j) {
     const int first = level.rows.row(j);
-    std::fill_n(level.right.begin() + first, columns - 1, structural);
+    std::fill_n(level.right.begin() + first, columns - 1, along_x);
     if (j + 1 == num_rows) break;
-    std::fill_n(level.down.begin() + first, columns, structural);
+    std::fill_n(level.down.begin() + first, columns, along_z);
     for (int i = 0; i < columns; ++i) {
       const float here = alternates && (i + j) % 2 == 1 ? 0.0f : shear;
       level.down_right[first + i] = i + 1 < columns ? here : 0.0f;
       if (level.has_down_left) level.down_left[first + i] = i > 0 ? here : 0.0f;
     }
+  }
+}
+
+void ScalarPreconditioner::fill_grid_by_elements(const ClothElements& elements, double step) {
+  GridLevel& level = grid_.finest();
+  const double share = stiffening(elements, step);
+  const int columns = level.rows.row_length;
+  level.has_down_left = false;
+  for (std::vector<float>* family : {&level.right, &level.down, &level.down_right, &level.down_left})
+    std::fill(family->begin(), family->end(), 0.0f);
+  for (const Coupling& c : elements.couplings) {
+    std::vector<float>& family = c.j == c.i + 1 ? level.right : level.down;
+    if (c.j == c.i + 1 || c.j == c.i + columns)
+      family[level.rows.index(c.i)] = static_cast<float>(share * c.stiffness);
   }
 }
 

@@ -15,12 +15,14 @@ namespace weft {
 
 /// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved roughly by one multigrid
 /// V-cycle. Bending springs are not in it: on grids they count as four times their stiffness along the
-/// structural springs, on meshes they are left out.
+/// structural springs, on meshes they are left out. A fabric's elements take the springs' place with their
+/// couplings; low shear, warp and weft, and bending need no other matrix.
 class ScalarPreconditioner {
  public:
-  /// Takes the springs; `damping` is added to every stiffness [N/m]. Pinned particles drop out of the matrix.
-  /// `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must follow.
-  void set_springs(const ClothModel& model, const PaddedRows& rows, double damping,
+  /// Takes springs or elements, with their damping in steps of length `step`. Pinned particles drop out of
+  /// the matrix. `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must
+  /// follow.
+  void set_springs(const ClothModel& model, const PaddedRows& rows, double step,
                    const std::vector<float>& least, const std::vector<int>& pinned);
 
   /// Takes D, laid out by `rows` [N/m], and computes all values anew.
@@ -30,8 +32,9 @@ class ScalarPreconditioner {
   double apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
 
  private:
-  void build_mesh(const ClothModel& model, double damping);
-  void fill_grid(const ClothModel& model, double damping);
+  void build_mesh(const ClothModel& model, double step);
+  void fill_grid_by_springs(const ClothModel& model, double step);
+  void fill_grid_by_elements(const ClothElements& elements, double step);
   void pin_grid();
 
   bool is_grid_ = true;

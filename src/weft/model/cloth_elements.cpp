@@ -1,7 +1,26 @@
 #include "weft/model/cloth_elements.h"
 
+#include <map>
+
 namespace weft {
 namespace {
+
+std::vector<Coupling> find_couplings(const ClothElements& elements) {
+  const double stiffness = (elements.stiffness(0, 0) + elements.stiffness(1, 1)) / 2;
+  std::map<std::pair<int, int>, double> sums;
+  for (const auto& [vertices, rest] : elements.membranes) {
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      sums[std::minmax(vertices[a], vertices[b])] -=
+          stiffness * rest.area * rest.gradient[a].dot(rest.gradient[b]);
+    }
+  }
+  std::vector<Coupling> couplings;
+  for (const auto& [pair, sum] : sums) {
+    if (sum > 1e-6 * stiffness) couplings.push_back({pair.first, pair.second, sum});
+  }
+  return couplings;
+}
 
 ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
                             BendingModel bending) {
@@ -9,6 +28,7 @@ ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, con
   elements.stiffness = membrane_stiffness(fabric);
   elements.membranes = build_membranes(mesh, warp);
   elements.damping = fabric.damping;
+  elements.couplings = find_couplings(elements);
   if (bending == BendingModel::hinges) elements.hinges = build_hinges(mesh, warp, fabric);
   return elements;
 }
@@ -20,7 +40,17 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
                                                          BendingModel bending) {
   const Vec3 direction = warp == GridWarp::first_axis ? Vec3::UnitX() : Vec3::UnitZ();
   ClothElements elements = make_elements(mesh, warp_from_direction(mesh, direction), fabric, bending);
+  elements.grid_warp = warp;
   if (bending == BendingModel::stencils) elements.bending = build_grid_bending(grid, warp, fabric);
+  return std::make_shared<ClothElements>(std::move(elements));
+}
+
+std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
+                                                                 const Fabric& fabric) {
+  ClothElements elements;
+  elements.bending = build_grid_bending(grid, warp, fabric);
+  elements.damping = fabric.damping;
+  elements.grid_warp = warp;
   return std::make_shared<ClothElements>(std::move(elements));
 }
 

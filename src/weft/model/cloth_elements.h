@@ -2,11 +2,18 @@
 /// A fabric on a cloth's triangles: what stretches, shears and bends where there are no springs.
 
 #include <memory>
+#include <optional>
 
 #include "weft/fabric/bending_rows.h"
 #include "weft/fabric/elements.h"
 
 namespace weft {
+
+/// An entry of a matrix that is the same for x, y and z: ½ stiffness |x_j − x_i|².
+struct Coupling {
+  int i = 0, j = 0;      // particles, i < j
+  double stiffness = 0;  // > 0 [N/m]
+};
 
 struct ClothElements {
   Mat3 stiffness = Mat3::Zero();           // of every membrane [N/m]
@@ -14,6 +21,10 @@ struct ClothElements {
   BendingRows bending;                     // curvature stencils; none if there are hinges
   std::vector<HingeElement> hinges;        // flat at rest; none if there are stencils
   double damping = 0;                      // time constant τ of all of them [s]
+  std::optional<GridWarp> grid_warp;       // set: the triangles are a grid's, with warp along one of its axes
+  /// The membranes' Hessian at rest, roughly, as the paper's constant matrix (Eq. 11) is for springs: the
+  /// positive cotangent weights times (C11 + C22)/2, by ascending i and j.
+  std::vector<Coupling> couplings;
 };
 
 enum class BendingModel {
@@ -25,6 +36,10 @@ enum class BendingModel {
 std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
+
+/// The grid's bending alone, beside springs that stand for the membranes.
+std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
+                                                                 const Fabric& fabric);
 
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric,

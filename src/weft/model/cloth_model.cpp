@@ -13,6 +13,16 @@ std::uint64_t next_id() {
 
 }  // namespace
 
+double ClothModel::stiffness(const Spring& s) const {
+  if (!material.structural_z || s.kind != SpringKind::structural) return stiffness(s.kind);
+  const Grid& grid = *topology->grid;
+  const int column = s.i % grid.num_columns(), row = s.i / grid.num_columns();
+  const bool is_along_x = s.j == s.i + 1;
+  const bool is_on_border =
+      is_along_x ? row == 0 || row == grid.cells_z : column == 0 || column == grid.cells_x;
+  return (is_on_border ? 0.5 : 1.0) * (is_along_x ? material.structural : *material.structural_z);
+}
+
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model) {
   auto topology = std::make_shared<ClothTopology>();
   topology->mesh = build_grid_mesh(grid, diagonals_of(model));
@@ -47,12 +57,17 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
   std::vector<int> springs_around(t.num_particles(), 0);
   for (const Spring& spring : t.springs) {
     for (const int p : {spring.i, spring.j}) {
-      model->stiffness_sum[p] += model->stiffness(spring.kind);
+      model->stiffness_sum[p] += model->stiffness(spring);
       ++springs_around[p];
     }
   }
+  if (model->elements) {
+    for (const Coupling& c : model->elements->couplings) {
+      for (const int p : {c.i, c.j}) model->stiffness_sum[p] += c.stiffness;
+    }
+  }
   for (const int s : t.table.spring) {
-    const double k = s < 0 ? 0.0 : model->stiffness(t.springs[s].kind);
+    const double k = s < 0 ? 0.0 : model->stiffness(t.springs[s]);
     model->entry_stiffness.push_back(static_cast<float>(k));
   }
   for (int i = 0; i < t.num_particles(); ++i) {

@@ -33,6 +33,12 @@ struct ClothMaterial {
   DampingKind damping_kind = DampingKind::projected;
   double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
   double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
+
+  // Of a grid whose springs stand for a fabric (see make_grid_springs); `newton` and `implicit_euler` know
+  // them.
+  std::optional<double> structural_z;  // of structural springs along the second axis; those on the border, of
+                                       // both axes, then have half their stiffness [N/m]
+  double damping_time = 0;  // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
 };
 
 struct ClothTopology {
@@ -56,11 +62,11 @@ struct ClothModel {
       0;  // no two models of a process share it: what is computed from a model can be kept by id
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
-  /// A fabric's membranes and bending, besides the springs (whose stiffness is then 0 as a rule); null: none.
-  /// Only `implicit_euler` knows them.
+  /// A fabric's membranes and bending, or bending alone where springs stand for the membranes; null: none.
+  /// `newton` and `implicit_euler` know them.
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
-  std::vector<double> stiffness_sum;   // Σ_j k_ij, (num_particles) [N/m]
+  std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]
   std::vector<float> entry_stiffness;  // k of each entry of topology->table, 0 in its padding [N/m]
   double max_stiffness_rate = 0;       // max_i Σ_j k_ij / m_i [1/s²]
   double max_damping_rate = 0;         // max_i Σ_j d_ij / m_i [1/s]
@@ -78,6 +84,11 @@ struct ClothModel {
         break;
     }
     return material.bend;
+  }
+
+  double stiffness(const Spring& spring) const;  // [N/m]
+  double damping(const Spring& spring) const {   // [N·s/m]
+    return material.damping + material.damping_time * stiffness(spring);
   }
 };
 

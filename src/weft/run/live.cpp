@@ -106,6 +106,12 @@ void LiveSimulation::reset() {
 void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
+    const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
+    if (!moves_elements(name) && std::any_of(scene_.cloths.begin(), scene_.cloths.end(), is_fabric)) {
+      status_.warnings = {name + " knows springs alone, and this scene has a fabric: still " +
+                          status_.integrator};
+      return;
+    }
     scene_.solver.integrator = name;
     built_.world.set_integrator(scene_.solver);
     status_.integrator = name;

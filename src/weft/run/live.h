@@ -86,11 +86,13 @@ class LiveSimulation {
   void pause();
   void step(int count = 1);  // pauses, and makes so many steps as fast as they go
   void reset();              // to the start, with the present integrator, springs and wind; lets go
-  void set_integrator(const std::string& name);  // throws InputError for an unknown name
-  void set_model(SpringModel model);             // of cloths that are grids; they stay where they are
-  void set_wind(std::optional<Vec3> velocity);   // everywhere and at any time; empty: the scene's [m/s]
-  void grab(const ClothPoint& point);            // instead of what is held
-  void move_grab(const Vec3& target);            // draws what is held to there [m]
+  /// Throws InputError for an unknown name. One that knows springs alone is not taken where a cloth is of a
+  /// fabric; a warning says so.
+  void set_integrator(const std::string& name);
+  void set_model(SpringModel model);            // of cloths that are grids; they stay where they are
+  void set_wind(std::optional<Vec3> velocity);  // everywhere and at any time; empty: the scene's [m/s]
+  void grab(const ClothPoint& point);           // instead of what is held
+  void move_grab(const Vec3& target);           // draws what is held to there [m]
   void release();
 
   /// The newest frame, if there is one since the last call; `frame`'s memory is used again.

@@ -1,6 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <span>
 #include <system_error>
 
+#include "weft/core/error.h"
+#include "weft/scene/fabric_reader.h"
 #include "weft/scene/scene_sections.h"
 
 namespace weft {
@@ -62,22 +67,12 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
   return {};
 }
 
-void refuse_si_stiffness(TomlTable& fabric) {
-  for (const char* key : {"c11", "c22", "c12", "g", "bend_warp", "bend_weft", "bend_bias"}) {
-    fabric.refuse(
-        key,
-        "SI fabric values are not there yet; give spring_structural, spring_shear and spring_bend in N/m");
-  }
-}
+constexpr std::array kSpringKeys = {"spring_structural", "spring_shear", "spring_bend", "damping_kind"};
+constexpr std::array kSiKeys = {"c11",       "c22",       "c12",       "g",
+                                "bend_warp", "bend_weft", "bend_bias", "strain_limit"};
 
-ClothMaterial read_fabric(TomlTable& cloth) {
+ClothMaterial read_springs(TomlTable& fabric) {
   ClothMaterial material;
-  if (const TomlValue name = cloth.get("fabric"); name && name.is_string()) {
-    name.expected(
-        "a table, for named fabrics are not there yet; give spring_structural, spring_shear and spring_bend");
-    return material;
-  }
-  TomlTable fabric = cloth.table("fabric");
   fabric.read("spring_structural", material.structural, not_negative("N/m"));
   fabric.read("spring_shear", material.shear, not_negative("N/m"));
   fabric.read("spring_bend", material.bend, not_negative("N/m"));
@@ -87,8 +82,68 @@ ClothMaterial read_fabric(TomlTable& cloth) {
                                   {{"plain", DampingKind::plain}, {"projected", DampingKind::projected}});
   fabric.read("thickness", material.thickness, not_negative("m"));
   fabric.read("friction", material.friction, not_negative());
-  refuse_si_stiffness(fabric);
+  for (const char* key : kSiKeys) fabric.get(key);
   return material;
+}
+
+bool has_any(const TomlTable& table, std::span<const char* const> keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return table.has(key); });
+}
+
+std::optional<FabricDesc> read_named_fabric(const TomlValue& value, const std::filesystem::path& folder) {
+  std::string name;
+  value.read(name);
+  try {
+    const FabricPreset preset = load_fabric(name, folder);
+    return FabricDesc{.name = preset.name, .numbers = preset.fabric};
+  } catch (const InputError& error) {
+    value.mistake(error.what());
+    return {};
+  }
+}
+
+/// By name, by file or in SI numbers; nothing if the cloth has spring stiffnesses instead.
+std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
+                                      const std::filesystem::path& folder) {
+  if (const TomlValue name = cloth.get("fabric"); name && name.is_string())
+    return read_named_fabric(name, folder);
+  TomlTable table = cloth.table("fabric");
+  if (!has_any(table, kSiKeys)) {
+    material = read_springs(table);
+    return {};
+  }
+  for (const char* key : kSpringKeys)
+    table.refuse(key, "a fabric has either spring stiffnesses or SI values (c11 to bend_bias)");
+  return FabricDesc{.name = "fabric", .numbers = read_fabric_numbers(table, false)};
+}
+
+void read_warp(TomlTable& cloth, FabricDesc& fabric) {
+  const TomlValue warp = cloth.get("warp");
+  if (!warp || !warp.read(fabric.warp, any_number(), "[1, 0, 0]")) return;
+  if (fabric.warp.norm() < 1e-6) warp.expected("a direction");
+}
+
+/// What only a fabric in SI has; and what a fabric makes of material and model.
+void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
+  if (!desc.fabric) {
+    for (const char* key : {"membrane", "warp"})
+      cloth.refuse(key, "only a fabric by name, file or SI values has it; this one has spring stiffnesses");
+    return;
+  }
+  cloth.read_choice<Membrane>("membrane", desc.fabric->membrane,
+                              {{"triangle", Membrane::triangle}, {"springs", Membrane::springs}});
+  read_warp(cloth, *desc.fabric);
+  const Fabric& f = desc.fabric->numbers;
+  desc.material = {.density = f.density,
+                   .structural = 0,
+                   .shear = 0,
+                   .bend = 0,
+                   .thickness = f.thickness,
+                   .friction = f.friction};
+  const bool is_grid = std::holds_alternative<Grid>(desc.shape);
+  if (is_grid && !cloth.has("model")) desc.model = SpringModel::alternating;
+  if (!is_grid && desc.fabric->membrane == Membrane::springs)
+    cloth.get("membrane").expected("\"triangle\", for springs can be a fabric on grids alone");
 }
 
 }  // namespace
@@ -114,7 +169,8 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   table.read("name", cloth.name);
   const std::optional<Shape> shape = read_shape(table, cloth.model, folder);
   if (shape) cloth.shape = *shape;
-  cloth.material = read_fabric(table);
+  cloth.fabric = read_fabric(table, cloth.material, folder);
+  finish_fabric(table, cloth);
   table.read("position", cloth.position, any_number("m"));
   table.read("rotation", cloth.rotation_deg, any_number("degrees"), "[0, 90, 0]");
   table.read("velocity", cloth.velocity, any_number("m/s"));

@@ -30,8 +30,8 @@ FabricPreset read_fabric_file(const std::filesystem::path& file);
 /// The same from text; `file` is used in messages and for the name.
 FabricPreset parse_fabric(std::string_view text, const std::filesystem::path& file);
 
-/// What a person typed: an existing file, or the name of a preset. Throws InputError naming the nearest
-/// preset.
-FabricPreset load_fabric(const std::string& name_or_file);
+/// What a person typed: an existing file (looked for in `folder`), or the name of a preset. Throws InputError
+/// naming the nearest preset.
+FabricPreset load_fabric(const std::string& name_or_file, const std::filesystem::path& folder = {});
 
 }  // namespace weft

@@ -10,6 +10,7 @@
 #include "weft/animation/rigid_motion.h"
 #include "weft/contact/collider.h"
 #include "weft/core/shapes.h"
+#include "weft/fabric/fabric.h"
 #include "weft/forces/wind.h"
 #include "weft/integrators/integrator.h"
 #include "weft/mesh/grid.h"
@@ -58,11 +59,26 @@ struct ColliderSceneDesc {
   RigidMotion motion;
 };
 
+/// What stands for the stretching and shearing of a fabric.
+enum class Membrane {
+  triangle,  // elements on the mesh's triangles (forces/membrane.h)
+  springs,   // of a grid (fabric/grid_springs.h)
+};
+
+/// What a cloth is made of, in SI units.
+struct FabricDesc {
+  std::string name;  // for messages
+  Fabric numbers;
+  Membrane membrane = Membrane::triangle;
+  Vec3 warp = Vec3::UnitX();  // in the cloth's own coordinates, projected on every triangle
+};
+
 struct ClothSceneDesc {
   std::string name;  // default: "cloth", "cloth 2", …
   std::variant<Grid, MeshFile> shape;
-  SpringModel model = SpringModel::simplified;
-  ClothMaterial material;
+  SpringModel model = SpringModel::simplified;  // of a fabric on a grid: alternating
+  ClothMaterial material;                       // with a fabric: its density, thickness and friction alone
+  std::optional<FabricDesc> fabric;             // empty: `material` has the stiffness of springs
   Vec3 position = Vec3::Zero();      // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]

@@ -81,6 +81,18 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
   if (choice >= 0) integrator = names[choice];
 }
 
+void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
+  if (moves_elements(scene.solver.integrator)) return;
+  for (const ClothSceneDesc& cloth : scene.cloths) {
+    if (!cloth.fabric) continue;
+    solver.get("integrator")
+        .mistake("knows springs alone, and cloth \"" + cloth.name +
+                 "\" is of a fabric; use \"newton\" or \"implicit_euler\", or give "
+                 "spring_structural, spring_shear and spring_bend instead of the fabric");
+    return;
+  }
+}
+
 /// A number goes to whichever integrator runs; "auto" leaves the choice to it.
 void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
   const TomlValue value = solver.get("iterations");
@@ -96,6 +108,7 @@ void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
 void read_solver(TomlTable table, SceneDesc& scene) {
   IntegratorSettings& solver = scene.solver;
   read_integrator(table, solver.integrator);
+  judge_integrator(table, scene);
   table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
   read_iterations(table, solver);
   table.read_choice<NewtonQuality>(

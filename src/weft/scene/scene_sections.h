@@ -19,6 +19,10 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFi
 /// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 
+/// A fabric's numbers in SI, and what they are together. `needs_all`: only damping and what follows it have
+/// defaults.
+Fabric read_fabric_numbers(TomlTable& table, bool needs_all);
+
 /// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
 MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "weft/core/error.h"
+#include "weft/fabric/grid_springs.h"
 #include "weft/scene/scene_meshes.h"
 
 namespace weft {
@@ -15,11 +17,78 @@ struct LoadedCloth {
   std::vector<int> particle_of_vertex;
 };
 
+/// The axis of a grid that warp goes along, if it is one.
+std::optional<GridWarp> grid_warp(const Vec3& warp) {
+  constexpr double kAlong = 0.999999;  // least cosine of the angle between them
+  const Vec3 direction = warp.normalized();
+  if (std::abs(direction.x()) > kAlong) return GridWarp::first_axis;
+  if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
+  return {};
+}
+
+/// A grid whose warp is along neither axis is a mesh like any other.
 LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings) {
-  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return {build_grid_topology(*grid, desc.model), {}};
+  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
+    if (desc.fabric && !grid_warp(desc.fabric->warp))
+      return {build_mesh_topology(build_grid_mesh(*grid, diagonals_of(desc.model))), {}};
+    return {build_grid_topology(*grid, desc.model), {}};
+  }
   CleanMesh clean =
       load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings);
   return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source)};
+}
+
+CellDiagonals cell_diagonals(SpringModel model) {
+  switch (model) {
+    case SpringModel::basic:
+      return CellDiagonals::both;
+    case SpringModel::alternating:
+      return CellDiagonals::alternating;
+    case SpringModel::simplified:
+      break;
+  }
+  return CellDiagonals::parallel;
+}
+
+struct Stuff {
+  ClothMaterial material;
+  std::shared_ptr<const ClothElements> elements;
+};
+
+Stuff make_springs(const ClothSceneDesc& desc, const Grid& grid, std::vector<std::string>& warnings) {
+  const FabricDesc& fabric = *desc.fabric;
+  const std::optional<GridWarp> warp = grid_warp(fabric.warp);
+  if (!warp)
+    throw InputError("cloth \"" + desc.name +
+                     "\": springs can only have warp along one of the grid's axes, " +
+                     "[1, 0, 0] or [0, 0, 1]; use membrane = \"triangle\" for other directions");
+  const GridSprings springs =
+      make_grid_springs(grid, cell_diagonals(desc.model), *warp, fabric.numbers, fabric.name);
+  for (const std::string& warning : springs.warnings)
+    warnings.push_back("cloth \"" + desc.name + "\": " + warning);
+  ClothMaterial material = desc.material;
+  material.structural = springs.along_x;
+  material.structural_z = springs.along_z;
+  material.shear = springs.diagonal;
+  material.damping_time = fabric.numbers.damping;
+  return {material, build_grid_bending_elements(grid, *warp, fabric.numbers)};
+}
+
+Stuff make_stuff(const ClothSceneDesc& desc, const ClothTopology& topology,
+                 std::vector<std::string>& warnings) {
+  if (!desc.fabric) return {desc.material, nullptr};
+  const FabricDesc& fabric = *desc.fabric;
+  const Grid* grid = std::get_if<Grid>(&desc.shape);
+  if (grid && fabric.membrane == Membrane::springs) return make_springs(desc, *grid, warnings);
+  if (topology.grid)
+    return {desc.material,
+            build_grid_elements(*grid, topology.mesh, *grid_warp(fabric.warp), fabric.numbers)};
+  const WarpField warp = warp_from_direction(topology.mesh, fabric.warp);
+  if (warp.num_guessed > 0)
+    warnings.push_back("cloth \"" + desc.name + "\": warp is perpendicular to " +
+                       std::to_string(warp.num_guessed) +
+                       (warp.num_guessed == 1 ? " triangle" : " triangles") + ", which got another axis");
+  return {desc.material, build_mesh_elements(topology.mesh, warp, fabric.numbers)};
 }
 
 std::vector<Vec3> place(const std::vector<Vec3>& rest, const ClothSceneDesc& desc) {
@@ -124,9 +193,11 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   for (const ClothSceneDesc& desc : scene.cloths) {
     const LoadedCloth loaded = load(desc, result.warnings);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
+    const Stuff stuff = make_stuff(desc, *loaded.topology, result.warnings);
     const ClothId id = world.add_cloth({.name = desc.name,
                                         .topology = loaded.topology,
-                                        .material = desc.material,
+                                        .material = stuff.material,
+                                        .elements = stuff.elements,
                                         .positions = positions,
                                         .velocity = desc.velocity});
     world.set_pins(id, make_pins(desc, loaded, positions));

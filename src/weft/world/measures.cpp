@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "weft/forces/bending.h"
 #include "weft/forces/gravity.h"
+#include "weft/forces/hinge.h"
+#include "weft/forces/membrane.h"
 #include "weft/forces/spring.h"
 
 namespace weft {
@@ -15,10 +18,27 @@ double compute_kinetic_energy(const ClothModel& model, const ClothState& state) 
   return energy;
 }
 
+namespace {
+
+double compute_elastic_energy(const ClothElements& elements, const ClothState& state) {
+  std::vector<Vec3> x;
+  for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.x.get(i));
+  double energy = bending_energy(elements.bending, x);
+  for (const auto& [v, rest] : elements.membranes)
+    energy += membrane_energy(rest, elements.stiffness, {x[v[0]], x[v[1]], x[v[2]]});
+  for (const HingeElement& h : elements.hinges) {
+    const auto& v = h.vertices;
+    energy += hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]});
+  }
+  return energy;
+}
+
+}  // namespace
+
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
-  double energy = 0;
+  double energy = model.elements ? compute_elastic_energy(*model.elements, state) : 0;
   for (const Spring& s : model.topology->springs) {
-    energy += spring_energy(model.stiffness(s.kind), s.rest_length, state.x.get(s.j) - state.x.get(s.i));
+    energy += spring_energy(model.stiffness(s), s.rest_length, state.x.get(s.j) - state.x.get(s.i));
   }
   return energy;
 }

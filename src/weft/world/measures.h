@@ -9,7 +9,7 @@ namespace weft {
 
 double compute_kinetic_energy(const ClothModel& model, const ClothState& state);  // [J]
 
-/// Of all springs [J].
+/// Of all springs and elements [J].
 double compute_elastic_energy(const ClothModel& model, const ClothState& state);
 
 /// −Σ m g·x, zero where everything is at the world's origin [J].

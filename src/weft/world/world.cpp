@@ -23,8 +23,16 @@ void validate(const ClothMaterial& m, const std::string& cloth) {
   at_least_zero(m.shear, "shear stiffness");
   at_least_zero(m.bend, "bending stiffness");
   at_least_zero(m.damping, "damping");
+  at_least_zero(m.damping_time, "damping time");
   at_least_zero(m.thickness, "thickness");
   at_least_zero(m.friction, "friction");
+}
+
+void require_elements_move(const std::string& integrator, const std::string& cloth) {
+  require(moves_elements(integrator), "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
+                                          " cannot move, for it knows springs alone; use newton or "
+                                          "implicit_euler, or give spring_structural, spring_shear and "
+                                          "spring_bend instead of the fabric");
 }
 
 /// A sum of products with zero: 0 if all values are finite, else not a number.
@@ -83,7 +91,8 @@ ClothId World::add_cloth(const ClothDesc& desc) {
               " particles but " + std::to_string(positions.size()) + " positions");
   Cloth cloth;
   cloth.name = desc.name;
-  cloth.model = build_cloth_model(desc.topology, desc.material);
+  if (desc.elements) require_elements_move(integrator_settings_.integrator, desc.name);
+  cloth.model = build_cloth_model(desc.topology, desc.material, desc.elements);
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
   require(find_non_finite(cloth.state) < 0,
@@ -135,11 +144,14 @@ void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
 void World::set_material(ClothId id, const ClothMaterial& material) {
   Cloth& cloth = at(id);
   validate(material, cloth.name);
-  cloth.model = build_cloth_model(cloth.model->topology, material);
+  cloth.model = build_cloth_model(cloth.model->topology, material, cloth.model->elements);
 }
 
 void World::set_integrator(const IntegratorSettings& settings) {
   make_integrator(settings);  // throws before anything has changed
+  for (const Cloth& cloth : cloths_) {
+    if (cloth.model->elements) require_elements_move(settings.integrator, cloth.name);
+  }
   integrator_settings_ = settings;
   for (Cloth& cloth : cloths_) {
     cloth.integrator = make_integrator(settings);

@@ -26,8 +26,9 @@ struct ClothDesc {
   std::string name = "cloth";                     // for reports
   std::shared_ptr<const ClothTopology> topology;  // see build_grid_topology, build_mesh_topology
   ClothMaterial material;
-  std::vector<Vec3> positions;   // (num_particles) at the start; empty: the rest shape [m]
-  Vec3 velocity = Vec3::Zero();  // of all particles at the start [m/s]
+  std::shared_ptr<const ClothElements> elements;  // a fabric's, on the topology's mesh; null: springs alone
+  std::vector<Vec3> positions;                    // (num_particles) at the start; empty: the rest shape [m]
+  Vec3 velocity = Vec3::Zero();                   // of all particles at the start [m/s]
 };
 
 /// Particles that move by prescription: still, or along key frames from where they were when pinned.
@@ -60,7 +61,8 @@ class World {
  public:
   World();
 
-  /// Throws InputError if the description does not fit together (sizes, numbers out of range).
+  /// Throws InputError if the description does not fit together (sizes, numbers out of range, a fabric's
+  /// elements and an integrator that knows springs alone).
   ClothId add_cloth(const ClothDesc& desc);
   void add_collider(Collider collider) { colliders_.push_back(std::move(collider)); }
 
@@ -74,8 +76,9 @@ class World {
   void set_material(ClothId cloth, const ClothMaterial& material);
   void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
   void set_wind(const Wind& wind) { environment_.wind = wind; }
-  void set_contact(bool enabled) { contact_ = enabled; }    // with colliders, itself and other cloths
-  void set_integrator(const IntegratorSettings& settings);  // throws InputError for an unknown name
+  void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
+  /// Throws InputError for an unknown name, and for one that knows springs alone if a cloth is a fabric.
+  void set_integrator(const IntegratorSettings& settings);
   void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
 
   /// Advances everything by dt > 0 [s].

@@ -1,0 +1,143 @@
+#include <fmt/core.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "common.h"
+#include "painter.h"
+#include "weft/core/error.h"
+#include "weft/io/obj_reader.h"
+#include "weft/lab/studies.h"
+#include "weft/render/device.h"
+#include "weft/scene/fabric_reader.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct StudyOptions {
+  std::string fabric;
+  SpecimenSettings specimen;
+  StripDirection direction = StripDirection::warp;
+  int threads = num_processors();
+  bool json = false;
+  fs::path out;
+};
+
+using Study = std::function<StudyResult(const Fabric&, const StudyOptions&)>;
+
+Json to_json(const std::string& study, const std::string& fabric, const StudyResult& result) {
+  Json json = {{"study", study}, {"fabric", fabric}}, units;
+  for (const Figure& figure : result.figures) {
+    json[figure.name] = figure.value;
+    units[figure.name] = figure.unit;
+  }
+  json["units"] = units;
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file);
+  stream << text;
+  if (!stream.flush()) throw InputError(file.string() + ": cannot be written");
+}
+
+void write_shape(const fs::path& file, const AnimatedMesh& mesh) {
+  TriangleMesh shape{.positions = {}, .triangles = mesh.triangles};
+  const std::vector<float>& x = mesh.frames.at(0);
+  for (std::size_t i = 0; i < x.size(); i += 3) shape.positions.emplace_back(x[i], x[i + 1], x[i + 2]);
+  write_obj(file, shape);
+}
+
+void write_files(const fs::path& folder, const Json& json, const StudyResult& result) {
+  write_text(folder / "study.json", dump(json));
+  write_shape(folder / "specimen.obj", result.specimen.cloths.at(0));
+  Painter painter(result.specimen, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
+  painter.write_pictures(folder / "specimen.png", {0}, 1);
+}
+
+/// With --json one object on standard output, and nothing else; all words go to standard error.
+void run(const std::string& name, const Study& study, const StudyOptions& options) {
+  const FabricPreset preset = load_fabric(options.fabric);
+  if (!options.out.empty()) make_folder(options.out);
+  const StudyResult result = study(preset.fabric, options);
+  const Json json = to_json(name, preset.name, result);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!options.out.empty()) write_files(options.out, json, result);
+  if (options.json) {
+    fmt::print("{}", dump(json));
+    return;
+  }
+  fmt::print("{} of {}\n", name, preset.name);
+  for (const Figure& figure : result.figures)
+    fmt::print("  {:<24} {:.5g} {}\n", figure.name, figure.value, figure.unit == "1" ? "" : figure.unit);
+}
+
+CLI::App* add(CLI::App& studies, const std::string& name, const std::string& about,
+              const std::shared_ptr<StudyOptions>& options, const Study& study) {
+  CLI::App* command = studies.add_subcommand(name, about);
+  command->add_option("--fabric", options->fabric, "A fabric's name (weft fabrics), or a fabric file")
+      ->required();
+  static const std::map<std::string, SpecimenMesh> meshes = {{"grid", SpecimenMesh::grid},
+                                                             {"random", SpecimenMesh::random}};
+  command->add_option("--mesh", options->specimen.mesh, "Regular or crooked: grid (default) or random")
+      ->transform(CLI::CheckedTransformer(meshes));
+  command
+      ->add_option("--resolution", options->specimen.resolution,
+                   "Cells along the specimen, or rings of a disc")
+      ->check(CLI::Range(4, 500));
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->add_option("--out", options->out, "A folder for study.json, specimen.obj and specimen.png")
+      ->type_name("DIR");
+  command->callback([name, study, options] { run(name, study, *options); });
+  return command;
+}
+
+std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOptions>(); }
+
+}  // namespace
+
+void add_study_command(CLI::App& app, int&) {
+  CLI::App* studies = app.add_subcommand("study", "A laboratory's standard tests of a fabric, simulated");
+  studies->require_subcommand(1);
+  const auto strip = make_options();
+  CLI::App* cantilever = add(*studies, "cantilever", "Bending length: a strip sinks under its own weight",
+                             strip, [](const Fabric& fabric, const StudyOptions& options) {
+                               return study_cantilever(fabric, options.specimen, options.direction);
+                             });
+  static const std::map<std::string, StripDirection> directions = {
+      {"warp", StripDirection::warp}, {"weft", StripDirection::weft}, {"bias", StripDirection::bias}};
+  cantilever
+      ->add_option("--direction", strip->direction,
+                   "Which way the strip is cut: warp (default), weft or bias")
+      ->transform(CLI::CheckedTransformer(directions));
+  add(*studies, "tensile", "c11, c22 and c12 between clamps that draw apart", make_options(),
+      [](const Fabric& fabric, const StudyOptions& options) {
+        return study_tensile(fabric, options.specimen);
+      });
+  add(*studies, "shear", "g between clamps that slide", make_options(),
+      [](const Fabric& fabric, const StudyOptions& options) {
+        return study_shear(fabric, options.specimen);
+      });
+  add(*studies, "buckling", "Load at which an upright strip tips over", make_options(),
+      [](const Fabric& fabric, const StudyOptions& options) {
+        return study_buckling(fabric, options.specimen);
+      });
+  const auto disc = make_options();
+  CLI::App* drape =
+      add(*studies, "drape", "Drape coefficient (ISO 9073-9): the shadow of a disc that hangs over plates",
+          disc, [](const Fabric& fabric, const StudyOptions& options) {
+            return study_drape(fabric, options.specimen, options.threads);
+          });
+  drape->add_option("--threads", disc->threads, "Threads of the simulation (default: all processors)")
+      ->check(CLI::Range(1, 1024));
+}
+
+}  // namespace weft::app

@@ -1,0 +1,80 @@
+#pragma once
+/// What a fabric's elements add to the incremental potential of the fast solver, in floats:
+///
+///     Σ ½ A (eᵀ C e + η δeᵀ C δe) + ½ Σ b_ij (|x_j − x_i|² + η |z_j − z_i|²),      η = τ β/h
+///
+/// e is a triangle's Green strain and δe what a step with β changes of it (see remember()): zero for rigid
+/// motions. Both squares of a triangle are one, ½ (1 + η) A (e − e*)ᵀ C (e − e*) and a constant, which is
+/// left out. The second sum is bending by stencils (fabric/bending_rows.h), whose quadratic form has the
+/// constant couplings b_ij; z = x − y + (h/β) v_y as in potential.h. Its damping acts on all of the relative
+/// velocity: a curl of curvature κ that spins as a whole loses by it the share 2 τ D κ²/(ρ r²) of its energy
+/// per second, r being its radius of gyration.
+///
+/// The Hessian is kept as a 3×3 block per edge: the material term as it is, the stress term as three scalar
+/// edge weights per triangle with absolute values, the bending as it is: positive semidefinite.
+///
+/// On grids everything is a stencil; on meshes it comes from tables of the particles' edges. Sums have one
+/// fixed order: the same bits for any number of threads and any vector width.
+
+#include <memory>
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/forces/element_tables.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+namespace kernels {
+struct GridElements;
+struct MeshElements;
+}  // namespace kernels
+
+class ElementPotential {
+ public:
+  /// Lays everything out for the cloth's elements; none is well. `damping_rate` is β/h [1/s]. Throws
+  /// InputError for hinges, and for a grid whose warp is along neither axis.
+  void fit(const ClothModel& model, const PaddedRows& rows, double damping_rate);
+
+  bool empty() const { return elements_ == nullptr; }
+  bool is_damped() const { return damping_ > 0; }
+
+  /// Takes the strains e₀ and e₋₁ before the step and the one before it; δe = e − e₀ − memory (e₀ − e₋₁).
+  /// Positions are laid out by the rows. To be called before a damped step.
+  void remember(const Vec3Array& start, const Vec3Array& before, double memory, JobSystem& jobs);
+
+  /// The value at x [J]; `z` is only read with damping.
+  double energy(const Vec3Array& x, const Vec3Array& z, JobSystem& jobs);
+
+  /// The same; adds the force to `force` [N], and keeps the Hessian.
+  double linearise(const Vec3Array& x, const Vec3Array& z, JobSystem& jobs, Vec3Array& force);
+
+  /// q += A p with the Hessian A of linearise(), and p·A p. p must be zero where no particle is.
+  double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
+
+ private:
+  void fit_grid(const ClothModel& model);
+  void fit_mesh(const ClothModel& model);
+  kernels::GridElements grid_view();
+  kernels::MeshElements mesh_view();
+  void add_past(const Vec3Array& x, double share, JobSystem& jobs);
+  double sum_parts(int count) const;
+
+  std::shared_ptr<const ClothElements> elements_;
+  std::shared_ptr<const ClothTopology> topology_;
+  PaddedRows rows_;
+  bool is_grid_ = true;
+  float damping_ = 0;           // η
+  std::vector<float> bending_;  // on a grid, couplings of each family [N/m]
+  ElementTables tables_;        // on a mesh
+  std::vector<float> past_;     // η/(1 + η) times the strain without δe: e*
+  std::vector<float> stress_;   // on a grid; on a mesh frames too
+  std::vector<float> slope_;
+  std::vector<float> hessian_;
+  Vec3Array bent_;             // x + η z
+  std::vector<double> parts_;  // sums of rows or slices
+};
+
+}  // namespace weft

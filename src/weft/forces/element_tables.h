@@ -1,0 +1,27 @@
+#pragma once
+/// A mesh's elements laid out for vector registers, sixteen triangles or particles side by side (see
+/// kernels::MeshElements).
+
+#include <vector>
+
+#include "weft/core/pack.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+struct ElementTables {
+  std::vector<int> corner;
+  std::vector<float> shape;
+  std::vector<int> slice_begin, neighbour, triangle;
+  std::vector<float> entry;
+  std::vector<int> far_begin, far_neighbour;
+  std::vector<float> far_bending;
+
+  int num_triangle_slices() const { return static_cast<int>(corner.size()) / (3 * kPackLanes); }
+  int num_slices() const { return slice_begin.empty() ? 0 : static_cast<int>(slice_begin.size()) - 1; }
+  int num_entry_rows() const { return slice_begin.empty() ? 0 : slice_begin.back(); }
+};
+
+ElementTables build_element_tables(const ClothElements& elements, int num_particles);
+
+}  // namespace weft

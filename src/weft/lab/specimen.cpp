@@ -1,0 +1,104 @@
+#include "weft/lab/specimen.h"
+
+#include <cmath>
+
+#include "weft/core/angle.h"
+#include "weft/forces/membrane.h"
+#include "weft/mesh/sample_meshes.h"
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+constexpr int kIterations = 60;    // of conjugate gradients per step
+constexpr double kSettled = 1e-5;  // of the size
+constexpr int kStepsPerLook = 30;  // between two looks at whether it has settled
+constexpr int kMostLooks = 200;
+constexpr double kStepPerRoot = 0.04;  // step over the root of the size: a fortieth of a strip's swing [s/√m]
+constexpr std::uint64_t kMeshSeed = 1;
+
+std::vector<Vec3> positions(const ClothState& state) {
+  std::vector<Vec3> x;
+  for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.position(i));
+  return x;
+}
+
+double largest_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+void stop(ClothState& state) {
+  for (std::size_t i = 0; i < state.v.size(); ++i) state.v.set(i, Vec3::Zero());
+  state.history.step = 0;
+}
+
+}  // namespace
+
+Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg) {
+  const bool is_square = std::fmod(warp_deg, 90) == 0;
+  std::shared_ptr<const ClothTopology> topology;
+  std::shared_ptr<const ClothElements> elements;
+  if (mesh == SpecimenMesh::grid && is_square) {
+    const GridWarp warp = std::fmod(warp_deg, 180) == 0 ? GridWarp::first_axis : GridWarp::second_axis;
+    topology = build_grid_topology(grid, SpringModel::alternating);
+    elements = build_grid_elements(grid, topology->mesh, warp, fabric);
+  } else {
+    topology =
+        build_mesh_topology(mesh == SpecimenMesh::grid ? build_grid_mesh(grid, GridDiagonals::alternating)
+                                                       : build_random_mesh(grid, kMeshSeed));
+    const auto [s, c] = sin_cos_deg(warp_deg);
+    elements = build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, {c, 0, s}), fabric);
+  }
+  Specimen specimen;
+  specimen.model = build_cloth_model(
+      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0}, elements);
+  specimen.state = make_state(topology->mesh.positions);
+  return specimen;
+}
+
+void clamp(Specimen& specimen, const std::function<std::optional<Vec3>(const Vec3&)>& place) {
+  PinTargets& pins = specimen.environment.pins;
+  pins = {};
+  for (int i = 0; i < specimen.model->num_particles(); ++i) {
+    const std::optional<Vec3> target = place(specimen.rest()[i]);
+    if (!target) continue;
+    pins.particle.push_back(i);
+    pins.position.push_back(*target);
+    specimen.state.set_position(i, *target);
+  }
+}
+
+bool settle(Specimen& specimen, double size) {
+  const auto integrator = make_newton({.iterations = kIterations});
+  const auto jobs = make_serial_jobs();
+  const double step = kStepPerRoot * std::sqrt(size);
+  double energy = 0;
+  std::vector<Vec3> before = positions(specimen.state);
+  for (int look = 0; look < kMostLooks; ++look) {
+    for (int s = 0; s < kStepsPerLook; ++s) {
+      integrator->advance(*specimen.model, specimen.environment, step, *jobs, specimen.state);
+      const double now = compute_kinetic_energy(*specimen.model, specimen.state);
+      if (now < energy) stop(specimen.state);
+      energy = now < energy ? 0 : now;
+    }
+    const std::vector<Vec3> after = positions(specimen.state);
+    if (largest_move(before, after) < kSettled * size) return true;
+    before = after;
+  }
+  return false;
+}
+
+std::vector<Vec3> compute_membrane_forces(const Specimen& specimen) {
+  const ClothElements& elements = *specimen.model->elements;
+  const std::vector<Vec3> x = positions(specimen.state);
+  std::vector<Vec3> force(x.size(), Vec3::Zero());
+  for (const auto& [v, rest] : elements.membranes) {
+    const TriangleCorners f = membrane_force(rest, elements.stiffness, {x[v[0]], x[v[1]], x[v[2]]});
+    for (int c = 0; c < 3; ++c) force[v[c]] += f[c];
+  }
+  return force;
+}
+
+}  // namespace weft

@@ -1,0 +1,203 @@
+/// Laboratory tests give back what the fabric is made of, and one fabric is the same cloth on every mesh.
+
+#include "weft/lab/studies.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "weft/fabric/presets.h"
+#include "weft/lab/drape.h"
+#include "weft/mesh/sample_meshes.h"
+
+namespace weft {
+namespace {
+
+constexpr SpecimenMesh kMeshes[] = {SpecimenMesh::grid, SpecimenMesh::random};
+
+double figure(const StudyResult& result, const std::string& name) {
+  for (const Figure& f : result.figures) {
+    if (f.name == name) return f.value;
+  }
+  ADD_FAILURE() << "no figure " << name;
+  return 0;
+}
+
+TEST(Studies, RecoverStretchAndShearStiffness) {
+  for (const char* name : {"silk", "denim", "11oz_black_denim", "gray_interlock", "pink_ribbon_brown"}) {
+    const Fabric& fabric = find_fabric(name).fabric;
+    for (const SpecimenMesh mesh : kMeshes) {
+      const StudyResult tensile = study_tensile(fabric, {.mesh = mesh});
+      const double share = mesh == SpecimenMesh::grid ? 0.01 : 0.02;
+      EXPECT_NEAR(figure(tensile, "c11") / fabric.c11, 1, share) << name;
+      EXPECT_NEAR(figure(tensile, "c22") / fabric.c22, 1, share) << name;
+      EXPECT_NEAR(figure(tensile, "c12"), fabric.c12, share * std::sqrt(fabric.c11 * fabric.c22)) << name;
+      EXPECT_NEAR(figure(study_shear(fabric, {.mesh = mesh}), "g") / fabric.g, 1, share) << name;
+      EXPECT_TRUE(tensile.warnings.empty());
+    }
+  }
+}
+
+TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
+  constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
+  for (const char* name : {"silk", "leather", "11oz_black_denim"}) {
+    const Fabric& fabric = find_fabric(name).fabric;
+    for (const SpecimenMesh mesh : kMeshes) {
+      for (const StripDirection direction : {StripDirection::warp, StripDirection::weft}) {
+        const StudyResult result = study_cantilever(fabric, {.mesh = mesh}, direction);
+        const double given = direction == StripDirection::warp ? fabric.bend_warp : fabric.bend_weft;
+        EXPECT_NEAR(figure(result, "h_over_w") / kElastica, 1, 0.02) << name;
+        EXPECT_NEAR(figure(result, "bending_rigidity") / given, 1, 0.03) << name;
+        EXPECT_NEAR(figure(result, "bending_length"), std::cbrt(given / (fabric.density * 9.81)),
+                    0.01 * figure(result, "bending_length"));
+      }
+    }
+  }
+}
+
+TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
+  // 12.85 (1 − ν) √(2 (1 + ν)) for a strip of no width; the stencils of a grid have ν = 0. A clamped strip of
+  // two cells across is a little stiffer, less so the more cells along: +16, +9 and +6 % with 15, 25 and 40.
+  const Fabric& denim = find_fabric("denim").fabric;  // whose rigidity is the same in all directions
+  const double theory = 12.85 * std::sqrt(2);
+  const auto error = [&](int cells) {
+    return figure(study_buckling(denim, {.resolution = cells}), "critical_load") / theory - 1;
+  };
+  const double coarse = error(15), fine = error(40);
+  EXPECT_NEAR(fine, 0, 0.08);
+  EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
+}
+
+/// A sheet of 1 m × 0.25 m between two bars that are 0.8 m apart, as an arc.
+Specimen hammock(const Fabric& fabric, int cells, SpecimenMesh mesh) {
+  const Grid grid{.size_x = 1, .size_z = 0.25, .cells_x = cells, .cells_z = cells / 4};
+  Specimen specimen = make_rectangle(fabric, grid, mesh, 0);
+  specimen.environment.gravity = {0, -9.81, 0};
+  clamp(specimen, [](const Vec3& p) -> std::optional<Vec3> {
+    if (p.x() > 1e-9 && p.x() < 1 - 1e-9) return {};
+    return Vec3(0.8 * p.x(), 0, p.z());
+  });
+  for (int i = 0; i < specimen.model->num_particles(); ++i) {
+    const Vec3& p = specimen.rest()[i];
+    specimen.state.set_position(i, {0.8 * p.x(), -p.x() * (1 - p.x()), p.z()});
+  }
+  return specimen;
+}
+
+double sag(const Specimen& specimen) {
+  double lowest = 0;
+  for (std::size_t i = 0; i < specimen.state.x.size(); ++i)
+    lowest = std::max(lowest, -specimen.state.position(i).y());
+  return lowest;
+}
+
+TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
+  // Length over span 1.25: sag over span 0.331797. Bending and stretching are small beside.
+  const Fabric& cotton = find_fabric("cotton_shirting").fabric;
+  for (const int cells : {12, 24, 48}) {
+    for (const SpecimenMesh mesh : kMeshes) {
+      if (mesh == SpecimenMesh::random && cells == 48) continue;
+      Specimen specimen = hammock(cotton, cells, mesh);
+      EXPECT_TRUE(settle(specimen, 1));
+      EXPECT_NEAR(sag(specimen) / (0.8 * 0.331797), 1, 0.02) << cells;
+    }
+  }
+}
+
+TEST(OneFabric, RestsInTheSameShapeAtAnyNumberOfStepsPerSecond) {
+  const Fabric& denim = find_fabric("denim").fabric;
+  double sags[3];
+  int k = 0;
+  for (const int steps_per_second : {60, 120, 240}) {
+    Specimen specimen = hammock(denim, 20, SpecimenMesh::grid);
+    specimen.environment.wind.drag = 5 * denim.density;
+    const auto integrator = make_newton({});
+    const auto jobs = make_serial_jobs();
+    for (int s = 0; s < 4 * steps_per_second; ++s)
+      integrator->advance(*specimen.model, specimen.environment, 1.0 / steps_per_second, *jobs,
+                          specimen.state);
+    sags[k++] = sag(specimen);
+  }
+  EXPECT_NEAR(sags[0] / sags[2], 1, 0.01);
+  EXPECT_NEAR(sags[1] / sags[2], 1, 0.01);
+}
+
+/// J₀, by its series.
+double bessel(double x) {
+  double term = 1, sum = 1;
+  for (int k = 1; k < 20; ++k) {
+    term *= -x * x / (4.0 * k * k);
+    sum += term;
+  }
+  return sum;
+}
+
+/// The time of a swing of a strip of a metre, hung by its upper end, in its first mode [s].
+double swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh) {
+  const Grid grid{.size_x = 1, .size_z = 0.25, .cells_x = cells, .cells_z = cells / 4};
+  Specimen specimen = make_rectangle(fabric, grid, mesh, 0);
+  specimen.environment.gravity = {0, -9.81, 0};
+  const auto hang = [](const Vec3& p) { return Vec3(0, -p.x(), p.z()); };
+  clamp(specimen, [&](const Vec3& p) -> std::optional<Vec3> {
+    if (p.x() > 1e-9) return {};
+    return hang(p);
+  });
+  for (int i = 0; i < specimen.model->num_particles(); ++i)
+    specimen.state.set_position(i, hang(specimen.rest()[i]));
+  EXPECT_TRUE(settle(specimen, 1)) << "it bears its weight";
+  for (int i = 0; i < specimen.model->num_particles(); ++i) {
+    const double mode = bessel(2.404826 * std::sqrt(1 - specimen.rest()[i].x()));
+    specimen.state.set_position(i, specimen.state.position(i) + Vec3(0.02 * mode, 0, 0));
+    specimen.state.v.set(i, Vec3::Zero());
+  }
+  specimen.state.history.step = 0;
+  const auto integrator = make_newton({.iterations = 100});
+  const auto jobs = make_serial_jobs();
+  std::vector<double> crossings;
+  double before = 0.02, time = 0;
+  for (constexpr double kStep = 1.0 / 240; crossings.size() < 2 && time < 3; time += kStep) {
+    integrator->advance(*specimen.model, specimen.environment, kStep, *jobs, specimen.state);
+    double now = 0;
+    for (int j = 0; j <= grid.cells_z; ++j) now += specimen.state.position(grid.index(cells, j)).x();
+    if (before * now < 0) crossings.push_back(time + kStep * before / (before - now));
+    before = now;
+  }
+  return crossings.size() == 2 ? 2 * (crossings[1] - crossings[0]) : 0;
+}
+
+TEST(OneFabric, SwingsInTheSameTimeOnEveryMesh) {
+  // f₁ = (j₀₁/4π) √(g/L) = 0.5994 Hz; the cloth stretches by a few ten-thousandths.
+  Fabric silk = find_fabric("silk").fabric;
+  silk.damping = 0;
+  for (const int cells : {16, 32, 48}) {
+    for (const SpecimenMesh mesh : kMeshes) {
+      if (mesh == SpecimenMesh::random && cells == 48) continue;
+      EXPECT_NEAR(swing_period(silk, cells, mesh) * 0.5994, 1, 0.01) << cells;
+    }
+  }
+}
+
+TEST(Drape, ShadowOfADiscIsItsArea) {
+  const TriangleMesh disc = build_disc_mesh(0.15, 20);
+  double area = 0;
+  for (int t = 0; t < disc.num_triangles(); ++t) area += triangle_area(disc, t);
+  EXPECT_NEAR(area / (3.14159265 * 0.15 * 0.15), 1, 1e-3) << "an outline of 120 corners";
+  EXPECT_NEAR(compute_shadow(disc.triangles, make_state(disc.positions)) / area, 1, 2e-3);
+}
+
+TEST(Drape, OfStifferFabricIsLarger) {
+  // Between that of cloth that hangs straight down and that of a board.
+  Fabric fabric = find_fabric("denim").fabric;
+  double before = 0;
+  for (const double times : {0.3, 3.0, 30.0}) {
+    Fabric other = fabric;
+    for (double* b : {&other.bend_warp, &other.bend_weft, &other.bend_bias}) *b *= times;
+    const Drape drape = simulate_drape(other, {.resolution = 10}, 1, 1);
+    EXPECT_GT(drape.coefficient, before + 0.05) << times;
+    before = drape.coefficient;
+  }
+  EXPECT_LT(before, 1);
+}
+
+}  // namespace
+}  // namespace weft

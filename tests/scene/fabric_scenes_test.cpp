@@ -1,0 +1,133 @@
+/// Fabrics in scenes: by name, by file and in SI values, as triangles and as springs.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "weft/core/error.h"
+#include "weft/fabric/presets.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
+
+namespace weft {
+namespace {
+
+SceneDesc scene_with(const std::string& keys, const Overrides& overrides = {},
+                     const std::filesystem::path& folder = {}) {
+  return parse_scene("[scene]\nformat = 1\n[[cloth]]\ngrid = { size = [1, 0.8], cells = [10, 8] }\n" + keys,
+                     folder / "scene.toml", overrides);
+}
+
+SceneWorld built(const std::string& keys, const Overrides& overrides = {}) {
+  return build_world(scene_with(keys, overrides), make_serial_jobs());
+}
+
+TEST(FabricScenes, TakeAFabricByName) {
+  const Fabric& denim = find_fabric("denim").fabric;
+  const SceneWorld scene = built("fabric = \"denim\"\n");
+  const ClothModel& model = scene.world.model({0});
+  ASSERT_NE(model.elements, nullptr);
+  EXPECT_EQ(model.elements->stiffness, membrane_stiffness(denim));
+  EXPECT_EQ(model.elements->damping, denim.damping);
+  EXPECT_EQ(model.material.density, denim.density);
+  EXPECT_EQ(model.material.thickness, denim.thickness);
+  EXPECT_EQ(model.material.friction, denim.friction);
+  EXPECT_EQ(model.material.structural, 0);
+  EXPECT_EQ(model.topology->spring_model, SpringModel::alternating) << "hangs symmetrically";
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(FabricScenes, ChangeTheirFabricByAnOverride) {
+  const SceneWorld scene = built("fabric = \"denim\"\n", {"cloth[0].fabric=silk"});
+  EXPECT_EQ(scene.world.model({0}).material.density, find_fabric("silk").fabric.density);
+  const SceneWorld other = built("", {"cloth[0].fabric=silk", "cloth[0].membrane=springs"});
+  EXPECT_TRUE(other.world.model({0}).material.structural_z.has_value());
+}
+
+TEST(FabricScenes, TakeAFabricFileFromTheSceneFolder) {
+  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "fabric_scenes";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "mine.toml") << "density = 0.3\nc11 = 100\nc22 = 200\nc12 = 5\ng = 20\n"
+                                         "bend_warp = 1e-5\nbend_weft = 1e-5\nbend_bias = 1e-5\n";
+  const SceneDesc scene = scene_with("fabric = \"mine.toml\"\n", {}, folder);
+  EXPECT_EQ(scene.cloths[0].fabric->numbers.c22, 200);
+  EXPECT_EQ(scene.cloths[0].material.density, 0.3);
+}
+
+TEST(FabricScenes, TakeSiValuesWithTheDefaultsOfCottonShirting) {
+  const SceneDesc scene = scene_with("fabric = { c11 = 500, damping = 0.01 }\n");
+  EXPECT_EQ(scene.cloths[0].fabric->numbers.c11, 500);
+  EXPECT_EQ(scene.cloths[0].fabric->numbers.damping, 0.01);
+  EXPECT_EQ(scene.cloths[0].fabric->numbers.c22, Fabric().c22);
+  EXPECT_EQ(scene.cloths[0].material.damping, 0) << "of springs, in other units";
+}
+
+TEST(FabricScenes, HaveWarpAlongEitherAxisOfTheGridOrAcross) {
+  const auto warp = [](const std::string& direction) {
+    return built("fabric = \"denim\"\nwarp = " + direction + "\n").world.model({0}).elements->grid_warp;
+  };
+  EXPECT_EQ(warp("[2, 0, 0]"), GridWarp::first_axis);
+  EXPECT_EQ(warp("[0, 0, -1]"), GridWarp::second_axis);
+  EXPECT_EQ(warp("[1, 0, 1]"), std::nullopt) << "then it is a mesh, whose particles are the grid's";
+  const SceneWorld skew = built("fabric = \"denim\"\nwarp = [1, 0, 1]\npins = [\"corner:1,1\"]\n");
+  EXPECT_EQ(skew.world.pins({0}).at(0).particles, std::vector<int>{98});
+}
+
+TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
+  // A homogeneous stretch of the grid stores ½ A C ε² along either axis, whatever the cells; 2 % apart, for
+  // springs are not linear in Green's strain.
+  const Fabric& fabric = find_fabric("denim").fabric;
+  for (const char* spring_model : {"basic", "alternating"}) {
+    const SceneWorld scene =
+        built("fabric = \"denim\"\nmembrane = \"springs\"\nmodel = \"" + std::string(spring_model) + "\"\n");
+    const ClothModel& model = scene.world.model({0});
+    const auto is_told = [](const std::string& w) { return w.find("c12 = g") != std::string::npos; };
+    EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
+    for (const bool along_x : {true, false}) {
+      const double e = 0.001;
+      double energy = 0;
+      for (const Spring& s : model.topology->springs) {
+        Vec3 d = model.topology->mesh.positions[s.j] - model.topology->mesh.positions[s.i];
+        (along_x ? d.x() : d.z()) *= 1 + e;
+        const double stretch = d.norm() - s.rest_length;
+        energy += 0.5 * model.stiffness(s) * stretch * stretch;
+      }
+      const double c = along_x ? fabric.c11 : fabric.c22;
+      EXPECT_NEAR(energy / (0.5 * 0.8 * c * e * e), 1, 0.02) << spring_model;
+    }
+  }
+}
+
+TEST(FabricScenes, SaySoWhereSpringsCannotBeTheFabric) {
+  const auto failure = [](const std::string& keys) -> std::string {
+    try {
+      built(keys + "membrane = \"springs\"\n");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(failure("fabric = { c11 = 50, g = 60 }\n").find("springs cannot be it: c11"), std::string::npos);
+  EXPECT_NE(failure("fabric = \"silk\"\nwarp = [1, 0, 1]\n").find("membrane = \"triangle\""),
+            std::string::npos);
+}
+
+TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
+  for (const char* name : {"explicit", "paper", "paper_fixed", "desbrun"}) {
+    SceneDesc scene = scene_with("fabric = \"denim\"\n");
+    scene.solver.integrator = name;
+    try {
+      build_world(scene, make_serial_jobs());
+      FAIL() << name;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("use newton"), std::string::npos) << error.what();
+    }
+  }
+  SceneWorld scene = built("fabric = \"denim\"\n");
+  EXPECT_THROW(scene.world.set_integrator({.integrator = "paper"}), InputError);
+}
+
+}  // namespace
+}  // namespace weft
