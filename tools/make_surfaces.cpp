@@ -1,0 +1,127 @@
+// Makes the meshes of the contact scenes: make_surfaces FOLDER writes folded_sheet.obj, tube.obj and
+// funnel.obj.
+//
+// Each is a polyline that is swept: along z (a sheet), or round an axis (a tube, a funnel).
+
+#include <cstdio>
+#include <exception>
+
+#include "weft/core/angle.h"
+#include "weft/io/obj_reader.h"
+
+namespace weft {
+namespace {
+
+using Polyline = std::vector<Vec3>;  // in the plane z = 0
+
+/// Coordinates are whole micrometres: the files are short (adding 0 turns -0 into 0).
+Vec3 rounded(const Vec3& x) { return (x * 1e6).array().round() / 1e6 + 0.0; }
+
+Mat3 rotation_about(const Vec3& axis, double angle_deg) {
+  const SinCos angle = sin_cos_deg(angle_deg);
+  const Mat3 along = axis * axis.transpose();
+  Mat3 across;
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return along + angle.cos * (Mat3::Identity() - along) + angle.sin * across;  // Rodrigues
+}
+
+/// Joins neighbouring copies of a polyline by triangles, the last to the first if `closed`.
+TriangleMesh join(const std::vector<Polyline>& copies, bool closed) {
+  TriangleMesh mesh;
+  const int num_copies = static_cast<int>(copies.size()), length = static_cast<int>(copies[0].size());
+  for (const Polyline& copy : copies) {
+    for (const Vec3& x : copy) mesh.positions.push_back(rounded(x));
+  }
+  for (int i = 0; i < (closed ? num_copies : num_copies - 1); ++i) {
+    for (int j = 0; j + 1 < length; ++j) {
+      const int a = i * length + j, b = a + 1;
+      const int c = (i + 1) % num_copies * length + j, d = c + 1;
+      if ((i + j) % 2 == 0) {  // diagonals in turn, so that no direction is stiffer
+        mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {a, d, c}});
+      } else {
+        mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {b, d, c}});
+      }
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh sweep(const Polyline& line, double width, int num_cells) {
+  std::vector<Polyline> copies(num_cells + 1, line);
+  for (int i = 0; i <= num_cells; ++i) {
+    for (Vec3& x : copies[i]) x.z() = width * i / num_cells - width / 2;
+  }
+  return join(copies, false);
+}
+
+TriangleMesh turn(const Polyline& line, const Vec3& axis, int num_cells) {
+  std::vector<Polyline> copies;
+  for (int i = 0; i < num_cells; ++i) {
+    const Mat3 rotation = rotation_about(axis, 360.0 * i / num_cells);
+    copies.push_back({});
+    for (const Vec3& x : line) copies.back().push_back(rotation * x);
+  }
+  return join(copies, true);
+}
+
+/// Points along a straight line, without its end.
+void add_line(Polyline& line, const Vec3& from, const Vec3& to, int num_cells) {
+  for (int k = 0; k < num_cells; ++k) line.push_back(from + (to - from) * k / num_cells);
+}
+
+/// Points along half a circle that goes up from `from` by `height`, bulging to `side` (±1), without its end.
+void add_fold(Polyline& line, const Vec3& from, double height, double side, int num_cells) {
+  const double radius = height / 2;
+  for (int k = 0; k < num_cells; ++k) {
+    const Mat3 rotation = rotation_about({0, 0, 1}, side * 180.0 * k / num_cells);
+    line.push_back(from + Vec3(0, radius, 0) + rotation * Vec3(0, -radius, 0));
+  }
+}
+
+/// 0.5 m by 1.02 m, folded in three: an S with straight layers 2 cm apart.
+TriangleMesh make_folded_sheet() {
+  constexpr double kHalf = 0.16, kGap = 0.02;
+  constexpr int kLayerCells = 32, kFoldCells = 3, kWidthCells = 40;
+  Polyline line;
+  add_line(line, {-kHalf, 0, 0}, {kHalf, 0, 0}, kLayerCells);
+  add_fold(line, {kHalf, 0, 0}, kGap, 1, kFoldCells);
+  add_line(line, {kHalf, kGap, 0}, {-kHalf, kGap, 0}, kLayerCells);
+  add_fold(line, {-kHalf, kGap, 0}, kGap, -1, kFoldCells);
+  add_line(line, {-kHalf, 2 * kGap, 0}, {kHalf, 2 * kGap, 0}, kLayerCells);
+  line.push_back({kHalf, 2 * kGap, 0});
+  return sweep(line, 0.5, kWidthCells);
+}
+
+/// 1 m long, of radius 0.1 m, around the x axis.
+TriangleMesh make_tube() {
+  constexpr int kLengthCells = 84, kRoundCells = 52;
+  Polyline line;
+  add_line(line, {-0.5, 0.1, 0}, {0.5, 0.1, 0}, kLengthCells);
+  line.push_back({0.5, 0.1, 0});
+  return turn(line, {1, 0, 0}, kRoundCells);
+}
+
+/// Around the y axis: from a rim of radius 0.5 m at a height of 1.4 m down to a spout of radius 0.1 m.
+TriangleMesh make_funnel() {
+  return turn({{0.5, 1.4, 0}, {0.3, 1.2, 0}, {0.1, 1.0, 0}, {0.1, 0.85, 0}}, {0, 1, 0}, 32);
+}
+
+}  // namespace
+}  // namespace weft
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: make_surfaces FOLDER\n");
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  try {
+    weft::write_obj(folder / "folded_sheet.obj", weft::make_folded_sheet());
+    weft::write_obj(folder / "tube.obj", weft::make_tube());
+    weft::write_obj(folder / "funnel.obj", weft::make_funnel());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "make_surfaces: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
