@@ -42,7 +42,6 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
   is_predicted_ = false;
-  wild_cloth_ = -1;
   shapes_.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
@@ -198,6 +197,10 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
   }
 }
 
+int ContactSystem::wild_cloth() const {
+  return proximity_.wildest() < 0 ? -1 : cloth_of(proximity_.wildest());
+}
+
 void ContactSystem::hold_off(JobSystem& jobs) {
   proximity_.update(motion_, jobs);
   constraints_.clear();
@@ -216,12 +219,10 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
     origins_.push_back(cloths_[c].state->origin);
   }
   arrived_ = motion_.end;
-  const bool is_wild = proximity_.wildest() >= 0;
-  if (is_wild && !cut_short(jobs)) return {};
-  if (!is_of_this_world()) return {};
+  if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const LastLineReport report = last_line_.hold(
       {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
-  if (report.hits == 0 && !is_wild) return report;
+  if (report.hits == 0) return report;
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
@@ -243,26 +244,6 @@ bool ContactSystem::is_of_this_world() const {
     if (!(offset.cwiseAbs().maxCoeff() < kLargest)) return false;
   }
   return true;
-}
-
-/// Halves how cloth moves against its common motion until pairs can be looked for. False if it cannot be
-/// done.
-bool ContactSystem::cut_short(JobSystem& jobs) {
-  constexpr int kHalvings = 60;
-  const int n = first_vertex_.back();
-  Vec3 drift = Vec3::Zero();
-  for (int v = 0; v < n; ++v) drift += (motion_.end[v] - motion_.start[v]) / n;
-  if (!drift.allFinite()) return false;
-  wild_cloth_ = cloth_of(proximity_.wildest());
-  for (int h = 0; h < kHalvings && proximity_.wildest() >= 0; ++h) {
-    for (int v = 0; v < n; ++v) {
-      if (inverse_mass_[v] == 0) continue;
-      const Vec3 way = motion_.end[v] - motion_.start[v];
-      motion_.end[v] = motion_.start[v] + drift + 0.5 * (way - drift);
-    }
-    proximity_.update(motion_, jobs);
-  }
-  return proximity_.wildest() < 0;
 }
 
 void ContactSystem::settle_positions() {

@@ -71,8 +71,8 @@ class ContactSystem {
   };
   Place place_of(int vertex) const;
 
-  /// The cloth that moved so far in this step that its motion was cut short, -1 if none did.
-  int wild_cloth() const { return wild_cloth_; }
+  /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
+  int wild_cloth() const;
 
  private:
   struct Body {
@@ -110,7 +110,6 @@ class ContactSystem {
   void collect_shape(int shape, double share_of_travel);
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
-  bool cut_short(JobSystem& jobs);
   bool is_of_this_world() const;
   void settle_positions();
   void project(JobSystem& jobs);
@@ -132,7 +131,6 @@ class ContactSystem {
   std::vector<MovingShape> shapes_;
   ContactStep step_;
   bool is_predicted_ = false;  // the solve knows of contacts
-  int wild_cloth_ = -1;
   SurfaceMotion motion_;
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;

@@ -276,7 +276,7 @@ StepReport World::step(double dt) {
     if (is_wild_[c]) {
       report.troubles.push_back(
           {cloth.name, -1,
-           "the cloth moved by more than its own size within a step, and its motion was cut short; " +
+           "the cloth moved by more than its own size within a step, and contact was left out; " +
                advice(integrator_settings_.integrator)});
     }
     if (has_converged_[c]) continue;
