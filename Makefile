@@ -9,8 +9,8 @@ help:
 	@echo "make test    install what is missing, build, run all tests"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
-	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (minutes)"
-	@echo "make tsan    the tests that use threads under the thread sanitizer (minutes)"
+	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
+	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
 	@echo "make fuzz    fuzz the readers of scenes, OBJ and .glb, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
 

@@ -22,5 +22,9 @@ function(weft_target target)
     # of std::regex that seem not to be set (GCC bug 105562).
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-pass-failed>
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+    get_target_property(type ${target} TYPE)
+    if(WEFT_SANITIZE MATCHES address AND type STREQUAL "EXECUTABLE")
+      target_sources(${target} PRIVATE ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/keep_loaded.cpp)
+    endif()
   endif()
 endfunction()
