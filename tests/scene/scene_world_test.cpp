@@ -152,6 +152,7 @@ TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes")) {
     if (entry.path().extension() != ".toml") continue;
+    if (entry.path().filename() == "funnel.toml") continue;  // open on purpose, and told so
     const SceneWorld built = build_world(read_scene(entry.path()), make_serial_jobs());
     EXPECT_TRUE(built.warnings.empty()) << entry.path() << testing::PrintToString(built.warnings);
   }

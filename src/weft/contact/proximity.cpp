@@ -36,6 +36,13 @@ void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_ver
   slacks_ = slack;
   slack_ = slack.most;
   cloth_tree_ = body_tree_ = AabbTree();
+  // Room for the pairs of calm cloth, so that steps need not ask for it.
+  const std::size_t room = 4 * surface_.num_vertices;
+  chunks_.resize(1);
+  for (auto* pairs :
+       {&vertex_triangle_, &edge_edge_, &ordered_, &chunks_[0].vertex_triangle, &chunks_[0].edge_edge})
+    pairs->reserve(room);
+  fans_.reserve(room);
   made_for_.end.clear();
 }
 
