@@ -236,12 +236,13 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   return report;
 }
 
-/// Cloth of more than ten kilometres has no places fine enough to keep it apart: floats are too coarse.
+/// Cloth of more than a kilometre has no places fine enough to keep it apart, and what moves by tens of
+/// metres in a step is no motion of cloth.
 bool ContactSystem::is_of_this_world() const {
-  constexpr double kLargest = 1e4;
+  constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
   for (int v = 0; v < first_vertex_.back(); ++v) {
-    const Vec3 offset = motion_.start[v] - origins_[cloth_of(v)];
-    if (!(offset.cwiseAbs().maxCoeff() < kLargest)) return false;
+    const Vec3 offset = motion_.start[v] - origins_[cloth_of(v)], way = motion_.end[v] - motion_.start[v];
+    if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
   }
   return true;
 }
