@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the collision scenes at their full size and holds every frame against the independent checker:
 # nothing may cross, and nothing be more than 0.1 mm inside a collider (a hundredth of that in the scenes of contact/, which the
-# last line of contact holds). `garment` is run and told, not judged: see "Limits" in README.md.
+# last line of contact holds). `garment` is run and told, not judged: see "What there is not, yet" in README.md.
 set -euo pipefail
 
 weft=${1:?"usage: check_scenes.sh path/to/weft"}
