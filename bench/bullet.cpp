@@ -7,7 +7,7 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 
-#include "bench/reference.h"
+#include "weft/lab/reference.h"
 #endif
 
 namespace weft::bench {
@@ -21,7 +21,7 @@ btVector3 to_bullet(const Vec3& v) {
 
 class BulletContestant final : public Contestant {
  public:
-  BulletContestant(const Entry& entry, const HungCloth& cloth)
+  BulletContestant(const ContestantSettings& entry, const HungCloth& cloth)
       : state_(cloth.state),
         num_substeps_(entry.steps_per_frame),
         dispatcher_(&configuration_),
@@ -48,7 +48,7 @@ class BulletContestant final : public Contestant {
   }
 
  private:
-  double step() const { return kFrame / num_substeps_; }
+  double step() const { return kReferenceFrame / num_substeps_; }
 
   btSoftBody* make_body(const HungCloth& cloth, btSoftBodyWorldInfo& info) {
     const ClothModel& model = *cloth.model;
@@ -84,21 +84,23 @@ class BulletContestant final : public Contestant {
 
 }  // namespace
 
-std::vector<Entry> list_bullet_entries() {
+std::vector<ContestantSettings> list_bullet_entries() {
   constexpr int kMostParticles = 130 * 130;
-  std::vector<Entry> entries;
+  std::vector<ContestantSettings> entries;
   for (const int n : {25, 50, 100, 200})
     entries.push_back({"Bullet", std::to_string(n) + " substeps", {}, n, kMostParticles});
   return entries;
 }
 
-std::unique_ptr<Contestant> make_bullet_contestant(const Entry& entry, const HungCloth& cloth) {
+std::unique_ptr<Contestant> make_bullet_contestant(const ContestantSettings& entry, const HungCloth& cloth) {
   return std::make_unique<BulletContestant>(entry, cloth);
 }
 #else
-std::vector<Entry> list_bullet_entries() { return {}; }
+std::vector<ContestantSettings> list_bullet_entries() { return {}; }
 
-std::unique_ptr<Contestant> make_bullet_contestant(const Entry&, const HungCloth&) { return nullptr; }
+std::unique_ptr<Contestant> make_bullet_contestant(const ContestantSettings&, const HungCloth&) {
+  return nullptr;
+}
 #endif
 
 }  // namespace weft::bench

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "bench/hung_cloth.h"
 #include "bench/machine.h"
 #include "weft/core/simd.h"
 #include "weft/integrators/integrator.h"
+#include "weft/lab/hung_cloth.h"
 
 namespace weft::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bench/hung_cloth.h"
 #include "weft/core/random.h"
+#include "weft/lab/hung_cloth.h"
 #include "weft/world/measures.h"
 
 namespace weft::bench {

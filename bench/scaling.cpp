@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/hung_cloth.h"
 #include "bench/machine.h"
-#include "bench/reference.h"
 #include "weft/core/simd.h"
+#include "weft/lab/hung_cloth.h"
+#include "weft/lab/reference.h"
 
 namespace weft::bench {
 namespace {
@@ -32,7 +32,7 @@ double median_step_ms(HungCloth& cloth, Integrator& integrator, int steps, int t
   std::vector<double> ms;
   for (int s = 0; s < kStepsBefore + steps; ++s) {
     const double begin = seconds_now();
-    integrator.advance(*cloth.model, cloth.environment, kFrame, *jobs, cloth.state);
+    integrator.advance(*cloth.model, cloth.environment, kReferenceFrame, *jobs, cloth.state);
     if (s >= kStepsBefore) ms.push_back(1000 * (seconds_now() - begin));
   }
   return median(ms);

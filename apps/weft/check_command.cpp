@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "weft/core/error.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -24,8 +25,15 @@ int check(const std::string& scene) {
 void add_check_command(CLI::App& app, int& exit_code) {
   auto scene = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("check", "Judge a scene file: every mistake, with its place");
-  command->add_option("FILE", *scene, "A scene file, or the name of a shipped scene")->required();
-  command->callback([scene, &exit_code] { exit_code = check(*scene); });
+  CLI::Option* file = command->add_option("FILE", *scene, "A scene file, or the name of a shipped scene");
+  auto keys = std::make_shared<bool>(false);
+  CLI::Option* list = command->add_flag("--keys", *keys, "Instead, list every key that scene files may have");
+  file->excludes(list);
+  command->callback([scene, keys, &exit_code] {
+    if (*keys) return fmt::print("{}", describe_scene_keys());
+    if (scene->empty()) throw InputError("FILE is required; or --keys, to list the keys of scene files");
+    exit_code = check(*scene);
+  });
 }
 
 }  // namespace weft::app

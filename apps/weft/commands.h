@@ -16,6 +16,7 @@ void add_scenes_command(CLI::App& app, int& exit_code);
 void add_fabrics_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_study_command(CLI::App& app, int& exit_code);
+void add_chapter_commands(CLI::App& studies);  // of `weft study`
 void add_verify_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 

@@ -107,6 +107,7 @@ std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOpti
 void add_study_command(CLI::App& app, int&) {
   CLI::App* studies = app.add_subcommand("study", "A laboratory's standard tests of a fabric, simulated");
   studies->require_subcommand(1);
+  add_chapter_commands(*studies);
   const auto strip = make_options();
   CLI::App* cantilever = add(*studies, "cantilever", "Bending length: a strip sinks under its own weight",
                              strip, [](const Fabric& fabric, const StudyOptions& options) {

@@ -33,5 +33,26 @@ TEST(Manual, ItsSceneFileIsGood) {
   EXPECT_EQ(scene.cloths[0].material.friction, ClothMaterial{}.friction);
 }
 
+std::string read_page(const std::string& name) {
+  std::ifstream in(std::string(WEFT_SOURCE_DIR) + "/docs/" + name);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Manual, ListsEveryKeyTheReaderKnows) {
+  EXPECT_EQ(read_page("scene_keys.md"), describe_scene_keys())
+      << "run `weft check --keys > docs/scene_keys.md`, and say in docs/scenes.md what is new";
+}
+
+TEST(Manual, ExplainsEveryKeyThatItLists) {
+  const std::string manual = read_page("scenes.md"), keys = describe_scene_keys();
+  int count = 0;
+  for (auto at = keys.find("| `"); at != std::string::npos; at = keys.find("| `", at + 1), ++count) {
+    const auto begin = at + 3, end = keys.find('`', begin);
+    const std::string key = keys.substr(begin, end - begin);
+    EXPECT_NE(manual.find(key), std::string::npos) << key << " is not in docs/scenes.md";
+  }
+  EXPECT_GT(count, 60);
+}
+
 }  // namespace
 }  // namespace weft

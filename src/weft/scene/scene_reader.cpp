@@ -122,6 +122,22 @@ void read_solver(TomlTable table, SceneDesc& scene) {
   table.table("xpbd").read("substeps", solver.xpbd.substeps, IntegerRule{1, 100000});
 }
 
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
+  throw SceneError({{file.generic_string(), 0, 0, message}});
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code not_there;
+  if (std::filesystem::is_directory(file, not_there)) fail(file, "expected a scene file, found a folder");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file, "cannot be opened");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) fail(file, "cannot be read");
+  return text;
+}
+
+}  // namespace
+
 SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file) {
   SceneDesc scene;
   scene.name = make_name(file);
@@ -140,22 +156,6 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
   read_solver(root.table("solver"), scene);
   return scene;
 }
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
-  throw SceneError({{file.generic_string(), 0, 0, message}});
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code not_there;
-  if (std::filesystem::is_directory(file, not_there)) fail(file, "expected a scene file, found a folder");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "cannot be opened");
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) fail(file, "cannot be read");
-  return text;
-}
-
-}  // namespace
 
 SceneDesc read_scene(const std::filesystem::path& file, const Overrides& overrides) {
   return parse_scene(read_text(file), file, overrides);

@@ -23,4 +23,8 @@ SceneDesc read_scene(const std::filesystem::path& file, const Overrides& overrid
 SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file,
                       const Overrides& overrides = {});
 
+/// Every key that read_scene() knows, as a page of Markdown: what it holds, its unit and its default, taken
+/// from what the reader asks a file for.
+std::string describe_scene_keys();
+
 }  // namespace weft

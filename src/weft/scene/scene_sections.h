@@ -10,6 +10,9 @@
 
 namespace weft {
 
+/// A whole scene; mistakes are left in the document.
+SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file);
+
 /// One [[cloth]], the `number`-th from 1. Mesh files are looked for beside the scene, in `folder`.
 ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::path& folder);
 

@@ -11,6 +11,14 @@
 
 namespace weft {
 
+/// What a key may hold, in words: for the reference of scene files.
+struct KeyNote {
+  std::string key;
+  std::string holds;  // "number > 0"
+  std::string unit;   // "m"; empty: none
+  std::string usual;  // the default, as it would be written; empty: none
+};
+
 /// What a reader asked one table for. Keys that nobody asked for are mistakes; only at the end is it known
 /// which.
 struct TomlSection {
@@ -25,7 +33,8 @@ struct TomlSection {
   std::vector<std::string> keys;  // known ones, in the order of asking
   std::vector<std::string> refused;  // keys that were reported already
   std::vector<Requirement> required;
-  bool any_keys = false;  // unknown keys are not judged
+  bool any_keys = false;       // unknown keys are not judged
+  std::vector<KeyNote> notes;  // of keys that were asked for by what they may hold
 };
 
 class TomlDocument {
@@ -38,6 +47,8 @@ class TomlDocument {
   void override_value(const std::string& assignment);
 
   const toml::table& root() const { return root_; }
+
+  const std::deque<TomlSection>& sections() const { return sections_; }
 
   TomlSection& add_section(const toml::table* table, std::string path);
   void add_mistake(const toml::source_region& place, std::string message);

@@ -1,8 +1,64 @@
 #include "weft/scene/toml_table.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace weft {
+
+namespace {
+
+/// As it would be written, with the digits that matter to people.
+std::string write_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string limits_of(const NumberRule& rule) {
+  std::string limits;
+  if (rule.low == NumberRule::Low::zero) limits = " ≥ 0";
+  if (rule.low == NumberRule::Low::above_zero) limits = " > 0";
+  if (rule.most < kLargestNumber) limits += " ≤ " + write_number(rule.most);
+  return limits;
+}
+
+std::string limits_of(const IntegerRule& rule) {
+  return " ≥ " + std::to_string(rule.least) + (rule.most < INT_MAX ? " ≤ " + std::to_string(rule.most) : "");
+}
+
+}  // namespace
+
+KeyNote make_note(std::string_view key, const bool& usual) {
+  return {std::string(key), "true or false", "", usual ? "true" : "false"};
+}
+
+KeyNote make_note(std::string_view key, const std::string& usual) {
+  return {std::string(key), "text", "", usual.empty() ? "" : quote(usual)};
+}
+
+KeyNote make_note(std::string_view key, const int& usual, const IntegerRule& rule) {
+  return {std::string(key), "whole number" + limits_of(rule), "", std::to_string(usual)};
+}
+
+KeyNote make_note(std::string_view key, const double& usual, const NumberRule& rule) {
+  return {std::string(key), "number" + limits_of(rule), std::string(rule.unit), write_number(usual)};
+}
+
+KeyNote make_note(std::string_view key, std::span<const double> usual, const NumberRule& each,
+                  std::string_view) {
+  std::string list;
+  for (const double value : usual) list += (list.empty() ? "[" : ", ") + write_number(value);
+  return {std::string(key), std::to_string(usual.size()) + " numbers" + limits_of(each),
+          std::string(each.unit), list + "]"};
+}
+
+KeyNote make_note(std::string_view key, const Vec3& usual, const NumberRule& each, std::string_view example) {
+  return make_note(key, std::span<const double>(usual.data(), 3), each, example);
+}
+
+KeyNote make_note(std::string_view key, const std::array<int, 2>&, const IntegerRule& each) {
+  return {std::string(key), "2 whole numbers" + limits_of(each), "", ""};
+}
 
 TomlValue TomlTable::get(std::string_view key) {
   std::vector<std::string>& keys = section_->keys;

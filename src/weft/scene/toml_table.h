@@ -88,6 +88,28 @@ class TomlValue {
   std::string name_;
 };
 
+// What a key may hold, as TomlValue::read() takes it; the target holds its default.
+KeyNote make_note(std::string_view key, const bool& usual);
+KeyNote make_note(std::string_view key, const std::string& usual);
+KeyNote make_note(std::string_view key, const int& usual, const IntegerRule& rule);
+KeyNote make_note(std::string_view key, const double& usual, const NumberRule& rule);
+KeyNote make_note(std::string_view key, std::span<const double> usual, const NumberRule& each,
+                  std::string_view example = "");
+KeyNote make_note(std::string_view key, const Vec3& usual, const NumberRule& each,
+                  std::string_view example = "");
+KeyNote make_note(std::string_view key, const std::array<int, 2>& usual, const IntegerRule& each);
+
+template <class Choice>
+KeyNote make_choice_note(std::string_view key, const Choice& usual, Choices<Choice> choices) {
+  KeyNote note{.key = std::string(key)};
+  for (const auto& [name, choice] : choices) {
+    const std::string quoted = "\"" + std::string(name) + "\"";
+    note.holds += (note.holds.empty() ? "" : ", ") + quoted;
+    if (choice == usual) note.usual = quoted;
+  }
+  return note;
+}
+
 /// A table that remembers what it was asked for. One that is not in the document can be asked all the same.
 class TomlTable {
  public:
@@ -100,14 +122,16 @@ class TomlTable {
   TomlValue get(std::string_view key);
 
   /// get(key).read(…), false if the key is missing.
-  template <class... Arguments>
-  bool read(std::string_view key, Arguments&&... arguments) {
+  template <class Target, class... Rules>
+  bool read(std::string_view key, Target&& target, Rules&&... rules) {
+    section_->notes.push_back(make_note(key, target, rules...));
     const TomlValue value = get(key);
-    return value && value.read(std::forward<Arguments>(arguments)...);
+    return value && value.read(std::forward<Target>(target), std::forward<Rules>(rules)...);
   }
 
   template <class Choice>
   bool read_choice(std::string_view key, Choice& target, Choices<Choice> choices) {
+    section_->notes.push_back(make_choice_note(key, target, choices));
     const TomlValue value = get(key);
     return value && value.read_choice(target, choices);
   }

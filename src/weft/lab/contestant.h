@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/hung_cloth.h"
+#include "weft/lab/hung_cloth.h"
 
-namespace weft::bench {
+namespace weft {
 
 class Contestant {
  public:
@@ -21,7 +21,7 @@ class Contestant {
 };
 
 /// A method with one of its settings.
-struct Entry {
+struct ContestantSettings {
   std::string method;   // an integrator's name, or another engine's
   std::string setting;  // what was chosen, in words
   IntegratorSettings settings;
@@ -30,9 +30,10 @@ struct Entry {
 };
 
 /// Every integrator at several settings, from cheap to good.
-std::vector<Entry> list_integrator_entries();
+std::vector<ContestantSettings> list_integrator_entries();
 
 /// On one thread.
-std::unique_ptr<Contestant> make_integrator_contestant(const Entry& entry, const HungCloth& cloth);
+std::unique_ptr<Contestant> make_integrator_contestant(const ContestantSettings& entry,
+                                                       const HungCloth& cloth);
 
-}  // namespace weft::bench
+}  // namespace weft

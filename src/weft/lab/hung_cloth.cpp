@@ -1,13 +1,17 @@
-#include "bench/hung_cloth.h"
+#include "weft/lab/hung_cloth.h"
+
+#include <fmt/core.h>
+
+#include <numeric>
 
 #include "weft/core/angle.h"
 #include "weft/core/error.h"
 
-namespace weft::bench {
+namespace weft {
 namespace {
 
 HungCloth hang(std::string name, std::shared_ptr<const ClothTopology> topology, const ClothMaterial& material,
-               std::initializer_list<int> pinned) {
+               const std::vector<int>& pinned) {
   HungCloth cloth{
       std::move(name), build_cloth_model(topology, material), make_state(topology->mesh.positions), {}};
   for (const int i : pinned) {
@@ -62,10 +66,30 @@ HungCloth make_hung_sheet(int particles_per_side, const std::string& springs, co
               {0, grid.cells_x});
 }
 
+HungCloth make_hung_strip(int cells_across, int cells_along, const ClothMaterial& material, double width) {
+  if (width == 0) width = static_cast<double>(cells_across) / cells_along;
+  const Grid grid{.size_x = width, .cells_x = cells_across, .cells_z = cells_along};
+  std::vector<int> row(static_cast<std::size_t>(grid.num_columns()));
+  std::iota(row.begin(), row.end(), 0);
+  return hang(fmt::format("strip {}×{}", grid.num_columns(), grid.num_rows()),
+              build_grid_topology(grid, SpringModel::simplified), material, row);
+}
+
+HungCloth make_chain(const std::vector<Vec3>& places, double mass, double rest_length, double stiffness) {
+  auto topology = std::make_shared<ClothTopology>();
+  topology->mesh.positions = places;
+  topology->area.assign(places.size(), mass);  // of density 1
+  for (int i = 0; i + 1 < static_cast<int>(places.size()); ++i)
+    topology->springs.push_back({i, i + 1, SpringKind::structural, rest_length});
+  topology->table = build_neighbour_table(topology->num_particles(), topology->springs);
+  return hang("chain of " + std::to_string(places.size()), topology, {.density = 1, .structural = stiffness},
+              {});
+}
+
 HungCloth make_hung_disc(int num_rings, const ClothMaterial& material) {
   const auto topology = build_mesh_topology(make_disc_mesh(num_rings, 0.5));
   const int first = on_ring(num_rings, 0), quarter = on_ring(num_rings, 6 * num_rings / 4);
   return hang("disc of " + std::to_string(topology->num_particles()), topology, material, {first, quarter});
 }
 
-}  // namespace weft::bench
+}  // namespace weft

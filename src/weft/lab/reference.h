@@ -2,13 +2,15 @@
 /// How a cloth really moves: by `explicit` with steps far below its limit, kept on disk.
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
-#include "bench/hung_cloth.h"
+#include "weft/lab/hung_cloth.h"
 
-namespace weft::bench {
+namespace weft {
 
-inline constexpr double kFrame = 1.0 / 60;  // [s]
+inline constexpr double kReferenceFrame = 1.0 / 60;  // [s]
 
 struct Reference {
   std::vector<std::vector<float>> frames;  // (frames x 3 num_particles) x y z by turns, from the origin [m]
@@ -16,9 +18,11 @@ struct Reference {
   double strain = 0;                       // the largest of all frames [1]
 };
 
-/// From `folder` if it is there, else computed and put there. The file's name is a hash of all that makes a
-/// reference: the cloth, the number of frames, the method and its version.
-Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder);
+/// From `folder` if it is there, else computed and put there; `say` is told before a computation, which takes
+/// minutes for large cloth. The file's name is a hash of all that makes a reference: the cloth, the number of
+/// frames, the method and its version. Throws InputError if the folder cannot be written.
+Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder,
+                         const std::function<void(const std::string&)>& say = {});
 
 /// Root mean square distance of a cloth from a frame of its reference [m].
 double distance_from(const std::vector<float>& frame, const ClothState& state);
@@ -26,4 +30,4 @@ double distance_from(const std::vector<float>& frame, const ClothState& state);
 /// $XDG_CACHE_HOME/weft, or ~/.cache/weft, or a folder for temporary files.
 std::filesystem::path default_cache_folder();
 
-}  // namespace weft::bench
+}  // namespace weft

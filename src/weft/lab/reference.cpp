@@ -1,4 +1,4 @@
-#include "bench/reference.h"
+#include "weft/lab/reference.h"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,7 @@
 #include "weft/core/hash.h"
 #include "weft/world/measures.h"
 
-namespace weft::bench {
+namespace weft {
 namespace {
 
 constexpr int kVersion = 1;             // of the method: to be raised with every change of its results
@@ -49,13 +49,12 @@ void simulate(HungCloth cloth, int num_frames, int substeps, const OnFrame& on_f
   const auto jobs = make_serial_jobs();
   for (int f = 0; f < num_frames; ++f) {
     for (int s = 0; s < substeps; ++s)
-      integrator->advance(*cloth.model, cloth.environment, kFrame / substeps, *jobs, cloth.state);
+      integrator->advance(*cloth.model, cloth.environment, kReferenceFrame / substeps, *jobs, cloth.state);
     on_frame(f, cloth.state);
   }
 }
 
 Reference compute_reference(const HungCloth& cloth, int num_frames, int substeps) {
-  fmt::print(stderr, "{}: computing the reference, {} substeps per frame\n", cloth.name, substeps);
   Reference reference;
   simulate(cloth, num_frames, substeps, [&](int, const ClothState& state) {
     reference.frames.push_back(frame_of(state));
@@ -97,12 +96,14 @@ void write(const Reference& reference, const std::filesystem::path& file) {
 
 }  // namespace
 
-Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder) {
+Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder,
+                         const std::function<void(const std::string&)>& say) {
   const double limit = kShareOfLimit * explicit_step_limit(*cloth.model, cloth.environment.wind);
-  const int substeps = static_cast<int>(std::ceil(kFrame / limit));
+  const int substeps = static_cast<int>(std::ceil(kReferenceFrame / limit));
   const auto file = folder / fmt::format("reference-{:016x}.bin", hash_of(cloth, num_frames, substeps));
   Reference reference;
   if (read(file, num_frames, 3 * cloth.state.x.size(), reference)) return reference;
+  if (say) say(fmt::format("{}: computing the reference, {} substeps per frame", cloth.name, substeps));
   reference = compute_reference(cloth, num_frames, substeps);
   write(reference, file);
   return reference;
@@ -124,4 +125,4 @@ std::filesystem::path default_cache_folder() {
   return std::filesystem::temp_directory_path() / "weft";
 }
 
-}  // namespace weft::bench
+}  // namespace weft

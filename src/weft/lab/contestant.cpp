@@ -1,23 +1,24 @@
-#include "bench/contestant.h"
+#include "weft/lab/contestant.h"
 
-#include "bench/reference.h"
+#include "weft/lab/reference.h"
 
-namespace weft::bench {
+namespace weft {
 namespace {
 
 class IntegratorContestant final : public Contestant {
  public:
-  IntegratorContestant(const Entry& entry, const HungCloth& cloth)
+  IntegratorContestant(const ContestantSettings& entry, const HungCloth& cloth)
       : cloth_(cloth),
         integrator_(make_integrator(entry.settings)),
         jobs_(make_serial_jobs()),
         num_steps_(entry.steps_per_frame) {
-    num_steps_ *= integrator_->num_substeps(*cloth.model, cloth.environment, kFrame / num_steps_);
+    num_steps_ *= integrator_->num_substeps(*cloth.model, cloth.environment, kReferenceFrame / num_steps_);
   }
 
   void advance_frame() override {
     for (int s = 0; s < num_steps_; ++s)
-      integrator_->advance(*cloth_.model, cloth_.environment, kFrame / num_steps_, *jobs_, cloth_.state);
+      integrator_->advance(*cloth_.model, cloth_.environment, kReferenceFrame / num_steps_, *jobs_,
+                           cloth_.state);
   }
 
   const ClothState& state() override { return cloth_.state; }
@@ -31,9 +32,9 @@ class IntegratorContestant final : public Contestant {
 
 }  // namespace
 
-std::vector<Entry> list_integrator_entries() {
+std::vector<ContestantSettings> list_integrator_entries() {
   constexpr int kMedium = 130 * 130, kSmall = 65 * 65;
-  std::vector<Entry> entries;
+  std::vector<ContestantSettings> entries;
   const auto add = [&](const std::string& name, const std::string& setting, int steps, int most = 1 << 20) {
     entries.push_back({name, setting, {.integrator = name}, steps, most});
     return &entries.back().settings;
@@ -48,15 +49,16 @@ std::vector<Entry> list_integrator_entries() {
   add("newton", "high, 4 steps", 4)->newton.quality = NewtonQuality::high;
   for (const int n : {25, 50, 100, 200, 400, 800}) add("xpbd", words(n, "substeps"), 1)->xpbd.substeps = n;
   add("explicit", "half the limit", 1);
-  for (const int n : {10, 100}) add("paper", words(n, "steps"), n);
+  for (const int n : {10, 100, 300, 1000}) add("paper", words(n, "steps"), n);
   for (const int n : {30, 100, 300, 1000}) add("paper_fixed", words(n, "steps"), n);
   for (const int n : {1, 4}) add("desbrun", words(n, n == 1 ? "step" : "steps"), n, kMedium);
   for (const int n : {1, 4}) add("implicit_euler", words(n, n == 1 ? "step" : "steps"), n, kSmall);
   return entries;
 }
 
-std::unique_ptr<Contestant> make_integrator_contestant(const Entry& entry, const HungCloth& cloth) {
+std::unique_ptr<Contestant> make_integrator_contestant(const ContestantSettings& entry,
+                                                       const HungCloth& cloth) {
   return std::make_unique<IntegratorContestant>(entry, cloth);
 }
 
-}  // namespace weft::bench
+}  // namespace weft

@@ -1,4 +1,4 @@
-#include "bench/plot.h"
+#include "weft/lab/plot.h"
 
 #include <fmt/core.h>
 
@@ -9,11 +9,12 @@
 
 #include "weft/core/error.h"
 
-namespace weft::bench {
+namespace weft {
 namespace {
 
 constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
 constexpr double kLeft = 60, kTop = 40, kPitchX = kWidth + 90, kPitchY = kHeight + 95;
+constexpr std::size_t kMostDots = 40;  // longer series are a line alone
 constexpr const char* kColours[] = {"#c0392b", "#2060b0", "#2e8b57", "#8e44ad",
                                     "#d08000", "#555555", "#10a0a0", "#a06040"};
 
@@ -23,34 +24,62 @@ std::string escape(const std::string& text) {
   return safe;
 }
 
-/// Powers of ten around all values of all panels, so that panels can be compared.
-struct Axis {
-  double low = 0, high = 1;  // exponents
-
+/// Around all values of all panels, so that panels can be compared.
+class Axis {
+ public:
   template <class Value>
-  static Axis around(const Plot& plot, const Value& value) {
-    Axis axis{1e9, -1e9};
+  Axis(const Plot& plot, PlotScale scale, const Value& value) : scale_(scale) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const PlotPanel& panel : plot.panels) {
       for (const PlotSeries& series : panel.series) {
         for (const PlotPoint& p : series.points) {
-          axis.low = std::min(axis.low, std::floor(std::log10(value(p))));
-          axis.high = std::max(axis.high, std::ceil(std::log10(value(p))));
+          low = std::min(low, along(value(p)));
+          high = std::max(high, along(value(p)));
         }
       }
     }
-    return axis.low < axis.high ? axis : Axis{};
+    if (!(low < high)) high = (low = std::isfinite(low) ? low - 0.5 : 0) + 1;
+    pitch_ = scale == PlotScale::logarithmic ? 1 : round_pitch((high - low) / 6);
+    low_ = pitch_ * std::floor(low / pitch_);
+    high_ = pitch_ * std::ceil(high / pitch_);
   }
 
   /// 0 … 1
-  double place(double value) const { return (std::log10(value) - low) / (high - low); }
+  double place(double value) const { return (along(value) - low_) / (high_ - low_); }
+
+  /// Values that get a line and a number.
+  std::vector<double> ticks() const {
+    std::vector<double> ticks;
+    const int n = static_cast<int>(std::lround((high_ - low_) / pitch_));
+    for (int i = 0; i <= n; ++i) {
+      const double at = low_ + i * pitch_;
+      ticks.push_back(scale_ == PlotScale::logarithmic ? std::pow(10, at) : at);
+    }
+    return ticks;
+  }
+
+ private:
+  double along(double value) const { return scale_ == PlotScale::logarithmic ? std::log10(value) : value; }
+
+  /// 1, 2 or 5 times a power of ten, not less than `least`.
+  static double round_pitch(double least) {
+    const double power = std::pow(10, std::floor(std::log10(least)));
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      if (digit * power >= least) return digit * power;
+    }
+    return 10 * power;
+  }
+
+  PlotScale scale_;
+  double low_ = 0, high_ = 1, pitch_ = 1;  // on logarithmic axes, of exponents
 };
 
 class SvgWriter {
  public:
   explicit SvgWriter(const Plot& plot)
       : plot_(plot),
-        x_(Axis::around(plot, [](const PlotPoint& p) { return p.x; })),
-        y_(Axis::around(plot, [](const PlotPoint& p) { return p.y; })) {
+        x_(plot, plot.x_scale, [](const PlotPoint& p) { return p.x; }),
+        y_(plot, plot.y_scale, [](const PlotPoint& p) { return p.y; }) {
     for (const PlotPanel& panel : plot.panels) {
       for (const PlotSeries& s : panel.series) {
         if (std::find(names_.begin(), names_.end(), s.name) == names_.end()) names_.push_back(s.name);
@@ -59,8 +88,10 @@ class SvgWriter {
   }
 
   std::string write() {
+    const std::size_t num_columns = std::min<std::size_t>(2, plot_.panels.size());
     const auto num_rows = (plot_.panels.size() + 1) / 2;
-    const double width = kLeft + 2 * kPitchX, height = kTop + kPitchY * static_cast<double>(num_rows) + 30;
+    const double width = kLeft + static_cast<double>(num_columns) * kPitchX,
+                 height = kTop + kPitchY * static_cast<double>(num_rows) + 30;
     text_ = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"sans-serif\" "
         "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
@@ -96,17 +127,16 @@ class SvgWriter {
 
   void write_panel(const PlotPanel& panel) {
     words(kWidth / 2, -12, panel.title, "text-anchor=\"middle\" font-size=\"14\"");
-    for (double e = x_.low; e <= x_.high; ++e) {
-      line(px(std::pow(10, e)), 0, px(std::pow(10, e)), kHeight, "stroke=\"#ddd\"");
-      words(px(std::pow(10, e)), kHeight + 16, fmt::format("{:g}", std::pow(10, e)),
-            "text-anchor=\"middle\"");
+    for (const double x : x_.ticks()) {
+      line(px(x), 0, px(x), kHeight, "stroke=\"#ddd\"");
+      words(px(x), kHeight + 16, fmt::format("{:.6g}", x), "text-anchor=\"middle\"");
     }
-    for (double e = y_.low; e <= y_.high; ++e) {
-      line(0, py(std::pow(10, e)), kWidth, py(std::pow(10, e)), "stroke=\"#ddd\"");
-      words(-6, py(std::pow(10, e)) + 4, fmt::format("{:g}", std::pow(10, e)), "text-anchor=\"end\"");
+    for (const double y : y_.ticks()) {
+      line(0, py(y), kWidth, py(y), "stroke=\"#ddd\"");
+      words(-6, py(y) + 4, fmt::format("{:.6g}", y), "text-anchor=\"end\"");
     }
-    if (plot_.mark_y > 0)
-      line(0, py(plot_.mark_y), kWidth, py(plot_.mark_y), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
+    if (plot_.mark_y)
+      line(0, py(*plot_.mark_y), kWidth, py(*plot_.mark_y), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
     words(kWidth / 2, kHeight + 36, plot_.x_title, "text-anchor=\"middle\"");
     const double middle = kHeight / 2;
     words(-42, middle, plot_.y_title,
@@ -118,11 +148,13 @@ class SvgWriter {
     std::string points;
     double lowest = std::numeric_limits<double>::infinity();
     for (const PlotPoint& p : series.points) {
-      if (p.y < lowest) points += fmt::format("{:.1f},{:.1f} ", px(p.x), py(p.y));
+      if (plot_.line == PlotLine::through_all || p.y < lowest)
+        points += fmt::format("{:.1f},{:.1f} ", px(p.x), py(p.y));
       lowest = std::min(lowest, p.y);
     }
     text_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
                          points, colour(series.name));
+    if (series.points.size() > kMostDots) return;
     for (const PlotPoint& p : series.points) {
       text_ += fmt::format(
           "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}</title></circle>\n", px(p.x),
@@ -148,11 +180,13 @@ class SvgWriter {
 
 }  // namespace
 
+std::string to_svg(const Plot& plot) { return SvgWriter(plot).write(); }
+
 void write_svg(const Plot& plot, const std::filesystem::path& file) {
   std::ofstream out(file, std::ios::binary);
-  out << SvgWriter(plot).write();
+  out << to_svg(plot);
   out.close();
   if (!out) throw InputError("cannot write " + file.string());
 }
 
-}  // namespace weft::bench
+}  // namespace weft

@@ -1,0 +1,198 @@
+/// `weft study paper`, `accuracy`, … and `all`: chapters of the study, and the report of them.
+
+#include <fmt/core.h>
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "common.h"
+#include "painter.h"
+#include "weft/core/error.h"
+#include "weft/core/simd.h"
+#include "weft/core/version.h"
+#include "weft/lab/chapters.h"
+#include "weft/render/device.h"
+#include "weft/run/stopwatch.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ChapterCommand {
+  std::string name, about;
+  Chapter (*study)(const ChapterOptions&);
+  double usual_seconds, usual_quick_seconds;  // for the time that is left
+};
+
+const std::vector<ChapterCommand>& chapter_commands() {
+  static const std::vector<ChapterCommand> commands = {
+      {"paper", "The paper's claims, and what it does not say", study_paper, 240, 30},
+      {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
+  };
+  return commands;
+}
+
+struct ReportOptions {
+  fs::path out, cache;
+  bool quick = false, json = false, fresh = false;
+  std::vector<std::string> only;
+};
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
+}
+
+void paint(const fs::path& file, const Animation& animation, const std::vector<int>& frames) {
+  Painter painter(animation, {.size = {480, 360}}, make_offscreen_device());
+  painter.write_pictures(file, frames, static_cast<int>(frames.size()));
+}
+
+ChapterOptions chapter_options(const ReportOptions& options) {
+  ChapterOptions chapter{.quick = options.quick, .cache = options.cache};
+  chapter.say = [](const std::string& words) { fmt::print(stderr, "  {}\n", words); };
+  if (!options.out.empty()) {
+    chapter.paint = [folder = options.out](const std::string& file, const Animation& animation,
+                                           const std::vector<int>& frames) {
+      paint(folder / file, animation, frames);
+    };
+  }
+  return chapter;
+}
+
+/// In general terms: no names of machines.
+std::string describe_machine() {
+  return fmt::format("a machine with {} processors and {} instructions", num_processors(),
+                     to_string(simd_level()));
+}
+
+StudyReport make_report(std::vector<Chapter> chapters) {
+  return {.version = kVersion, .machine = describe_machine(), .chapters = std::move(chapters)};
+}
+
+void write_plots(const fs::path& folder, const Chapter& chapter) {
+  for (const Claim& claim : chapter.claims) {
+    for (const Figure2d& picture : claim.pictures) {
+      if (!picture.svg.empty()) write_text(folder / picture.file, picture.svg);
+    }
+  }
+}
+
+/// A chapter's own folder of files: NAME.json, its pictures, and NAME.md.
+void write_chapter(const fs::path& folder, const Chapter& chapter) {
+  write_plots(folder, chapter);
+  write_text(folder / (chapter.name + ".json"), to_json(chapter));
+}
+
+void write_report(const fs::path& folder, const StudyReport& report) {
+  write_text(folder / "study.md", to_markdown(report, "."));
+  write_text(folder / "study.html", to_html(report, folder));
+}
+
+/// With --json one object on standard output, and nothing else.
+void run_chapter(const ChapterCommand& command, const ReportOptions& options) {
+  if (!options.out.empty()) make_folder(options.out);
+  const Chapter chapter = command.study(chapter_options(options));
+  const StudyReport report = make_report({chapter});
+  if (!options.out.empty()) {
+    write_chapter(options.out, chapter);
+    write_report(options.out, report);
+  }
+  fmt::print("{}", options.json ? to_json(chapter) : to_markdown(report, "."));
+}
+
+/// A chapter that an earlier run has left in the folder, made by this version and as quick as asked for.
+std::optional<Chapter> find_chapter(const ChapterCommand& command, const ReportOptions& options) {
+  const fs::path file = options.out / (command.name + ".json");
+  if (options.fresh || !fs::exists(file)) return std::nullopt;
+  Chapter chapter = chapter_from_json(read_text(file), file.string());
+  if (chapter.is_quick != options.quick || chapter.version != kVersion) return std::nullopt;
+  return chapter;
+}
+
+std::vector<ChapterCommand> choose_chapters(const std::vector<std::string>& only) {
+  if (only.empty()) return chapter_commands();
+  std::vector<ChapterCommand> chosen;
+  for (const ChapterCommand& command : chapter_commands()) {
+    if (std::find(only.begin(), only.end(), command.name) != only.end()) chosen.push_back(command);
+  }
+  return chosen;
+}
+
+double usual_seconds(const ChapterCommand& command, bool quick) {
+  return quick ? command.usual_quick_seconds : command.usual_seconds;
+}
+
+void run_all(const ReportOptions& options) {
+  make_folder(options.out);
+  const std::vector<ChapterCommand> commands = choose_chapters(options.only);
+  double left = 0, usual = 0, spent = 0;
+  for (const ChapterCommand& command : commands) left += usual_seconds(command, options.quick);
+  std::vector<Chapter> chapters;
+  for (const ChapterCommand& command : commands) {
+    const double pace = usual > 0 ? spent / usual : 1;
+    if (const auto kept = find_chapter(command, options)) {
+      fmt::print(stderr, "{}: kept from an earlier run (--fresh runs it again)\n", command.name);
+      chapters.push_back(*kept);
+    } else {
+      fmt::print(stderr, "{}: chapter {} of {}, about {:.0f} s left\n", command.name, chapters.size() + 1,
+                 commands.size(), pace * left);
+      chapters.push_back(command.study(chapter_options(options)));
+      write_chapter(options.out, chapters.back());
+      usual += usual_seconds(command, options.quick);
+      spent += chapters.back().seconds;
+    }
+    left -= usual_seconds(command, options.quick);
+  }
+  const StudyReport report = make_report(std::move(chapters));
+  write_report(options.out, report);
+  if (options.json) {
+    fmt::print("{}", to_json(report));
+  } else {
+    fmt::print("{}", summary(report));
+    fmt::print("\n{} and study.md\n", (options.out / "study.html").string());
+  }
+}
+
+void add_options(CLI::App& command, const std::shared_ptr<ReportOptions>& options) {
+  command.add_flag("--quick", options->quick, "Smaller cloths and fewer settings");
+  command.add_flag("--json", options->json, "Print one JSON object");
+  command.add_option("--cache", options->cache,
+                     "Folder where references are kept (default: $XDG_CACHE_HOME/weft or ~/.cache/weft)");
+}
+
+}  // namespace
+
+void add_chapter_commands(CLI::App& studies) {
+  std::vector<std::string> names;
+  for (const ChapterCommand& chapter : chapter_commands()) {
+    names.push_back(chapter.name);
+    const auto options = std::make_shared<ReportOptions>();
+    CLI::App* command = studies.add_subcommand(chapter.name, chapter.about);
+    add_options(*command, options);
+    command->add_option("--out", options->out, "A folder for study.md, study.html, pictures and figures")
+        ->type_name("DIR");
+    command->callback([&chapter, options] { run_chapter(chapter, *options); });
+  }
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* all =
+      studies.add_subcommand("all", "Every chapter, and the report of them; goes on where it was left");
+  add_options(*all, options);
+  options->out = "out/study";
+  all->add_option("--out", options->out, "Its folder")->type_name("DIR")->capture_default_str();
+  all->add_option("--only", options->only, "Chapters, by name")->delimiter(',')->check(CLI::IsMember(names));
+  all->add_flag("--fresh", options->fresh, "Run again what an earlier run has done");
+  all->callback([options] { run_all(*options); });
+}
+
+}  // namespace weft::app

@@ -1,0 +1,26 @@
+#pragma once
+/// The chapters of the study: each tests the claims of one subject and tells what came out.
+
+#include <functional>
+
+#include "weft/io/glb_writer.h"
+#include "weft/lab/chapter.h"
+
+namespace weft {
+
+struct ChapterOptions {
+  bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
+  std::filesystem::path cache;                  // for references; empty: default_cache_folder()
+  std::function<void(const std::string&)> say;  // told what is being done; may be empty
+  /// Paints frames of an animation, side by side, into a file of the report's folder; empty: no pictures.
+  std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames)>
+      paint;
+};
+
+/// What the paper claims, and what it does not say.
+Chapter study_paper(const ChapterOptions& options);
+
+/// How right every integrator is, for how much time; convergence, energy, frequencies.
+Chapter study_accuracy(const ChapterOptions& options);
+
+}  // namespace weft

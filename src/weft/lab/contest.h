@@ -1,0 +1,37 @@
+#pragma once
+/// How right a method moves a hung cloth, and for how much processor time.
+
+#include <functional>
+#include <optional>
+
+#include "weft/lab/contestant.h"
+#include "weft/lab/reference.h"
+
+namespace weft {
+
+/// At which methods are compared: 4 cm in a swing of a metre is hard to see [m].
+inline constexpr double kEqualError = 0.045;
+
+struct ContestResult {
+  std::string method, setting;
+  double cpu_ms = 0;  // per frame
+  double error = 0;   // mean over the frames of the RMS distance from the reference [m]
+  double strain = 0;  // the largest of all frames [1]
+  bool ok = true;     // false: it flew apart
+};
+
+using MakeContestant = std::function<std::unique_ptr<Contestant>()>;
+
+/// Runs all frames of the reference; the fastest of a few runs counts, for others may be using the machine.
+ContestResult measure_contestant(const MakeContestant& make, const ContestantSettings& entry,
+                                 const HungCloth& cloth, const Reference& reference);
+
+/// How far a result is from what is asked for: 1 is just as good.
+using Misfit = std::function<double(const ContestResult&)>;
+
+/// The processor time at which a method is just as good as asked for, between two settings by straight lines
+/// on logarithmic axes; that of its cheapest setting if even this is better; empty if none is as good [ms].
+std::optional<double> find_time(const std::string& method, const std::vector<ContestResult>& results,
+                                const Misfit& misfit);
+
+}  // namespace weft

@@ -1,0 +1,91 @@
+/// Reports of studies: nothing may be lost on the way to a file, and nothing break a page.
+
+#include "weft/lab/chapter.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "weft/core/error.h"
+#include "weft/lab/plot.h"
+
+namespace weft {
+namespace {
+
+Chapter example() {
+  const Claim claim{.title = "Cloth < steel",
+                    .source = "nobody",
+                    .verdict = Verdict::holds_in_part,
+                    .text = {"With `code` and **weight** & <care>."},
+                    .figures = {{"stretch", 0.1234567, "m", "0", 0.01}, {"count", 3, "1", "", 0}},
+                    .tables = {{{"cloth", "mm"}, {{"silk", "1.5"}, {"denim", "2.5"}}}},
+                    .pictures = {{"plot.svg", "A plot.", "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>"},
+                                 {"photo.jpg", "A picture.", ""}}};
+  return {.name = "example",
+          .title = "An example",
+          .introduction = "Of a chapter.",
+          .version = "1.2.3",
+          .is_quick = true,
+          .seconds = 4,
+          .claims = {claim}};
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Chapter, ComesBackFromJsonAsItWas) {
+  const Chapter back = chapter_from_json(to_json(example()), "example.json");
+  EXPECT_EQ(to_json(back), to_json(example()));
+  EXPECT_EQ(back.claims.at(0).verdict, Verdict::holds_in_part);
+  EXPECT_EQ(back.claims.at(0).figures.at(0).value, 0.1234567);
+  EXPECT_EQ(back.claims.at(0).tables.at(0).rows.at(1).at(1), "2.5");
+}
+
+TEST(Chapter, RefusesWhatIsNoChapterByItsName) {
+  for (const char* text : {"", "{}", "[1, 2]", "{\"study\": 7}"}) {
+    try {
+      chapter_from_json(text, "notes.json");
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_TRUE(contains(error.what(), "notes.json")) << error.what();
+    }
+  }
+}
+
+TEST(Chapter, TellsEveryClaimFigureAndCommandInMarkdown) {
+  const std::string text = to_markdown({"1.2.3", "a machine", {example()}}, "study");
+  for (const char* part :
+       {"| Cloth < steel | nobody | holds in part |", "`weft study example --quick`",
+        "| `stretch` | 0.1235 m | 0 |", "| denim | 2.5 |", "![A plot.](study/plot.svg)", "1.2.3"}) {
+    EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+  }
+}
+
+TEST(Chapter, IsOnePageWithNothingOutsideIt) {
+  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "page";
+  std::filesystem::create_directories(folder);
+  std::filesystem::remove(folder / "photo.jpg");
+  const StudyReport report{"1.2.3", "a machine", {example()}};
+  EXPECT_THROW(to_html(report, folder), InputError) << "the picture is missing";
+  std::ofstream(folder / "photo.jpg") << "Man";
+  const std::string page = to_html(report, folder);
+  EXPECT_TRUE(contains(page, "<h3>Cloth &lt; steel</h3>"));
+  EXPECT_TRUE(contains(page, "<code>code</code> and <strong>weight</strong> &amp; &lt;care&gt;"));
+  EXPECT_TRUE(contains(page, "data:image/jpeg;base64,TWFu\"")) << "RFC 4648";
+  EXPECT_TRUE(contains(page, "<svg xmlns"));
+  EXPECT_FALSE(contains(page, "src=\"http"));
+  EXPECT_FALSE(contains(page, "<script"));
+}
+
+TEST(Plot, PutsNumbersAtRoundPlacesOfLinearAxes) {
+  Plot plot{.x_title = "x", .y_title = "y", .panels = {{"", {{"a", {{0, -3}, {4.3, 17}}}}}}};
+  plot.x_scale = plot.y_scale = PlotScale::linear;
+  const std::string svg = to_svg(plot);
+  for (const char* tick : {">-5<", ">0<", ">15<", ">20<", ">1<", ">5<"})
+    EXPECT_TRUE(contains(svg, tick)) << tick;
+}
+
+}  // namespace
+}  // namespace weft
