@@ -2,13 +2,15 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help demo test scenes pictures build asan tsan fuzz format clean
+.PHONY: help demo test scenes pictures study docs build asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
 	@echo "make test    install what is missing, build, run all tests"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
+	@echo "make study   every claim tested: docs/study.md anew (most of an hour)"
+	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
 	@echo "make fuzz    fuzz the readers of scenes, OBJ and .glb, FUZZ_SECONDS each (default 60)"
@@ -30,6 +32,15 @@ scenes: build
 
 pictures: build
 	@tools/make_pictures.sh build/release/bin/weft docs/images
+
+study: build
+	@tools/make_study.sh build/release/bin/weft docs
+
+docs:
+	@tools/install_deps.sh --docs
+	@mkdocs build --strict --quiet
+	@mkdir -p build/site/cpp && doxygen Doxyfile
+	@echo "build/site/index.html"
 
 asan tsan:
 	@tools/install_deps.sh

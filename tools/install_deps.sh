@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian/Ubuntu packages that Weft needs and that are missing. --fuzz adds those for `make fuzz`,
-# --bench what `weft bench frontier` compares with.
+# --bench what `weft bench frontier` compares with, --docs what `make docs` makes the site with.
 # Does nothing, and needs no rights, where nothing is missing.
 set -euo pipefail
 
@@ -25,7 +25,8 @@ for flag in "$@"; do
   case "$flag" in
     --fuzz) packages+=(clang libclang-rt-dev) ;;
     --bench) packages+=(libbullet-dev) ;;
-    *) echo "install_deps.sh takes --fuzz and --bench, not $flag" >&2; exit 2 ;;
+    --docs) packages+=(mkdocs doxygen) ;;
+    *) echo "install_deps.sh takes --fuzz, --bench and --docs, not $flag" >&2; exit 2 ;;
   esac
 done
 

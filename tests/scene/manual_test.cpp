@@ -38,6 +38,15 @@ std::string read_page(const std::string& name) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+TEST(Manual, ItsFirstSceneIsGood) {
+  const std::string page = read_page("getting_started.md");
+  const auto begin = page.find("```toml\n") + 8, end = page.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/getting_started.md");
+  EXPECT_EQ(scene.cloths.at(0).name, "curtain");
+  EXPECT_EQ(scene.colliders.size(), 1u);
+}
+
 TEST(Manual, ListsEveryKeyTheReaderKnows) {
   EXPECT_EQ(read_page("scene_keys.md"), describe_scene_keys())
       << "run `weft check --keys > docs/scene_keys.md`, and say in docs/scenes.md what is new";

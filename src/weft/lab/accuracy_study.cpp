@@ -69,7 +69,7 @@ Claim error_against_time(const ChapterOptions& options) {
     claim.tables[0].rows.push_back({"`" + std::string(name) + "`"});
   claim.tables[0].rows.push_back({"**xpbd over newton**"});
   Plot plot{.x_title = "CPU ms per frame", .y_title = "error, m", .mark_y = kEqualError};
-  double at_33 = 0, least = 1e9;
+  double at_33 = 0, least = 1e9, most = 0;
   for (const HungCloth& cloth : cloths) {
     say(options, cloth.name);
     const Reference reference = find_reference(cloth, 60, cache_of(options), options.say);
@@ -90,7 +90,7 @@ Claim error_against_time(const ChapterOptions& options) {
     }
     const double ratio = newton && xpbd ? *xpbd / *newton : 0;
     claim.tables[0].rows.back().push_back(ratio > 0 ? fmt::format("{:.1f}", ratio) : "–");
-    if (ratio > 0) least = std::min(least, ratio);
+    if (ratio > 0) least = std::min(least, ratio), most = std::max(most, ratio);
     for (const ContestResult& r : results) {
       if (&cloth == &cloths[0] && r.method == "newton" && r.setting == "default") at_33 = r.error;
     }
@@ -102,6 +102,11 @@ Claim error_against_time(const ChapterOptions& options) {
       "integrator; –: not reached with any setting tried."};
   claim.figures = {{"newton_error_33", at_33, "m", "≤ 0.045", 0.01},
                    {"least_xpbd_over_newton", least, "1", "> 1", 0}};
+  claim.text.push_back(fmt::format(
+      "`xpbd` takes {:.1f} to {:.1f} times as long as `newton`, the more the larger the cloth: its substeps "
+      "grow with the particles per side, "
+      "`newton`'s iterations do not. On small cloth, and for errors of millimetres, it is a good choice.",
+      least, most));
   claim.verdict = least > 1 ? Verdict::holds : Verdict::holds_in_part;
   claim.pictures = {{"accuracy_frontier.svg",
                      "Error against processor time; each dot one setting, lines join the best.",

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
 constexpr double kLeft = 60, kTop = 40, kPitchX = kWidth + 90, kPitchY = kHeight + 95;
+constexpr double kLegendPitch = 20;
 constexpr std::size_t kMostDots = 40;  // longer series are a line alone
 constexpr const char* kColours[] = {"#c0392b", "#2060b0", "#2e8b57", "#8e44ad",
                                     "#d08000", "#555555", "#10a0a0", "#a06040"};
@@ -90,8 +91,10 @@ class SvgWriter {
   std::string write() {
     const std::size_t num_columns = std::min<std::size_t>(2, plot_.panels.size());
     const auto num_rows = (plot_.panels.size() + 1) / 2;
-    const double width = kLeft + static_cast<double>(num_columns) * kPitchX,
-                 height = kTop + kPitchY * static_cast<double>(num_rows) + 30;
+    const double width = kLeft + static_cast<double>(num_columns) * kPitchX;
+    const double panels_height = kTop + kPitchY * static_cast<double>(num_rows);
+    const std::vector<LegendPlace> legend = place_legend(width);
+    const double height = panels_height + kLegendPitch * (legend.empty() ? 0 : legend.back().row + 1);
     text_ = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"sans-serif\" "
         "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
@@ -103,7 +106,7 @@ class SvgWriter {
       write_panel(plot_.panels[i]);
       text_ += "</g>\n";
     }
-    write_legend(height - 15);
+    write_legend(legend, panels_height);
     return text_ + "</svg>\n";
   }
 
@@ -162,13 +165,33 @@ class SvgWriter {
     }
   }
 
-  void write_legend(double y) {
+  /// Where each name of the legend begins, and in which row: as many side by side as fit.
+  struct LegendPlace {
+    double x;
+    int row;
+  };
+  std::vector<LegendPlace> place_legend(double width) const {
+    std::vector<LegendPlace> places;
     double x = kLeft;
+    int row = 0;
     for (const std::string& name : names_) {
-      text_ +=
-          fmt::format("<circle cx=\"{:.0f}\" cy=\"{:.0f}\" r=\"5\" fill=\"{}\"/>\n", x, y - 4, colour(name));
-      words(x + 10, y, name, "");
-      x += 40 + 7.0 * static_cast<double>(name.size());
+      const double length = 40 + 7.0 * static_cast<double>(name.size());
+      if (x + length > width && x > kLeft) {
+        x = kLeft;
+        ++row;
+      }
+      places.push_back({x, row});
+      x += length;
+    }
+    return places;
+  }
+
+  void write_legend(const std::vector<LegendPlace>& places, double top) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const double x = places[i].x, y = top + kLegendPitch * places[i].row;
+      text_ += fmt::format("<circle cx=\"{:.0f}\" cy=\"{:.0f}\" r=\"5\" fill=\"{}\"/>\n", x, y - 4,
+                           colour(names_[i]));
+      words(x + 10, y, names_[i], "");
     }
   }
 
