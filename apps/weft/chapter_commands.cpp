@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "bench/peers.h"
 #include "commands.h"
 #include "common.h"
 #include "painter.h"
@@ -32,6 +33,7 @@ const std::vector<ChapterCommand>& chapter_commands() {
   static const std::vector<ChapterCommand> commands = {
       {"paper", "The paper's claims, and what it does not say", study_paper, 240, 30},
       {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
+      {"peers", "The same cloth in other engines", bench::study_peers, 120, 20},
   };
   return commands;
 }
