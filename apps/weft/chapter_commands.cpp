@@ -55,8 +55,14 @@ void write_text(const fs::path& file, const std::string& text) {
   if (!out.flush()) throw InputError(file.string() + ": cannot be written");
 }
 
-void paint(const fs::path& file, const Animation& animation, const std::vector<int>& frames) {
-  Painter painter(animation, {.size = {480, 360}}, make_offscreen_device());
+void paint(const fs::path& file, const Animation& animation, const std::vector<int>& frames,
+           const std::shared_ptr<const ClothTopology>& springs) {
+  PaintSettings settings{.size = {480, 360}};
+  if (springs) {
+    settings.view.elevation_deg = 70;
+    settings.style.springs = {{0, springs}};
+  }
+  Painter painter(animation, settings, make_offscreen_device());
   painter.write_pictures(file, frames, static_cast<int>(frames.size()));
 }
 
@@ -65,8 +71,8 @@ ChapterOptions chapter_options(const ReportOptions& options) {
   chapter.say = [](const std::string& words) { fmt::print(stderr, "  {}\n", words); };
   if (!options.out.empty()) {
     chapter.paint = [folder = options.out](const std::string& file, const Animation& animation,
-                                           const std::vector<int>& frames) {
-      paint(folder / file, animation, frames);
+                                           const std::vector<int>& frames, const auto& springs) {
+      paint(folder / file, animation, frames, springs);
     };
   }
   return chapter;

@@ -2,9 +2,11 @@
 /// The chapters of the study: each tests the claims of one subject and tells what came out.
 
 #include <functional>
+#include <memory>
 
 #include "weft/io/glb_writer.h"
 #include "weft/lab/chapter.h"
+#include "weft/model/cloth_model.h"
 
 namespace weft {
 
@@ -12,8 +14,10 @@ struct ChapterOptions {
   bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
   std::filesystem::path cache;                  // for references; empty: default_cache_folder()
   std::function<void(const std::string&)> say;  // told what is being done; may be empty
-  /// Paints frames of an animation, side by side, into a file of the report's folder; empty: no pictures.
-  std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames)>
+  /// Paints frames of an animation, side by side, into a file of the report's folder; its first cloth as
+  /// springs, from above, if a topology is given. Empty: no pictures.
+  std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames,
+                     std::shared_ptr<const ClothTopology> springs)>
       paint;
 };
 
