@@ -48,6 +48,18 @@ TEST_F(App, StudyPrintsOneJsonObjectAndLeavesPictureAndData) {
   expect_bad_input("weft study drape", "--fabric");
 }
 
+TEST_F(App, StudyOfTheListLeavesTablesAndSaysWhetherFiguresAreAsExpected) {
+  const Finished done = shell("weft study fabric_constants --quick --json --out constants");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json json = nlohmann::json::parse(done.out);
+  EXPECT_EQ(json["group"], "fabric");
+  EXPECT_LT(json["stiffness_error_grid"].get<double>(), 1);
+  EXPECT_EQ(json["expected"]["stiffness_error_grid"]["met"], true);
+  EXPECT_EQ(read_json("constants/study.json"), json);
+  EXPECT_TRUE(contains(read_text("constants/study.md"), "| denim | grid |"));
+  expect_bad_input("weft study all --only fabrics", "fabric");
+}
+
 TEST_F(App, RunReplacesTheFilesOfAnEarlierRun) {
   fs::create_directories("results");
   for (const char* file : {"results/animation.glb", "results/report.json", "results/notes.txt"}) {
