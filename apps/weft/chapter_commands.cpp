@@ -33,6 +33,7 @@ const std::vector<ChapterCommand>& chapter_commands() {
   static const std::vector<ChapterCommand> commands = {
       {"paper", "The paper's claims, and what it does not say", study_paper, 240, 30},
       {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
+      {"fabric", "One fabric on many meshes and at many steps", study_fabric, 600, 40},
       {"peers", "The same cloth in other engines", bench::study_peers, 120, 20},
   };
   return commands;
@@ -67,7 +68,7 @@ void paint(const fs::path& file, const Animation& animation, const std::vector<i
 }
 
 ChapterOptions chapter_options(const ReportOptions& options) {
-  ChapterOptions chapter{.quick = options.quick, .cache = options.cache};
+  ChapterOptions chapter{.quick = options.quick, .threads = num_processors(), .cache = options.cache};
   chapter.say = [](const std::string& words) { fmt::print(stderr, "  {}\n", words); };
   if (!options.out.empty()) {
     chapter.paint = [folder = options.out](const std::string& file, const Animation& animation,

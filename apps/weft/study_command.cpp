@@ -28,17 +28,20 @@ struct StudyOptions {
   fs::path out;
 };
 
-using Study = std::function<StudyResult(const Fabric&, const StudyOptions&)>;
+using Test = std::function<StudyResult(const Fabric&, const StudyOptions&)>;
 
-Json to_json(const std::string& study, const std::string& fabric, const StudyResult& result) {
-  Json json = {{"study", study}, {"fabric", fabric}}, units;
-  for (const Figure& figure : result.figures) {
-    json[figure.name] = figure.value;
-    units[figure.name] = figure.unit;
+/// Values under the figures' names; what was expected, and whether that is met, beside.
+void add_figures(const StudyResult& result, Json& json) {
+  Json units = Json::object(), expected = Json::object();
+  for (const Figure& f : result.figures) {
+    json[f.name] = f.value;
+    units[f.name] = f.unit;
+    if (f.expected)
+      expected[f.name] = {{"value", *f.expected}, {"tolerance", f.tolerance}, {"met", f.is_as_expected()}};
   }
   json["units"] = units;
+  if (!expected.empty()) json["expected"] = expected;
   json["warnings"] = result.warnings;
-  return json;
 }
 
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
@@ -58,18 +61,25 @@ void write_shape(const fs::path& file, const AnimatedMesh& mesh) {
 
 void write_files(const fs::path& folder, const Json& json, const StudyResult& result) {
   write_text(folder / "study.json", dump(json));
-  write_shape(folder / "specimen.obj", result.specimen.cloths.at(0));
-  Painter painter(result.specimen, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
-  painter.write_pictures(folder / "specimen.png", {0}, 1);
+  for (const auto& [file, animation] : result.pictures) {
+    write_shape(folder / (file + ".obj"), animation.cloths.at(0));
+    Painter painter(animation, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
+    painter.write_pictures(folder / (file + ".png"), {0}, 1);
+  }
+}
+
+void print_warnings(const StudyResult& result) {
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
 /// With --json one object on standard output, and nothing else; all words go to standard error.
-void run(const std::string& name, const Study& study, const StudyOptions& options) {
+void run_test(const std::string& name, const Test& test, const StudyOptions& options) {
   const FabricPreset preset = load_fabric(options.fabric);
   if (!options.out.empty()) make_folder(options.out);
-  const StudyResult result = study(preset.fabric, options);
-  const Json json = to_json(name, preset.name, result);
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const StudyResult result = test(preset.fabric, options);
+  Json json = {{"study", name}, {"fabric", preset.name}};
+  add_figures(result, json);
+  print_warnings(result);
   if (!options.out.empty()) write_files(options.out, json, result);
   if (options.json) {
     fmt::print("{}", dump(json));
@@ -80,8 +90,15 @@ void run(const std::string& name, const Study& study, const StudyOptions& option
     fmt::print("  {:<24} {:.5g} {}\n", figure.name, figure.value, figure.unit == "1" ? "" : figure.unit);
 }
 
+void add_threads_option(CLI::App& command, StudyOptions& options) {
+  command.add_option("--threads", options.threads, "Threads of simulations (default: all processors)")
+      ->check(CLI::Range(1, 1024));
+}
+
+std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOptions>(); }
+
 CLI::App* add(CLI::App& studies, const std::string& name, const std::string& about,
-              const std::shared_ptr<StudyOptions>& options, const Study& study) {
+              const std::shared_ptr<StudyOptions>& options, const Test& test) {
   CLI::App* command = studies.add_subcommand(name, about);
   command->add_option("--fabric", options->fabric, "A fabric's name (weft fabrics), or a fabric file")
       ->required();
@@ -96,16 +113,15 @@ CLI::App* add(CLI::App& studies, const std::string& name, const std::string& abo
   command->add_flag("--json", options->json, "Print one JSON object");
   command->add_option("--out", options->out, "A folder for study.json, specimen.obj and specimen.png")
       ->type_name("DIR");
-  command->callback([name, study, options] { run(name, study, *options); });
+  command->callback([name, test, options] { run_test(name, test, *options); });
   return command;
 }
-
-std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOptions>(); }
 
 }  // namespace
 
 void add_study_command(CLI::App& app, int&) {
-  CLI::App* studies = app.add_subcommand("study", "A laboratory's standard tests of a fabric, simulated");
+  CLI::App* studies =
+      app.add_subcommand("study", "A laboratory's standard tests of a fabric, and studies of Weft itself");
   studies->require_subcommand(1);
   add_chapter_commands(*studies);
   const auto strip = make_options();
@@ -137,8 +153,7 @@ void add_study_command(CLI::App& app, int&) {
           disc, [](const Fabric& fabric, const StudyOptions& options) {
             return study_drape(fabric, options.specimen, options.threads);
           });
-  drape->add_option("--threads", disc->threads, "Threads of the simulation (default: all processors)")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*drape, *disc);
 }
 
 }  // namespace weft::app

@@ -181,5 +181,43 @@ TEST(Membrane, StiffnessIsRecoveredOnEveryMeshInEveryDirection) {
   }
 }
 
+const MembraneLaw kLimited = {kDenim, {0.02, 0.1, 30000}};
+
+TEST(Membrane, WithALimitForceAndHessianAreThoseOfItsEnergy) {
+  Random random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const TriangleCorners x = random_corners(random), force = membrane_force(kRest, kLimited, x);
+    const MembraneHessian hessian = membrane_hessian(kRest, kLimited, x);
+    const auto energy = [](const TriangleCorners& y) { return membrane_energy(kRest, kLimited, y); };
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(force[c][k], -difference(energy, x, c, k), 30 * kTolerance) << "stiffness 3e4 N/m";
+        for (int a = 0; a < 3; ++a) {
+          const auto pull = [&](const TriangleCorners& y) { return membrane_force(kRest, kLimited, y)[a]; };
+          const Vec3 column = membrane_block(hessian, a, c, StressFilter::exact).col(k);
+          EXPECT_LT((column + difference(pull, x, c, k)).norm(), 1e-3 * 30000);
+        }
+      }
+    }
+  }
+}
+
+TEST(Membrane, LimitOnlyPullsAndIsConvex) {
+  // All that is stretched by it, whichever way: no negative eigenvalue of the whole Hessian.
+  Random random(12);
+  const MembraneLaw limit_alone = {Mat3::Zero(), kLimited.limit};
+  for (int trial = 0; trial < 50; ++trial) {
+    const MembraneHessian hessian = membrane_hessian(kRest, limit_alone, random_corners(random));
+    Eigen::Matrix<double, 9, 9> whole;
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b)
+        whole.block<3, 3>(3 * a, 3 * b) = membrane_block(hessian, a, b, StressFilter::exact);
+    }
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>>(whole).eigenvalues().minCoeff();
+    EXPECT_GT(least, -1e-9 * 30000);
+  }
+}
+
 }  // namespace
 }  // namespace weft

@@ -8,6 +8,7 @@
 
 #include "weft/fabric/presets.h"
 #include "weft/lab/drape.h"
+#include "weft/lab/hung_strip.h"
 #include "weft/mesh/sample_meshes.h"
 
 namespace weft {
@@ -68,38 +69,15 @@ TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
   EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
 }
 
-/// A sheet of 1 m × 0.25 m between two bars that are 0.8 m apart, as an arc.
-Specimen hammock(const Fabric& fabric, int cells, SpecimenMesh mesh) {
-  const Grid grid{.size_x = 1, .size_z = 0.25, .cells_x = cells, .cells_z = cells / 4};
-  Specimen specimen = make_rectangle(fabric, grid, mesh, 0);
-  specimen.environment.gravity = {0, -9.81, 0};
-  clamp(specimen, [](const Vec3& p) -> std::optional<Vec3> {
-    if (p.x() > 1e-9 && p.x() < 1 - 1e-9) return {};
-    return Vec3(0.8 * p.x(), 0, p.z());
-  });
-  for (int i = 0; i < specimen.model->num_particles(); ++i) {
-    const Vec3& p = specimen.rest()[i];
-    specimen.state.set_position(i, {0.8 * p.x(), -p.x() * (1 - p.x()), p.z()});
-  }
-  return specimen;
-}
-
-double sag(const Specimen& specimen) {
-  double lowest = 0;
-  for (std::size_t i = 0; i < specimen.state.x.size(); ++i)
-    lowest = std::max(lowest, -specimen.state.position(i).y());
-  return lowest;
-}
-
 TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
   // Length over span 1.25: sag over span 0.331797. Bending and stretching are small beside.
   const Fabric& cotton = find_fabric("cotton_shirting").fabric;
   for (const int cells : {12, 24, 48}) {
     for (const SpecimenMesh mesh : kMeshes) {
       if (mesh == SpecimenMesh::random && cells == 48) continue;
-      Specimen specimen = hammock(cotton, cells, mesh);
+      Specimen specimen = make_hammock(cotton, cells, mesh);
       EXPECT_TRUE(settle(specimen, 1));
-      EXPECT_NEAR(sag(specimen) / (0.8 * 0.331797), 1, 0.02) << cells;
+      EXPECT_NEAR(measure_sag(specimen) / kHammockSag, 1, 0.02) << cells;
     }
   }
 }
@@ -109,60 +87,17 @@ TEST(OneFabric, RestsInTheSameShapeAtAnyNumberOfStepsPerSecond) {
   double sags[3];
   int k = 0;
   for (const int steps_per_second : {60, 120, 240}) {
-    Specimen specimen = hammock(denim, 20, SpecimenMesh::grid);
+    Specimen specimen = make_hammock(denim, 20, SpecimenMesh::grid);
     specimen.environment.wind.drag = 5 * denim.density;
     const auto integrator = make_newton({});
     const auto jobs = make_serial_jobs();
     for (int s = 0; s < 4 * steps_per_second; ++s)
       integrator->advance(*specimen.model, specimen.environment, 1.0 / steps_per_second, *jobs,
                           specimen.state);
-    sags[k++] = sag(specimen);
+    sags[k++] = measure_sag(specimen);
   }
   EXPECT_NEAR(sags[0] / sags[2], 1, 0.01);
   EXPECT_NEAR(sags[1] / sags[2], 1, 0.01);
-}
-
-/// J₀, by its series.
-double bessel(double x) {
-  double term = 1, sum = 1;
-  for (int k = 1; k < 20; ++k) {
-    term *= -x * x / (4.0 * k * k);
-    sum += term;
-  }
-  return sum;
-}
-
-/// The time of a swing of a strip of a metre, hung by its upper end, in its first mode [s].
-double swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh) {
-  const Grid grid{.size_x = 1, .size_z = 0.25, .cells_x = cells, .cells_z = cells / 4};
-  Specimen specimen = make_rectangle(fabric, grid, mesh, 0);
-  specimen.environment.gravity = {0, -9.81, 0};
-  const auto hang = [](const Vec3& p) { return Vec3(0, -p.x(), p.z()); };
-  clamp(specimen, [&](const Vec3& p) -> std::optional<Vec3> {
-    if (p.x() > 1e-9) return {};
-    return hang(p);
-  });
-  for (int i = 0; i < specimen.model->num_particles(); ++i)
-    specimen.state.set_position(i, hang(specimen.rest()[i]));
-  EXPECT_TRUE(settle(specimen, 1)) << "it bears its weight";
-  for (int i = 0; i < specimen.model->num_particles(); ++i) {
-    const double mode = bessel(2.404826 * std::sqrt(1 - specimen.rest()[i].x()));
-    specimen.state.set_position(i, specimen.state.position(i) + Vec3(0.02 * mode, 0, 0));
-    specimen.state.v.set(i, Vec3::Zero());
-  }
-  specimen.state.history.step = 0;
-  const auto integrator = make_newton({.iterations = 100});
-  const auto jobs = make_serial_jobs();
-  std::vector<double> crossings;
-  double before = 0.02, time = 0;
-  for (constexpr double kStep = 1.0 / 240; crossings.size() < 2 && time < 3; time += kStep) {
-    integrator->advance(*specimen.model, specimen.environment, kStep, *jobs, specimen.state);
-    double now = 0;
-    for (int j = 0; j <= grid.cells_z; ++j) now += specimen.state.position(grid.index(cells, j)).x();
-    if (before * now < 0) crossings.push_back(time + kStep * before / (before - now));
-    before = now;
-  }
-  return crossings.size() == 2 ? 2 * (crossings[1] - crossings[0]) : 0;
 }
 
 TEST(OneFabric, SwingsInTheSameTimeOnEveryMesh) {
@@ -172,7 +107,7 @@ TEST(OneFabric, SwingsInTheSameTimeOnEveryMesh) {
   for (const int cells : {16, 32, 48}) {
     for (const SpecimenMesh mesh : kMeshes) {
       if (mesh == SpecimenMesh::random && cells == 48) continue;
-      EXPECT_NEAR(swing_period(silk, cells, mesh) * 0.5994, 1, 0.01) << cells;
+      EXPECT_NEAR(measure_swing_period(silk, cells, mesh) * kSwingFrequency, 1, 0.01) << cells;
     }
   }
 }

@@ -115,6 +115,14 @@ WEFT_ALWAYS_INLINE V smaller(V a, V b) {
   return select_less(b, a, b, a);
 }
 
+/// The largest lane.
+template <int W>
+WEFT_ALWAYS_INLINE float widest(Pack<W> a) {
+  float most = a[0];
+  for (int l = 1; l < W; ++l) most = most < a[l] ? a[l] : most;
+  return most;
+}
+
 template <class V>
 WEFT_ALWAYS_INLINE V magnitude(V a) {
   return larger(a, 0.0f - a);

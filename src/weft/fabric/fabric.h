@@ -70,7 +70,9 @@ struct Fabric {
   /// 0 to 10 [1].
   double friction = 0.3;
 
-  /// Greatest stretch that the fabric gives in to, 0.01 for 1 %; 0: none. Less: less like rubber [1].
+  /// Greatest stretch that the fabric gives in to in any direction, 0.01 for 1 %; 0: none. From 0.85 of it on
+  /// a tension grows that stops at about 1.25 of it what no prescribed motion forces (membrane_law.h). Less:
+  /// less like rubber, and more work for the solver. `springs` do not have it [1].
   double strain_limit = 0;
 
   /// Measured curves along warp and weft, from the origin through these points, both values rising; empty:

@@ -34,6 +34,76 @@ WEFT_ALWAYS_INLINE Pack<W> twice_energy(const Three<W>& e, const Stress<W>& s) {
   return e.x * s.s1 + e.y * s.s2 + e.z * s.s3;
 }
 
+/// The upper triangle of a symmetric tangent.
+template <int W>
+struct Tangent {
+  Pack<W> d11, d12, d13, d22, d23, d33;
+};
+
+template <int W>
+WEFT_ALWAYS_INLINE void store_tangent(float* to, std::ptrdiff_t pitch, const Tangent<W>& d) {
+  store3<W>({to, to + pitch, to + 2 * pitch}, 0, {d.d11, d.d12, d.d13});
+  store3<W>({to + 3 * pitch, to + 4 * pitch, to + 5 * pitch}, 0, {d.d22, d.d23, d.d33});
+}
+
+template <int W>
+WEFT_ALWAYS_INLINE Tangent<W> load_tangent(const float* from, std::ptrdiff_t pitch) {
+  return {load<W>(from),
+          load<W>(from + pitch),
+          load<W>(from + 2 * pitch),
+          load<W>(from + 3 * pitch),
+          load<W>(from + 4 * pitch),
+          load<W>(from + 5 * pitch)};
+}
+
+/// What a limit does to a principal Green strain: energy per area and its derivatives by it.
+template <int W>
+struct LimitPrincipal {
+  Pack<W> energy, first, second;
+};
+
+template <int W>
+WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const LimitNumbers& n, Pack<W> stretch) {
+  const Pack<W> zero = broadcast<W>(0), u = larger((stretch - 1.0f) - n.begin, zero),
+                m = smaller(u, broadcast<W>(n.width)), over = u - m, inverse = 1.0f / stretch;
+  const float k = n.stiffness, per_width = k / n.width;
+  const Pack<W> tension = inverse * (0.5f * per_width * m * m + k * over);
+  return {per_width * m * m * m * (1.0f / 6) + over * (0.5f * k) * (m + over), tension,
+          (per_width * m - tension) * inverse * inverse};
+}
+
+/// What the limit adds at the strain e, as membrane_response() does it.
+template <int W>
+struct LimitAnswer {
+  Pack<W> energy, peak;  // peak: the larger principal strain
+  Stress<W> stress;
+  Tangent<W> tangent;
+};
+
+template <int W>
+WEFT_ALWAYS_INLINE LimitAnswer<W> limit_answer(const LimitNumbers& n, const Three<W>& e) {
+  constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below, the axes are noise
+  const Pack<W> mean = 0.5f * (e.x + e.y), half = 0.5f * (e.x - e.y), shear = 0.5f * e.z;
+  const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kLeastRadius);
+  const Pack<W> radius = square_root(half * half + shear * shear), inverse = 1.0f / larger(radius, least);
+  const auto stretch = [&](Pack<W> green) WEFT_INLINE_LAMBDA {
+    return square_root(larger(1.0f + 2.0f * green, broadcast<W>(1e-6f)));
+  };
+  const Pack<W> s1 = stretch(mean + radius);
+  const LimitPrincipal<W> p1 = limit_principal<W>(n, s1), p2 = limit_principal<W>(n, stretch(mean - radius));
+  const Pack<W> c = select_less(radius, least, one, half * inverse),
+                s = select_less(radius, least, zero, shear * inverse);
+  const Pack<W> turning = select_less(radius, least, p1.second, 0.5f * (p1.first - p2.first) * inverse);
+  const Pack<W> a = 0.5f * (1.0f + c), b = 0.5f * (1.0f - c), h = 0.5f * s, g = 0.5f * c;
+  const Pack<W> t = 2.0f * turning;
+  return {p1.energy + p2.energy,
+          s1 - 1.0f,
+          {p1.first * a + p2.first * b, p1.first * b + p2.first * a, (p1.first - p2.first) * h},
+          {p1.second * a * a + p2.second * b * b + t * h * h, (p1.second + p2.second) * a * b - t * h * h,
+           (p1.second * a - p2.second * b) * h - t * h * g, p1.second * b * b + p2.second * a * a + t * h * h,
+           (p1.second * b - p2.second * a) * h + t * h * g, (p1.second + p2.second) * h * h + t * g * g}};
+}
+
 /// A 3×3 block of the Hessian, with the sign of a coupling: q_i = Σ_j N_ij (p_i − p_j).
 template <int W>
 struct Block {

@@ -11,6 +11,16 @@ struct MembraneNumbers {
   float c11 = 0, c22 = 0, c12 = 0, g = 0;
 };
 
+/// StrainLimit in floats.
+struct LimitNumbers {
+  float begin = 0, width = 1, stiffness = 0;
+
+  bool is_set() const { return stiffness > 0; }
+};
+
+/// Numbers of a limit's tangent: its upper triangle, D11 D12 D13 D22 D23 D33.
+inline constexpr int kTangentSize = 6;
+
 /// Numbers of a Hessian's block: row by row, from the particle that owns it.
 inline constexpr int kBlockSize = 9;
 
@@ -27,10 +37,13 @@ struct GridElements {
   static constexpr int kRow[kFamilies] = {0, 1, 1, 1, 0, 2}, kColumn[kFamilies] = {1, 0, 1, -1, 2, 0};
 
   PaddedRows rows;
-  bool alternates = false;         // cells are cut both ways by turns; else all from a to d
-  float dx = 1, dz = 1;            // [m]
-  MembraneNumbers membrane;        // with C11 along x
-  float damping = 0;               // η
+  bool alternates = false;   // cells are cut both ways by turns; else all from a to d
+  float dx = 1, dz = 1;      // [m]
+  MembraneNumbers membrane;  // with C11 along x
+  float damping = 0;         // η
+  LimitNumbers limit;
+  float* tangent = nullptr;        // the limit's, of tops and bottoms (12), if there is one [N/m]
+  float* peak = nullptr;           // likewise: largest principal strain of each row [1]
   const float* bending = nullptr;  // of every family: coupling b_ij at the owner [N/m]
   float* past = nullptr;           // strain that damping pulls to, of tops and bottoms (6)
   ConstRows x{}, damped{}, bent{};
@@ -41,6 +54,7 @@ struct GridElements {
 
   /// The families whose edges are those of triangles.
   int num_edge_families() const { return alternates ? 4 : 3; }
+  std::ptrdiff_t plane_pitch() const { return static_cast<std::ptrdiff_t>(rows.size()); }
   float* plane(float* planes, int k) const { return planes + k * rows.size(); }
   const float* plane(const float* planes, int k) const { return planes + k * rows.size(); }
 
@@ -77,7 +91,10 @@ struct MeshElements {
 
   int first = 0;  // index of particle 0
   MembraneNumbers membrane;
-  float damping = 0;                 // η
+  float damping = 0;  // η
+  LimitNumbers limit;
+  float* tangent = nullptr;          // the limit's, of each triangle, if there is one [N/m]
+  float* peak = nullptr;             // likewise: largest principal strain of each slice [1]
   const int* corner = nullptr;       // three of each triangle
   const float* shape = nullptr;      // of each triangle
   float* past = nullptr;             // strain that damping pulls to, of each triangle

@@ -56,20 +56,30 @@ WEFT_ALWAYS_INLINE void membranes_body(const MeshElements& m, int slice_begin, i
                                        double* energy) {
   for (int slice = slice_begin; slice < slice_end; ++slice) {
     LaneSums<W> sum;
+    float peak = 0;
     for (int part = 0; part < kLanes / W; ++part) {
       const int lane = part * W;
       const Frame<W> f = frame_of<W>(m, slice, lane);
       const float* past = m.past + place(slice, 3, 0, lane);
       Three<W> e = strain_of<W>(f);
       if (m.damping > 0) e = minus<W>(e, load3<W>(three_rows(past), 0));
-      const Stress<W> s = stress_of<W>(m.membrane, e);
+      Stress<W> s = stress_of<W>(m.membrane, e);
       const Pack<W> area = load<W>(m.shape + place(slice, MeshElements::kShapeSize, 4, lane));
       sum.add(part, 0.5f * area * twice_energy<W>(e, s));
+      if (m.limit.is_set()) {
+        const LimitAnswer<W> limit = limit_answer<W>(m.limit, strain_of<W>(f));
+        sum.add(part, area * limit.energy);
+        s = {s.s1 + limit.stress.s1, s.s2 + limit.stress.s2, s.s3 + limit.stress.s3};
+        store_tangent<W>(m.tangent + place(slice, kTangentSize, 0, lane), kLanes, limit.tangent);
+        const Pack<W> is_there = select_less(broadcast<W>(0), area, broadcast<W>(1), broadcast<W>(0));
+        peak = larger(peak, widest<W>(is_there * limit.peak));
+      }
       float* frame = m.frame + place(slice, MeshElements::kFrameSize, 0, lane);
       store3<W>(three_rows(frame), 0, f.f1);
       store3<W>(three_rows(frame + 3 * kLanes), 0, f.f2);
       store3<W>(three_rows(frame + 6 * kLanes), 0, {s.s1, s.s2, s.s3});
     }
+    if (m.limit.is_set()) m.peak[slice] = peak;
     energy[slice] = sum.total();
   }
 }
@@ -111,6 +121,18 @@ WEFT_ALWAYS_INLINE void bending_body(const MeshElements& m, int slice_begin, int
 WEFT_MULTIVERSION_PACKS(bending, (const MeshElements& m, int slice_begin, int slice_end, double* energy),
                         (m, slice_begin, slice_end, energy))
 
+/// The limit's part of a triangle's block, of gradients i and j: a = i1 j1, b = i2 j2, c = i1 j2, d = i2 j1.
+template <int W>
+WEFT_ALWAYS_INLINE void add_limit(const MeshElements& m, const int* triangle, const Frame<W>& f, Pack<W> a,
+                                  Pack<W> b, Pack<W> c, Pack<W> d, Block<W>& block) {
+  int at[W];
+  for (int l = 0; l < W; ++l) at[l] = triangle[l] / kLanes * (kTangentSize * kLanes) + triangle[l] % kLanes;
+  const auto number = [&](int k) WEFT_INLINE_LAMBDA { return gather<W>(m.tangent + k * kLanes, at); };
+  const Pack<W> d13 = number(2), d23 = number(4), d33 = number(5), both = c + d, own = d13 * a + d23 * b;
+  block.add(f, 0.0f - (number(0) * a + d33 * b + d13 * both), 0.0f - (number(3) * b + d33 * a + d23 * both),
+            0.0f - (number(1) * c + d33 * d + own), 0.0f - (number(1) * d + d33 * c + own));
+}
+
 /// Adds what triangle `which` of an entry gives to its slope and block.
 template <int W>
 WEFT_ALWAYS_INLINE void add_triangle(const MeshElements& m, int row, int lane, int which, Pack<W>& slope,
@@ -134,6 +156,7 @@ WEFT_ALWAYS_INLINE void add_triangle(const MeshElements& m, int row, int lane, i
   const MembraneNumbers& n = m.membrane;
   block.add(f, 0.0f - (n.c11 * a + n.g * b), 0.0f - (n.c22 * b + n.g * a), 0.0f - (n.c12 * c + n.g * d),
             0.0f - (n.c12 * d + n.g * c));
+  if (m.limit.is_set()) add_limit<W>(m, triangle, f, a, b, c, d, block);
 }
 
 template <int W>

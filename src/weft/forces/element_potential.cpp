@@ -1,6 +1,7 @@
 #include "weft/forces/element_potential.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "weft/core/error.h"
@@ -65,6 +66,7 @@ void ElementPotential::fit_grid(const ClothModel& model) {
       }
     }
   }
+  fit_limit(2 * kernels::kTangentSize * plane + kPackLanes, rows_.num_rows);
   past_.assign(6 * plane + kPackLanes, 0.0f);
   stress_.assign(6 * plane + kPackLanes, 0.0f);
   slope_.assign(4 * plane + kPackLanes, 0.0f);
@@ -76,11 +78,67 @@ void ElementPotential::fit_grid(const ClothModel& model) {
 void ElementPotential::fit_mesh(const ClothModel& model) {
   tables_ = build_element_tables(*elements_, model.num_particles());
   const std::size_t triangles = static_cast<std::size_t>(tables_.num_triangle_slices()) * kPackLanes;
+  fit_limit(kernels::kTangentSize * triangles, tables_.num_triangle_slices());
   past_.assign(3 * triangles, 0.0f);
   stress_.assign(MeshElements::kFrameSize * triangles, 0.0f);
   hessian_.assign(static_cast<std::size_t>(tables_.num_entry_rows()) * kernels::kBlockSize * kPackLanes,
                   0.0f);
   parts_.assign(tables_.num_triangle_slices() + tables_.num_slices(), 0.0);
+}
+
+void ElementPotential::fit_limit(std::size_t num_tangents, std::size_t num_peaks) {
+  tangent_.assign(has_limit() ? num_tangents : 0, 0.0f);
+  peak_.assign(has_limit() ? num_peaks : 0, 0.0f);
+  limit_couplings_.clear();
+  if (!has_limit()) return;
+  std::map<std::pair<int, int>, int> index;
+  for (const Coupling& c : elements_->couplings)
+    index.emplace(std::pair(c.i, c.j), static_cast<int>(index.size()));
+  for (int t = 0; t < static_cast<int>(elements_->membranes.size()); ++t) {
+    const auto& [vertices, rest] = elements_->membranes[t];
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      const auto found = index.find(std::minmax(vertices[a], vertices[b]));
+      if (found == index.end()) continue;
+      limit_couplings_.push_back({found->second, t, -rest.area * rest.gradient[a].dot(rest.gradient[b])});
+    }
+  }
+}
+
+double ElementPotential::peak_strain() const {
+  return peak_.empty() ? 0.0 : static_cast<double>(*std::max_element(peak_.begin(), peak_.end()));
+}
+
+/// Half the trace of a triangle's tangent for stretching, as (C11 + C22)/2 [N/m].
+double ElementPotential::limit_rate(int triangle) const {
+  constexpr int kD11 = 0, kD22 = 3;
+  std::ptrdiff_t first = 0, pitch = kPackLanes;
+  if (is_grid_) {
+    // The mesh names the lower triangle of a cell cut from a to d first, the upper one of the others.
+    const int cell = triangle / 2, cells_x = rows_.row_length - 1, i = cell % cells_x, j = cell / cells_x;
+    const bool is_main = is_main_diagonal(diagonals_of(topology_->spring_model), i, j);
+    const bool is_top = (triangle % 2 == 1) == is_main;
+    pitch = static_cast<std::ptrdiff_t>(rows_.size());
+    first = (is_top ? 0 : kernels::kTangentSize) * pitch + rows_.row(j) + i;
+  } else {
+    first = triangle / kPackLanes * (kernels::kTangentSize * kPackLanes) + triangle % kPackLanes;
+  }
+  return 0.5 * (static_cast<double>(tangent_[first + kD11 * pitch]) + tangent_[first + kD22 * pitch]);
+}
+
+bool ElementPotential::compute_limit_couplings(std::vector<double>& added) const {
+  added.assign(elements_->couplings.size(), 0.0);
+  if (peak_strain() <= elements_->limit.begin) return false;
+  for (const LimitCoupling& c : limit_couplings_) added[c.coupling] += c.share * limit_rate(c.triangle);
+  for (double& stiffness : added) stiffness = std::max(stiffness, 0.0);
+  return true;
+}
+
+/// In floats.
+static kernels::LimitNumbers numbers_of(const StrainLimit& limit) {
+  if (limit.stiffness == 0) return {};
+  return {static_cast<float>(limit.begin), static_cast<float>(limit.full - limit.begin),
+          static_cast<float>(limit.stiffness)};
 }
 
 GridElements ElementPotential::grid_view() {
@@ -97,6 +155,9 @@ GridElements ElementPotential::grid_view() {
           .membrane = {stiffening * along_x, stiffening * along_z, stiffening * static_cast<float>(c(0, 1)),
                        stiffening * static_cast<float>(c(2, 2))},
           .damping = damping_,
+          .limit = numbers_of(elements_->limit),
+          .tangent = tangent_.data(),
+          .peak = peak_.data(),
           .bending = bending_.data(),
           .past = past_.data(),
           .stress = stress_.data(),
@@ -111,6 +172,9 @@ MeshElements ElementPotential::mesh_view() {
           .membrane = {stiffening * static_cast<float>(c(0, 0)), stiffening * static_cast<float>(c(1, 1)),
                        stiffening * static_cast<float>(c(0, 1)), stiffening * static_cast<float>(c(2, 2))},
           .damping = damping_,
+          .limit = numbers_of(elements_->limit),
+          .tangent = tangent_.data(),
+          .peak = peak_.data(),
           .corner = tables_.corner.data(),
           .shape = tables_.shape.data(),
           .past = past_.data(),

@@ -32,6 +32,12 @@ struct GridElements;
 struct MeshElements;
 }  // namespace kernels
 
+/// What a triangle's stiffness gives to a coupling: `share` of it.
+struct LimitCoupling {
+  int coupling = 0, triangle = 0;
+  double share = 0;  // cotangent weight [1]
+};
+
 class ElementPotential {
  public:
   /// Lays everything out for the cloth's elements; none is well. `damping_rate` is β/h [1/s]. Throws
@@ -40,6 +46,14 @@ class ElementPotential {
 
   bool empty() const { return elements_ == nullptr; }
   bool is_damped() const { return damping_ > 0; }
+  bool has_limit() const { return elements_ != nullptr && elements_->limit.stiffness > 0; }
+
+  /// The largest principal stretch less one, where energy() or linearise() were last; with a limit only [1].
+  double peak_strain() const;
+
+  /// What the limit adds to the stiffness of each of the elements' couplings, at the place of linearise(), as
+  /// C does to theirs; all zero, and false returned, where no stretch comes near the limit [N/m].
+  bool compute_limit_couplings(std::vector<double>& added) const;
 
   /// Takes the strains e₀ and e₋₁ before the step and the one before it; δe = e − e₀ − memory (e₀ − e₋₁).
   /// Positions are laid out by the rows. To be called before a damped step.
@@ -66,12 +80,17 @@ class ElementPotential {
   std::shared_ptr<const ClothTopology> topology_;
   PaddedRows rows_;
   bool is_grid_ = true;
+  void fit_limit(std::size_t num_tangents, std::size_t num_peaks);
+  double limit_rate(int triangle) const;
+
   float damping_ = 0;           // η
   std::vector<float> bending_;  // on a grid, couplings of each family [N/m]
   ElementTables tables_;        // on a mesh
   std::vector<float> past_;     // η/(1 + η) times the strain without δe: e*
   std::vector<float> stress_;   // on a grid; on a mesh frames too
   std::vector<float> slope_;
+  std::vector<float> tangent_, peak_;  // of the limit
+  std::vector<LimitCoupling> limit_couplings_;
   std::vector<float> hessian_;
   Vec3Array bent_;             // x + η z
   std::vector<double> parts_;  // sums of rows or slices

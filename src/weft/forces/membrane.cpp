@@ -50,14 +50,13 @@ std::array<double, 2> principal_stretches(const RestTriangle& rest, const Triang
   return {largest > 0 ? f.warp.cross(f.weft).norm() / largest : 0.0, largest};
 }
 
-double membrane_energy(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x) {
-  const Vec3 e = membrane_strain(rest, x);
-  return 0.5 * rest.area * e.dot(stiffness * e);
+double membrane_energy(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
+  return rest.area * membrane_response(law, membrane_strain(rest, x)).energy;
 }
 
-TriangleCorners membrane_force(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x) {
+TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
   const Deformation f = deformation(rest, x);
-  const Vec3 s = stiffness * green_strain(f);
+  const Vec3 s = membrane_response(law, green_strain(f)).stress;
   const Vec3 pull_warp = rest.area * (s[0] * f.warp + s[2] * f.weft);
   const Vec3 pull_weft = rest.area * (s[2] * f.warp + s[1] * f.weft);
   TriangleCorners force;
@@ -68,9 +67,10 @@ TriangleCorners membrane_force(const RestTriangle& rest, const Mat3& stiffness, 
   return force;
 }
 
-MembraneHessian membrane_hessian(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x) {
+MembraneHessian membrane_hessian(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
   const Deformation f = deformation(rest, x);
-  const Vec3 s = stiffness * green_strain(f);
+  const MembraneResponse response = membrane_response(law, green_strain(f));
+  const Vec3& s = response.stress;
   Eigen::Matrix2d tension;
   tension << s[0], s[2], s[2], s[1];
   MembraneHessian hessian;
@@ -78,7 +78,7 @@ MembraneHessian membrane_hessian(const RestTriangle& rest, const Mat3& stiffness
     const Mat3 ba = strain_derivative(f, rest.gradient[a]);
     for (int b = 0; b < 3; ++b) {
       const Mat3 bb = strain_derivative(f, rest.gradient[b]);
-      hessian.material[a][b] = rest.area * ba.transpose() * stiffness * bb;
+      hessian.material[a][b] = rest.area * ba.transpose() * response.tangent * bb;
     }
     const Vec2 &g1 = rest.gradient[(a + 1) % 3], &g2 = rest.gradient[(a + 2) % 3];
     hessian.edge_weight[a] = -rest.area * g1.dot(tension * g2);

@@ -19,6 +19,7 @@
 #include <array>
 
 #include "weft/core/vec.h"
+#include "weft/fabric/membrane_law.h"
 #include "weft/mesh/rest_triangle.h"
 
 namespace weft {
@@ -34,11 +35,11 @@ std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const T
 /// Smallest and largest factor by which any direction in the triangle is longer than at rest [1].
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x);
 
-/// W [J]. `stiffness` is C [N/m].
-double membrane_energy(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x);
+/// W [J]. With a strain limit `law` answers by another W, s = ∂W/∂e and C = ∂s/∂e; the rest stays as it is.
+double membrane_energy(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
 /// Force on each corner: f_c = −A F S g_c [N]. They sum to zero, and so do their moments.
-TriangleCorners membrane_force(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x);
+TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
 /// Second derivatives of W, split for a step that must not meet negative curvature:
 ///
@@ -51,7 +52,7 @@ struct MembraneHessian {
   std::array<double, 3> edge_weight;  // of the edges opposite to corners 0, 1, 2; may be negative [N/m]
 };
 
-MembraneHessian membrane_hessian(const RestTriangle& rest, const Mat3& stiffness, const TriangleCorners& x);
+MembraneHessian membrane_hessian(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
 enum class StressFilter {
   exact,     // the true Hessian: indefinite where the triangle is compressed

@@ -57,6 +57,8 @@ class IncrementalPotential {
   /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
   double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
 
+  const ElementPotential& elements() const { return elements_; }
+
   /// q = A p with the Hessian A of linearise(), and p·q. p must be zero where no particle is.
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
 

@@ -70,9 +70,10 @@ void ElementTerms::damp_bending(double share, const std::vector<Vec3>& start) {
 }
 
 double ElementTerms::energy(const std::vector<Vec3>& x) const {
+  const MembraneLaw law = elements_->law();
   double energy = bending_energy(elements_->bending, x);
   for (const MembraneElement& m : elements_->membranes) {
-    energy += membrane_energy(m.rest, elements_->stiffness, corners_of(m, x));
+    energy += membrane_energy(m.rest, law, corners_of(m, x));
   }
   for (const HingeElement& h : elements_->hinges) energy += hinge_energy(h.stiffness, 0, corners_of(h, x));
   for (const DampedRow& row : damped_) {
@@ -83,9 +84,18 @@ double ElementTerms::energy(const std::vector<Vec3>& x) const {
   return energy;
 }
 
+bool ElementTerms::is_beyond_limit(const std::vector<Vec3>& x) const {
+  if (elements_->limit.stiffness == 0) return false;
+  const auto is_beyond = [&](const MembraneElement& m) {
+    return principal_stretches(m.rest, corners_of(m, x))[1] > 1 + elements_->limit.allowed();
+  };
+  return std::any_of(elements_->membranes.begin(), elements_->membranes.end(), is_beyond);
+}
+
 void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const {
+  const MembraneLaw law = elements_->law();
   for (const MembraneElement& m : elements_->membranes) {
-    const TriangleCorners force = membrane_force(m.rest, elements_->stiffness, corners_of(m, x));
+    const TriangleCorners force = membrane_force(m.rest, law, corners_of(m, x));
     for (int c = 0; c < 3; ++c) gradient[m.vertices[c]] -= force[c];
   }
   for (const HingeElement& h : elements_->hinges) {
@@ -106,8 +116,9 @@ void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& g
 }
 
 void ElementTerms::add_hessian(const std::vector<Vec3>& x, StressFilter filter, const AddBlock& add) const {
+  const MembraneLaw law = elements_->law();
   for (const MembraneElement& m : elements_->membranes) {
-    const MembraneHessian hessian = membrane_hessian(m.rest, elements_->stiffness, corners_of(m, x));
+    const MembraneHessian hessian = membrane_hessian(m.rest, law, corners_of(m, x));
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b <= a; ++b) add(m.vertices[a], m.vertices[b], membrane_block(hessian, a, b, filter));
     }

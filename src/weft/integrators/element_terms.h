@@ -24,6 +24,9 @@ class ElementTerms {
   void begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start);
 
   double energy(const std::vector<Vec3>& x) const;
+
+  /// Whether a principal stretch is further beyond a strain limit than a solver may leave it.
+  bool is_beyond_limit(const std::vector<Vec3>& x) const;
   void add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;
 
   /// The Hessian's blocks, every pair i, j once or more often, in one order only. The stress term as `filter`

@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kArmijo = 1e-4;         // share of the predicted decrease that a step must bring
 constexpr double kSmallestShare = 1e-8;  // of a Newton step that the line search tries
+constexpr double kFinest = 1e-6;         // of the tolerance: no more is asked for strain limits
 constexpr double kStickSpeed = 1e-3;     // slower slides count as sticking [m/s]
 
 class ImplicitEulerIntegrator final : public Integrator {
@@ -145,7 +146,9 @@ class ImplicitEulerIntegrator final : public Integrator {
       const double share = search_line();
       const double moved = share * largest(direction_);
       const double tolerance = settings_.tolerance * step_;
-      if (share == 0 || moved < tolerance) return {.converged = moved < tolerance, .iterations = iteration};
+      const bool is_held = !model_->elements || !elements_.is_beyond_limit(x_);
+      if (share == 0 || moved < kFinest * tolerance || (moved < tolerance && is_held))
+        return {.converged = moved < tolerance, .iterations = iteration};
       use_true_hessian = share == 1;
     }
     return {.converged = false, .iterations = settings_.iterations};

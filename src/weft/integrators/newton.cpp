@@ -28,10 +28,13 @@ namespace {
 
 constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
 constexpr double kFallingShare = 0.5;  // of the energy that is left: likewise if the last step took off more
-constexpr int kNewtonStepsInContact = 2;  // the first one knows neither what touches nor how hard
-constexpr int kTimesCoasting = 2;         // as many iterations from x + h v: all of gravity is left to them
-constexpr double kNoise = 1e-9;           // of the decrease: below, iterations in floats only stir rounding
-constexpr int kMaxHalvings = 8;           // of a Newton step after which the potential is higher than before
+constexpr int kNewtonStepsInContact = 2;   // the first one knows neither what touches nor how hard
+constexpr int kTimesCoasting = 2;          // as many iterations from x + h v: all of gravity is left to them
+constexpr double kNoise = 1e-9;            // of the decrease: below, iterations in floats only stir rounding
+constexpr int kMostStepsBeyondLimit = 24;  // as long as a stretch is further beyond it than allowed
+constexpr double kLimitFalling = 1e-4;     // … while it still takes so much off the energy
+constexpr double kMuchStiffer = 8;         // a preconditioner that is off by less will do
+constexpr int kMaxHalvings = 8;            // of a Newton step after which the potential is higher than before
 
 class NewtonIntegrator final : public Integrator {
  public:
@@ -46,6 +49,7 @@ class NewtonIntegrator final : public Integrator {
     if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
     if (scratch_.x.size() != state.x.size()) scratch_ = state;
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
+    model_ = &model;
     prepare_matrices(model, environment.wind, scheme, jobs);
     begin_step(model, environment.pins, scheme, jobs, state);
     coasts_ = false;
@@ -151,6 +155,8 @@ class NewtonIntegrator final : public Integrator {
     const bool same_springs = key.model_id == key_.model_id && key.step == key_.step && key.drag == key_.drag;
     key_ = key;
     set_weights(model, wind, 1 / scheme.step);
+    least_weight_ = potential_.weight;
+    has_limit_couplings_ = false;
     if (!same_springs) preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
     set_weights(model, wind, rate);
     preconditioner_.set_diagonal(potential_.weight, jobs);
@@ -238,7 +244,9 @@ class NewtonIntegrator final : public Integrator {
       // The first step's decrease tells nothing: most of it is what the prediction had ignored.
       const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !has_contact_diagonal_ &&
                               before - after > kFallingShare * after + noise_;
-      if ((missed || is_falling) && asked < effort.most_newton_steps && report.iterations + 1 == asked) {
+      const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * after + noise_;
+      const int most = is_beyond ? kMostStepsBeyondLimit : effort.most_newton_steps;
+      if ((missed || is_falling || is_beyond) && asked < most && report.iterations + 1 == asked) {
         ++asked;
         ++*report.guard_events;
         if (missed) more *= 2;
@@ -251,9 +259,37 @@ class NewtonIntegrator final : public Integrator {
   double linearise(JobSystem& jobs) {
     double energy = potential_.linearise(correction_, jobs, force_);
     energy += contacts_.linearise(positions(correction_), force_);
+    update_limit_couplings(jobs);
     update_contact_diagonal(jobs);
     set_at_pins(Vec3::Zero(), force_);
     return energy;
+  }
+
+  /// Where the strain limit pulls, the preconditioner is as stiff as it.
+  void update_limit_couplings(JobSystem& jobs) {
+    if (!potential_.elements().has_limit()) return;
+    const bool any = potential_.elements().compute_limit_couplings(limit_couplings_);
+    if (!any && !has_limit_couplings_) return;
+    if (has_limit_couplings_ && any && !has_changed_much()) return;
+    built_limit_ = limit_couplings_;
+    preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_, limit_couplings_);
+    preconditioner_.set_diagonal(potential_.weight, jobs);
+    has_limit_couplings_ = any;
+  }
+
+  /// Whether some coupling is several times as stiff as the preconditioner's, or the other way round.
+  bool has_changed_much() const {
+    for (std::size_t k = 0; k < limit_couplings_.size(); ++k) {
+      const double own = model_->elements->couplings[k].stiffness;
+      const double is = own + limit_couplings_[k], was = own + built_limit_[k];
+      if (is > kMuchStiffer * was || was > kMuchStiffer * is) return true;
+    }
+    return false;
+  }
+
+  bool is_beyond_limit() const {
+    return potential_.elements().has_limit() &&
+           potential_.elements().peak_strain() > model_->elements->limit.allowed();
   }
 
   void update_contact_diagonal(JobSystem& jobs) {
@@ -327,9 +363,13 @@ class NewtonIntegrator final : public Integrator {
   ScalarPreconditioner preconditioner_;
   ConjugateGradients gradients_;
   ContactTerms contacts_;
-  bool coasts_ = false;                // the step started from x + h v
-  bool has_contact_diagonal_ = false;  // of the preconditioner
-  std::vector<float> diagonal_;        // D and contacts [N/m]
+  bool coasts_ = false;                                // the step started from x + h v
+  bool has_contact_diagonal_ = false;                  // of the preconditioner
+  std::vector<float> diagonal_;                        // D and contacts [N/m]
+  const ClothModel* model_ = nullptr;                  // of the step being taken
+  std::vector<float> least_weight_;                    // D for the longest memory [N/m]
+  std::vector<double> limit_couplings_, built_limit_;  // as they should be, as the preconditioner has them
+  bool has_limit_couplings_ = false;                   // in the preconditioner
   PinMotion pin_motion_;
   double noise_ = 0;  // of energies, from the rounding of positions [J]
   Vec3Array force_, direction_, trial_;

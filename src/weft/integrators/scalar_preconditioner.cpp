@@ -30,12 +30,22 @@ bool has_membranes(const ClothModel& model) { return model.elements && !model.el
 /// What damping makes of the stiffness of elements.
 double stiffening(const ClothElements& elements, double step) { return 1 + elements.damping / step; }
 
-Lists elements_of_mesh(const ClothModel& model, double step) {
+/// Of the elements' couplings, damping included [N/m].
+std::vector<double> coupling_stiffness(const ClothElements& elements, double step,
+                                       const std::vector<double>& added) {
+  std::vector<double> stiffness;
+  for (std::size_t k = 0; k < elements.couplings.size(); ++k)
+    stiffness.push_back(stiffening(elements, step) * elements.couplings[k].stiffness +
+                        (added.empty() ? 0.0 : added[k]));
+  return stiffness;
+}
+
+Lists elements_of_mesh(const ClothModel& model, const std::vector<double>& stiffness) {
   Lists lists(model.num_particles());
-  const double share = stiffening(*model.elements, step);
-  for (const Coupling& c : model.elements->couplings) {
-    lists[c.i].emplace_back(c.j, share * c.stiffness);
-    lists[c.j].emplace_back(c.i, share * c.stiffness);
+  for (std::size_t k = 0; k < stiffness.size(); ++k) {
+    const Coupling& c = model.elements->couplings[k];
+    lists[c.i].emplace_back(c.j, stiffness[k]);
+    lists[c.j].emplace_back(c.i, stiffness[k]);
   }
   return lists;
 }
@@ -43,17 +53,18 @@ Lists elements_of_mesh(const ClothModel& model, double step) {
 }  // namespace
 
 void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double step,
-                                       const std::vector<float>& least, const std::vector<int>& pinned) {
+                                       const std::vector<float>& least, const std::vector<int>& pinned,
+                                       const std::vector<double>& added) {
   is_grid_ = model.topology->grid.has_value();
   first_ = rows.row(0);
   pinned_ = pinned;
   if (!is_grid_) {
     least_.assign(least.begin() + first_, least.begin() + first_ + model.num_particles());
-    return build_mesh(model, step);
+    return build_mesh(model, step, added);
   }
   grid_.resize(rows);
   if (has_membranes(model)) {
-    fill_grid_by_elements(*model.elements, step);
+    fill_grid_by_elements(*model.elements, step, added);
   } else {
     fill_grid_by_springs(model, step);
   }
@@ -75,9 +86,11 @@ void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobS
   grid_.build(jobs);
 }
 
-void ScalarPreconditioner::build_mesh(const ClothModel& model, double step) {
-  const Lists lists = has_membranes(model) ? elements_of_mesh(model, step)
-                                           : springs_of_mesh(model, model.material.damping / step);
+void ScalarPreconditioner::build_mesh(const ClothModel& model, double step,
+                                      const std::vector<double>& added) {
+  const Lists lists = has_membranes(model)
+                          ? elements_of_mesh(model, coupling_stiffness(*model.elements, step, added))
+                          : springs_of_mesh(model, model.material.damping / step);
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
   for (const int p : pinned_) is_pinned[p] = 1;
@@ -126,17 +139,19 @@ void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double 
   }
 }
 
-void ScalarPreconditioner::fill_grid_by_elements(const ClothElements& elements, double step) {
+void ScalarPreconditioner::fill_grid_by_elements(const ClothElements& elements, double step,
+                                                 const std::vector<double>& added) {
   GridLevel& level = grid_.finest();
-  const double share = stiffening(elements, step);
+  const std::vector<double> stiffness = coupling_stiffness(elements, step, added);
   const int columns = level.rows.row_length;
   level.has_down_left = false;
   for (std::vector<float>* family : {&level.right, &level.down, &level.down_right, &level.down_left})
     std::fill(family->begin(), family->end(), 0.0f);
-  for (const Coupling& c : elements.couplings) {
+  for (std::size_t k = 0; k < stiffness.size(); ++k) {
+    const Coupling& c = elements.couplings[k];
     std::vector<float>& family = c.j == c.i + 1 ? level.right : level.down;
     if (c.j == c.i + 1 || c.j == c.i + columns)
-      family[level.rows.index(c.i)] = static_cast<float>(share * c.stiffness);
+      family[level.rows.index(c.i)] = static_cast<float>(stiffness[k]);
   }
 }
 

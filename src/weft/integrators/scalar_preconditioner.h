@@ -21,9 +21,10 @@ class ScalarPreconditioner {
  public:
   /// Takes springs or elements, with their damping in steps of length `step`. Pinned particles drop out of
   /// the matrix. `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must
-  /// follow.
+  /// follow. `added` is more stiffness of each of the elements' couplings (couplings, or empty) [N/m].
   void set_springs(const ClothModel& model, const PaddedRows& rows, double step,
-                   const std::vector<float>& least, const std::vector<int>& pinned);
+                   const std::vector<float>& least, const std::vector<int>& pinned,
+                   const std::vector<double>& added = {});
 
   /// Takes D, laid out by `rows` [N/m], and computes all values anew.
   void set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs);
@@ -32,9 +33,9 @@ class ScalarPreconditioner {
   double apply(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
 
  private:
-  void build_mesh(const ClothModel& model, double step);
+  void build_mesh(const ClothModel& model, double step, const std::vector<double>& added);
   void fill_grid_by_springs(const ClothModel& model, double step);
-  void fill_grid_by_elements(const ClothElements& elements, double step);
+  void fill_grid_by_elements(const ClothElements& elements, double step, const std::vector<double>& added);
   void pin_grid();
 
   bool is_grid_ = true;

@@ -25,7 +25,8 @@ Json json_of(const Claim& claim) {
     json["figures"].push_back(
         {{"name", f.name}, {"value", f.value}, {"unit", f.unit}, {"aim", f.aim}, {"tolerance", f.tolerance}});
   }
-  for (const Table& t : claim.tables) json["tables"].push_back({{"head", t.head}, {"rows", t.rows}});
+  for (const Table& t : claim.tables)
+    json["tables"].push_back({{"title", t.title}, {"head", t.head}, {"rows", t.rows}});
   for (const Figure2d& p : claim.pictures)
     json["pictures"].push_back({{"file", p.file}, {"caption", p.caption}, {"svg", p.svg}});
   return json;
@@ -63,7 +64,7 @@ Claim claim_of(const Json& json) {
     claim.figures.push_back({f.at("name"), f.at("value"), f.at("unit"), f.at("aim"), f.at("tolerance")});
   for (const Json& t : json.at("tables")) {
     claim.tables.push_back({t.at("head").get<std::vector<std::string>>(),
-                            t.at("rows").get<std::vector<std::vector<std::string>>>()});
+                            t.at("rows").get<std::vector<std::vector<std::string>>>(), t.at("title")});
   }
   for (const Json& p : json.at("pictures"))
     claim.pictures.push_back({p.at("file"), p.at("caption"), p.at("svg")});
@@ -121,6 +122,7 @@ void add_row(const std::vector<std::string>& cells, std::string& text) {
 }
 
 void add_table(const Table& table, std::string& text) {
+  if (!table.title.empty()) text += table.title + "\n\n";
   add_row(table.head, text);
   text += "|";
   for (std::size_t i = 0; i < table.head.size(); ++i) text += i == 0 ? "---|" : "--:|";
@@ -200,7 +202,8 @@ std::string table_html(const Table& table) {
     for (const std::string& cell : cells) html += "<" + tag + ">" + inline_html(cell) + "</" + tag + ">";
     return html + "</tr>\n";
   };
-  std::string html = "<table>" + row(table.head, "th");
+  std::string html = table.title.empty() ? "" : "<p>" + inline_html(table.title) + "</p>\n";
+  html += "<table>" + row(table.head, "th");
   for (const auto& cells : table.rows) html += row(cells, "td");
   return html + "</table>\n";
 }

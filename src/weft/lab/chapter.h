@@ -18,6 +18,7 @@ struct KeyFigure {
 struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;  // of as many cells as the head
+  std::string title = {};
 };
 
 struct Figure2d {

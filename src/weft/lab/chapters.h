@@ -12,6 +12,7 @@ namespace weft {
 
 struct ChapterOptions {
   bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
+  int threads = 1;                              // of simulations that are not timed [1]
   std::filesystem::path cache;                  // for references; empty: default_cache_folder()
   std::function<void(const std::string&)> say;  // told what is being done; may be empty
   /// Paints frames of an animation, side by side, into a file of the report's folder; its first cloth as
@@ -26,5 +27,8 @@ Chapter study_paper(const ChapterOptions& options);
 
 /// How right every integrator is, for how much time; convergence, energy, frequencies.
 Chapter study_accuracy(const ChapterOptions& options);
+
+/// One fabric on many meshes and at many steps.
+Chapter study_fabric(const ChapterOptions& options);
 
 }  // namespace weft

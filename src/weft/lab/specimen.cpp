@@ -95,7 +95,7 @@ std::vector<Vec3> compute_membrane_forces(const Specimen& specimen) {
   const std::vector<Vec3> x = positions(specimen.state);
   std::vector<Vec3> force(x.size(), Vec3::Zero());
   for (const auto& [v, rest] : elements.membranes) {
-    const TriangleCorners f = membrane_force(rest, elements.stiffness, {x[v[0]], x[v[1]], x[v[2]]});
+    const TriangleCorners f = membrane_force(rest, elements.law(), {x[v[0]], x[v[1]], x[v[2]]});
     for (int c = 0; c < 3; ++c) force[v[c]] += f[c];
   }
   return force;

@@ -105,7 +105,7 @@ std::array<double, 2> stretch(const Fabric& fabric, const SpecimenSettings& sett
       result);
   const double green = kStrain + 0.5 * kStrain * kStrain;
   const int across = 2 - axis;
-  result.specimen = show_specimen(*specimen.model, specimen.state);
+  result.pictures = {{"specimen", show_specimen(*specimen.model, specimen.state)}};
   return {pull(specimen, axis)[axis] / ((1 + kStrain) * green), pull(specimen, across)[across] / green};
 }
 
@@ -130,7 +130,7 @@ StudyResult study_cantilever(const Fabric& fabric, const SpecimenSettings& setti
                     {"bending_length", length, "m"},
                     {"bending_rigidity", fabric.density * kGravity * std::pow(length, 3), "N·m"},
                     {"overhang", strip.overhang, "m"}};
-  result.specimen = show_specimen(*strip.specimen.model, strip.specimen.state);
+  result.pictures = {{"specimen", show_specimen(*strip.specimen.model, strip.specimen.state)}};
   return result;
 }
 
@@ -147,7 +147,7 @@ StudyResult study_shear(const Fabric& fabric, const SpecimenSettings& settings) 
   const Specimen specimen = make_deformed(
       fabric, settings, [](const Vec3& p) { return Vec3(p.x() + kStrain * p.z(), 0, p.z()); }, result);
   result.figures = {{"g", pull(specimen, 2).x() / kStrain, "N/m"}};
-  result.specimen = show_specimen(*specimen.model, specimen.state);
+  result.pictures = {{"specimen", show_specimen(*specimen.model, specimen.state)}};
   return result;
 }
 
@@ -172,7 +172,7 @@ StudyResult study_buckling(const Fabric& fabric, const SpecimenSettings& setting
       return p;
     });
     settle(specimen, kLength);
-    result.specimen = show_specimen(*specimen.model, specimen.state);
+    result.pictures = {{"specimen", show_specimen(*specimen.model, specimen.state)}};
     return std::abs(specimen.state.position(cells).y()) > kLean * kLength;
   };
   double low = 1, high = 200;
@@ -198,7 +198,7 @@ StudyResult study_drape(const Fabric& fabric, const SpecimenSettings& settings, 
     warn_unsettled(drape.is_at_rest, result);
     percent.push_back(100 * drape.coefficient);
     nodes += static_cast<double>(drape.nodes) / kSpecimens;
-    if (k == 0) result.specimen = drape.specimen;
+    if (k == 0) result.pictures = {{"specimen", drape.specimen}};
   }
   double mean = 0, variance = 0;
   for (const double p : percent) mean += p / kSpecimens;

@@ -4,22 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "weft/io/glb_writer.h"
 #include "weft/lab/specimen.h"
+#include "weft/lab/study.h"
 
 namespace weft {
-
-struct Figure {
-  std::string name;  // as standards call it
-  double value = 0;
-  std::string unit;
-};
-
-struct StudyResult {
-  std::vector<Figure> figures;
-  std::vector<std::string> warnings;
-  Animation specimen;  // one frame: as it was measured
-};
 
 /// Which way a strip is cut.
 enum class StripDirection { warp, weft, bias };

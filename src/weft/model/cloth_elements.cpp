@@ -1,5 +1,6 @@
 #include "weft/model/cloth_elements.h"
 
+#include <cmath>
 #include <map>
 
 namespace weft {
@@ -22,11 +23,19 @@ std::vector<Coupling> find_couplings(const ClothElements& elements) {
   return couplings;
 }
 
+/// By the area of all triangles and the mean length of a right-angled one's legs.
+StrainLimit find_limit(const std::vector<MembraneElement>& membranes, const Fabric& fabric) {
+  double area = 0;
+  for (const MembraneElement& m : membranes) area += m.rest.area;
+  return make_strain_limit(fabric, area, std::sqrt(2 * area / static_cast<double>(membranes.size())));
+}
+
 ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
                             BendingModel bending) {
   ClothElements elements;
   elements.stiffness = membrane_stiffness(fabric);
   elements.membranes = build_membranes(mesh, warp);
+  elements.limit = find_limit(elements.membranes, fabric);
   elements.damping = fabric.damping;
   elements.couplings = find_couplings(elements);
   if (bending == BendingModel::hinges) elements.hinges = build_hinges(mesh, warp, fabric);

@@ -6,6 +6,7 @@
 
 #include "weft/fabric/bending_rows.h"
 #include "weft/fabric/elements.h"
+#include "weft/fabric/membrane_law.h"
 
 namespace weft {
 
@@ -17,6 +18,7 @@ struct Coupling {
 
 struct ClothElements {
   Mat3 stiffness = Mat3::Zero();           // of every membrane [N/m]
+  StrainLimit limit;                       // of every membrane
   std::vector<MembraneElement> membranes;  // one per triangle
   BendingRows bending;                     // curvature stencils; none if there are hinges
   std::vector<HingeElement> hinges;        // flat at rest; none if there are stencils
@@ -25,6 +27,8 @@ struct ClothElements {
   /// The membranes' Hessian at rest, roughly, as the paper's constant matrix (Eq. 11) is for springs: the
   /// positive cotangent weights times (C11 + C22)/2, by ascending i and j.
   std::vector<Coupling> couplings;
+
+  MembraneLaw law() const { return {stiffness, limit}; }
 };
 
 enum class BendingModel {

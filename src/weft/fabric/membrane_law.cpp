@@ -1,0 +1,66 @@
+#include "weft/fabric/membrane_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+namespace {
+
+constexpr double kBegin = 0.85, kFull = 1.05, kLoaded = 1.3;  // of the fabric's strain limit
+constexpr double kTimesWeight = 20;                           // that one edge bears at kLoaded
+constexpr double kGravity = 9.81;
+
+/// ψ(e) of a principal Green strain e = (σ² − 1)/2, and its derivatives by e.
+struct Principal {
+  double energy = 0, first = 0, second = 0;
+};
+
+Principal principal(const StrainLimit& limit, double green) {
+  const double stretch = std::sqrt(std::max(0.0, 1 + 2 * green));
+  const LimitResponse r = limit_response(limit, stretch - 1);
+  if (r.tension == 0) return {};
+  return {r.energy, r.tension / stretch, (r.stiffness - r.tension / stretch) / (stretch * stretch)};
+}
+
+/// What the limit adds, by the principal axes of the strain.
+void add_limit(const StrainLimit& limit, const Vec3& e, MembraneResponse& response) {
+  const double mean = (e[0] + e[1]) / 2, half = (e[0] - e[1]) / 2, shear = e[2] / 2;
+  const double radius = std::sqrt(half * half + shear * shear);
+  const Principal p1 = principal(limit, mean + radius), p2 = principal(limit, mean - radius);
+  if (p1.first == 0) return;
+  const bool has_axes = radius > 1e-9;
+  const double c = has_axes ? half / radius : 1, s = has_axes ? shear / radius : 0;
+  const double turning = has_axes ? (p1.first - p2.first) / (2 * radius) : p1.second;
+  const Vec3 v1(0.5 * (1 + c), 0.5 * (1 - c), 0.5 * s), v2(0.5 * (1 - c), 0.5 * (1 + c), -0.5 * s);
+  const Vec3 v3(-0.5 * s, 0.5 * s, 0.5 * c);
+  response.energy += p1.energy + p2.energy;
+  response.stress += p1.first * v1 + p2.first * v2;
+  response.tangent +=
+      p1.second * v1 * v1.transpose() + p2.second * v2 * v2.transpose() + 2 * turning * v3 * v3.transpose();
+}
+
+}  // namespace
+
+LimitResponse limit_response(const StrainLimit& limit, double strain) {
+  const double u = strain - limit.begin, w = limit.full - limit.begin, k = limit.stiffness;
+  if (k == 0 || u <= 0) return {};
+  if (u < w) return {k * u * u * u / (6 * w), k * u * u / (2 * w), k * u / w};
+  return {k * (w * w / 6 - u * w / 2 + u * u / 2), k * (u - w / 2), k};
+}
+
+StrainLimit make_strain_limit(const Fabric& fabric, double cloth_area, double edge_length) {
+  if (fabric.strain_limit == 0) return {};
+  const double tension = kTimesWeight * kGravity * fabric.density * cloth_area / edge_length;
+  StrainLimit limit{kBegin * fabric.strain_limit, kFull * fabric.strain_limit, 1};
+  limit.stiffness = tension / limit_response(limit, kLoaded * fabric.strain_limit).tension;
+  return limit;
+}
+
+MembraneResponse membrane_response(const MembraneLaw& law, const Vec3& e) {
+  MembraneResponse response{0, law.stiffness * e, law.stiffness};
+  response.energy = 0.5 * e.dot(response.stress);
+  if (law.limit.stiffness > 0) add_limit(law.limit, e, response);
+  return response;
+}
+
+}  // namespace weft

@@ -1,0 +1,210 @@
+#include "weft/lab/fabric_studies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/fabric/presets.h"
+#include "weft/lab/drape.h"
+#include "weft/lab/hung_strip.h"
+#include "weft/lab/studies.h"
+
+namespace weft {
+namespace {
+
+constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
+
+const char* name_of(SpecimenMesh mesh) { return mesh == SpecimenMesh::grid ? "grid" : "random"; }
+
+double find_figure(const StudyResult& result, const std::string& name) {
+  const auto found = std::find_if(result.figures.begin(), result.figures.end(),
+                                  [&](const Figure& f) { return f.name == name; });
+  return found->value;
+}
+
+/// A mesh that fabric is laid on.
+struct MeshCase {
+  std::string name;
+  int cells;  // along the longer side, or as many vertices in rings
+  SpecimenMesh mesh;
+};
+
+std::vector<MeshCase> five_meshes(bool quick) {
+  if (quick) return {{"grid 17", 16, SpecimenMesh::grid}, {"random, coarse", 12, SpecimenMesh::random}};
+  return {{"grid 33²", 32, SpecimenMesh::grid},
+          {"grid 65²", 64, SpecimenMesh::grid},
+          {"grid 129²", 128, SpecimenMesh::grid},
+          {"random, coarse", 24, SpecimenMesh::random},
+          {"random, fine", 48, SpecimenMesh::random}};
+}
+
+/// Rings of a disc with about as many vertices as a grid of cells × cells.
+int rings_like(int cells) { return static_cast<int>(std::lround(cells / std::sqrt(3.0))); }
+
+Specimen settle_hammock(const Fabric& fabric, const MeshCase& mesh, StudyResult& result) {
+  Specimen specimen = make_hammock(fabric, mesh.cells, mesh.mesh);
+  if (!settle(specimen, 1)) result.warnings.push_back("the strip on " + mesh.name + " did not come to rest");
+  return specimen;
+}
+
+double spread_of(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *most - *least;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+StudyResult study_fabric_constants(const StudySettings& settings) {
+  StudyResult result;
+  StudyTable table{"What tensile and shear tests give back [N/m]",
+                   {"fabric", "mesh", "c11", "of", "c22", "of", "c12", "of", "g", "of"},
+                   {}};
+  const std::vector<const char*> names =
+      settings.quick ? std::vector<const char*>{"denim"}
+                     : std::vector<const char*>{"silk", "denim", "11oz_black_denim", "gray_interlock",
+                                                "pink_ribbon_brown"};
+  for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
+    double worst = 0;
+    for (const char* name : names) {
+      settings.say(std::string(name) + " on a " + name_of(mesh) + " mesh");
+      const Fabric& f = find_fabric(name).fabric;
+      const StudyResult tensile = study_tensile(f, {.mesh = mesh});
+      const double c11 = find_figure(tensile, "c11"), c22 = find_figure(tensile, "c22"),
+                   c12 = find_figure(tensile, "c12"), g = find_figure(study_shear(f, {.mesh = mesh}), "g");
+      table.rows.push_back({name, name_of(mesh), digits(c11, 5), digits(f.c11, 5), digits(c22, 5),
+                            digits(f.c22, 5), digits(c12, 4), digits(f.c12, 4), digits(g, 4),
+                            digits(f.g, 4)});
+      worst = std::max({worst, std::abs(c11 / f.c11 - 1), std::abs(c22 / f.c22 - 1), std::abs(g / f.g - 1)});
+    }
+    result.figures.push_back({std::string("stiffness_error_") + name_of(mesh), 100 * worst, "%", 0,
+                              mesh == SpecimenMesh::grid ? 1.0 : 2.0});
+  }
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
+StudyResult study_fabric_cantilever(const StudySettings& settings) {
+  StudyResult result;
+  StudyTable table{"H/W of a strip cut along warp, weft and bias, the elastica's being 0.88473",
+                   {"fabric", "mesh", "cells", "warp", "weft", "bias"},
+                   {}};
+  const std::vector<int> resolutions = settings.quick ? std::vector{10} : std::vector{10, 25, 50};
+  for (const char* name : {"denim", "silk"}) {
+    if (settings.quick && name != std::string("denim")) continue;
+    for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
+      for (const int cells : resolutions) {
+        settings.say(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) + " cells");
+        std::vector<double> ratio;
+        for (const StripDirection direction :
+             {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
+          const StudyResult test =
+              study_cantilever(find_fabric(name).fabric, {.mesh = mesh, .resolution = cells}, direction);
+          ratio.push_back(find_figure(test, "h_over_w"));
+        }
+        table.rows.push_back({name, name_of(mesh), std::to_string(cells), digits(ratio[0], 4),
+                              digits(ratio[1], 4), digits(ratio[2], 4)});
+        if (cells != resolutions.back()) continue;
+        const double error = std::max(std::abs(ratio[0] / kElastica - 1), std::abs(ratio[1] / kElastica - 1));
+        const std::string where = std::string(name) + "_" + name_of(mesh);
+        result.figures.push_back(
+            {"h_over_w_error_" + where, 100 * error, "%", 0, mesh == SpecimenMesh::grid ? 2.0 : 4.0});
+        result.figures.push_back(
+            {"h_over_w_error_bias_" + where, 100 * std::abs(ratio[2] / kElastica - 1), "%", 0, 5});
+      }
+    }
+  }
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
+StudyResult study_fabric_drape(const StudySettings& settings) {
+  StudyResult result;
+  const std::vector<int> rings = settings.quick ? std::vector{10, 15} : std::vector{15, 20, 30, 45};
+  StudyTable table{"Drape coefficient of denim, mean and spread of five specimens [%]",
+                   {"rings", "regular", "folds", "crooked", "folds"},
+                   {}};
+  PlotPanel panel{"drape coefficient of denim", {{"regular rings", {}}, {"crooked rings", {}}}};
+  for (const int n : rings) {
+    std::vector<std::string> row = {std::to_string(n)};
+    for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
+      settings.say("denim, " + std::to_string(n) + " rings");
+      const StudyResult test =
+          study_drape(find_fabric("denim").fabric, {.mesh = mesh, .resolution = n}, settings.threads);
+      const double coefficient = find_figure(test, "drape_coefficient");
+      row.push_back(digits(coefficient, 3) + " ± " +
+                    digits(find_figure(test, "drape_coefficient_spread"), 2));
+      row.push_back(digits(find_figure(test, "drape_nodes"), 2));
+      panel.series[mesh == SpecimenMesh::grid ? 0 : 1].points.push_back(
+          {static_cast<double>(n), coefficient, ""});
+      if (n == rings.back() && mesh == SpecimenMesh::grid) result.pictures = test.pictures;
+    }
+    table.rows.push_back(row);
+  }
+  const auto last = panel.series[0].points.end() - 1;
+  result.figures.push_back({"drape_change_with_resolution", last->y - (last - 1)->y, "%", 0, 3});
+  result.tables.push_back(std::move(table));
+  result.plots.push_back({"fabric_drape.svg",
+                          "Drape coefficient of denim over the rings of the disc's mesh.",
+                          {.x_title = "rings of triangles",
+                           .y_title = "drape coefficient, %",
+                           .panels = {std::move(panel)},
+                           .x_scale = PlotScale::linear,
+                           .y_scale = PlotScale::linear,
+                           .line = PlotLine::through_all}});
+  return result;
+}
+
+StudyResult study_fabric_meshes(const StudySettings& settings) {
+  StudyResult result;
+  Fabric fabric = find_fabric("cotton_shirting").fabric;
+  StudyTable table{"Cotton shirting on five meshes",
+                   {"mesh", "drape coefficient [%]", "folds", "sag [m]", "swing [s]"},
+                   {}};
+  std::vector<double> drapes, sags, periods;
+  for (const MeshCase& mesh : five_meshes(settings.quick)) {
+    settings.say("cotton shirting on " + mesh.name);
+    const StudyResult drape =
+        study_drape(fabric, {.mesh = mesh.mesh, .resolution = rings_like(mesh.cells)}, settings.threads);
+    drapes.push_back(find_figure(drape, "drape_coefficient"));
+    sags.push_back(measure_sag(settle_hammock(fabric, mesh, result)));
+    periods.push_back(measure_swing_period(fabric, mesh.cells, mesh.mesh));
+    table.rows.push_back({mesh.name, digits(drapes.back(), 3), digits(find_figure(drape, "drape_nodes"), 2),
+                          digits(sags.back(), 4), digits(periods.back(), 4)});
+  }
+  result.figures = {{"drape_spread_over_meshes", spread_of(drapes), "%", 0, 3},
+                    {"sag_spread_over_meshes", 100 * spread_of(sags) / mean_of(sags), "%", 0, 2},
+                    {"period_spread_over_meshes", 100 * spread_of(periods) / mean_of(periods), "%", 0, 1}};
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
+StudyResult study_fabric_steps(const StudySettings& settings) {
+  StudyResult result;
+  StudyTable table{"One fabric at three steps", {"steps per second", "sag [m]", "swing [s]"}, {}};
+  const Fabric& denim = find_fabric("denim").fabric;
+  const int cells = settings.quick ? 12 : 32;
+  std::vector<double> sags;
+  for (const int steps_per_second : {60, 120, 240}) {
+    settings.say("denim at " + std::to_string(steps_per_second) + " steps per second");
+    Specimen specimen = make_hammock(denim, cells, SpecimenMesh::grid);
+    specimen.environment.wind.drag = 5 * denim.density;
+    const auto integrator = make_newton({});
+    const auto jobs = make_serial_jobs();
+    for (int s = 0; s < 4 * steps_per_second; ++s)
+      integrator->advance(*specimen.model, specimen.environment, 1.0 / steps_per_second, *jobs,
+                          specimen.state);
+    sags.push_back(measure_sag(specimen));
+    const double period = measure_swing_period(denim, cells, SpecimenMesh::grid, steps_per_second);
+    table.rows.push_back({std::to_string(steps_per_second), digits(sags.back(), 5), digits(period, 5)});
+  }
+  result.figures = {{"sag_spread_over_steps", 100 * spread_of(sags) / mean_of(sags), "%", 0, 1}};
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
+}  // namespace weft

@@ -1,0 +1,151 @@
+/// A strain limit holds inside the solve: on every mesh, hung, swung and pulled, and motion stays what it
+/// was.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/forces/sheets.h"
+#include "tests/support.h"
+#include "weft/fabric/presets.h"
+#include "weft/forces/membrane.h"
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+using test::SheetKind;
+using test::square;
+
+/// A soft jersey: without a limit it stretches by a third under its own weight.
+Fabric soft(double strain_limit) {
+  Fabric fabric = find_fabric("gray_interlock").fabric;
+  fabric.strain_limit = strain_limit;
+  return fabric;
+}
+
+std::shared_ptr<const ClothModel> on_grid(const Grid& grid, const Fabric& fabric) {
+  const auto topology = build_grid_topology(grid, SpringModel::alternating);
+  return build_cloth_model(topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
+                           build_grid_elements(grid, topology->mesh, GridWarp::first_axis, fabric));
+}
+
+std::shared_ptr<const ClothModel> on_mesh(const Grid& grid, const Fabric& fabric) {
+  const auto topology = build_mesh_topology(make_sheet(SheetKind::random, grid));
+  return build_cloth_model(
+      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
+      build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, Vec3::UnitX()), fabric));
+}
+
+Environment hung_by(const ClothModel& model, const std::vector<int>& pins) {
+  Environment environment;
+  for (const int i : pins) {
+    environment.pins.particle.push_back(i);
+    environment.pins.position.push_back(model.topology->mesh.positions[i]);
+  }
+  return environment;
+}
+
+/// The largest principal stretch less one.
+double worst(const ClothModel& model, const ClothState& state) {
+  double most = 0;
+  for (const auto& [v, rest] : model.elements->membranes) {
+    const auto at = [&](int c) { return state.position(v[c]); };
+    most = std::max(most, principal_stretches(rest, {at(0), at(1), at(2)})[1] - 1);
+  }
+  return most;
+}
+
+std::vector<std::shared_ptr<const ClothModel>> sheets(int cells, const Fabric& fabric) {
+  return {on_grid(square(cells), fabric), on_mesh(square(cells), fabric)};
+}
+
+/// Calls `look` after every frame of a sheet that is let go from the horizontal, held by two corners.
+template <class Look>
+void swing(const ClothModel& model, Integrator& integrator, int cells, int frames, const Look& look) {
+  ClothState state = make_state(model.topology->mesh.positions);
+  const Environment environment = hung_by(model, {0, cells});
+  for (int frame = 0; frame < frames; ++frame) {
+    test::advance(integrator, model, environment, 1.0 / 60, 1, state);
+    look(state);
+  }
+}
+
+constexpr double kLimit = 0.01, kMost = 0.015;
+
+TEST(StrainLimit, HoldsWhileClothSwingsFromTwoCornersOnEveryMesh) {
+  for (const int cells : {10, 20, 40}) {
+    for (const auto& model : sheets(cells, soft(kLimit))) {
+      if (cells == 40 && !model->topology->grid) continue;
+      double most = 0;
+      swing(*model, *make_newton({}), cells, 60,
+            [&](const ClothState& state) { most = std::max(most, worst(*model, state)); });
+      EXPECT_LT(most, kMost) << cells;
+      EXPECT_GT(most, 0.9 * kLimit) << "it does give in to as much";
+    }
+  }
+  double free = 0;
+  const auto model = on_grid(square(20), soft(0));
+  swing(*model, *make_newton({}), 20, 60,
+        [&](const ClothState& state) { free = std::max(free, worst(*model, state)); });
+  EXPECT_GT(free, 0.3) << "what the limit holds back";
+}
+
+TEST(StrainLimit, HoldsWithImplicitEuler) {
+  for (const auto& model : sheets(12, soft(kLimit))) {
+    double most = 0;
+    swing(*model, *make_implicit_euler({}), 12, 45,
+          [&](const ClothState& state) { most = std::max(most, worst(*model, state)); });
+    EXPECT_LT(most, kMost);
+  }
+}
+
+TEST(StrainLimit, HoldsWhileACornerIsPulledAboutByAHand) {
+  // To and fro by 30 cm twice a second: up to 3.8 m/s.
+  for (const auto& model : sheets(20, soft(kLimit))) {
+    ClothState state = make_state(model->topology->mesh.positions);
+    Environment environment = hung_by(*model, {0});
+    const auto integrator = make_newton({});
+    for (int frame = 1; frame <= 60; ++frame) {
+      environment.pins.position[0] = 0.3 * std::sin(4 * 3.14159265 * frame / 60) * Vec3(1, 0.5, 0);
+      test::advance(*integrator, *model, environment, 1.0 / 60, 1, state);
+      ASSERT_LT(worst(*model, state), kMost) << "frame " << frame;
+    }
+  }
+}
+
+/// Energy of what differs between neighbours: the shortest waves.
+double roughness(const ClothModel& model, const ClothState& state) {
+  double sum = 0;
+  for (const Spring& s : model.topology->springs) {
+    if (s.kind == SpringKind::structural)
+      sum += 0.5 * model.mass[s.i] * (state.v.get(s.i) - state.v.get(s.j)).squaredNorm();
+  }
+  return sum;
+}
+
+TEST(StrainLimit, MovesAsStiffClothAndNoRougher) {
+  // Both hardly stretch, so that both must swing alike: the limit neither brakes nor rings.
+  constexpr int kCells = 20;
+  Fabric stiff = soft(0);
+  for (double* c : {&stiff.c11, &stiff.c22, &stiff.c12, &stiff.g}) *c *= 100;
+  const auto limited_model = on_grid(square(kCells), soft(kLimit)),
+             stiff_model = on_grid(square(kCells), stiff);
+  std::vector<double> lowest;
+  double rough = 0, distance = 0;
+  swing(*stiff_model, *make_newton({}), kCells, 90, [&](const ClothState& state) {
+    lowest.push_back(compute_lowest_y(state));
+    rough += roughness(*stiff_model, state);
+  });
+  double limited_rough = 0;
+  std::size_t frame = 0;
+  swing(*limited_model, *make_newton({}), kCells, 90, [&](const ClothState& state) {
+    distance += std::abs(compute_lowest_y(state) - lowest[frame++]) / 90;
+    limited_rough += roughness(*limited_model, state);
+  });
+  EXPECT_LT(distance, 0.08) << "0.05 of a swing of more than a metre; in shear it gives in up to the limit";
+  EXPECT_LT(limited_rough, 1.5 * rough);
+}
+
+}  // namespace
+}  // namespace weft
