@@ -10,6 +10,10 @@ SignedDistance signed_distance(const MeshShape&, const Vec3&) {
   return {std::numeric_limits<double>::infinity(), Vec3::UnitY()};
 }
 
+TriangleSignedDistance signed_distance(const MeshShape&, const Vec3&, const Vec3&, const Vec3&, double) {
+  return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
+}
+
 Vec3 pivot_of(const Sphere& sphere) { return sphere.center; }
 Vec3 pivot_of(const Plane& plane) { return plane.point; }
 Vec3 pivot_of(const Capsule& capsule) { return 0.5 * (capsule.a + capsule.b); }
@@ -37,6 +41,11 @@ struct Mover {
 
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p) {
   return std::visit([&](const auto& s) { return signed_distance(s, p); }, shape);
+}
+
+TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
+                                       const Vec3& c, double reach) {
+  return std::visit([&](const auto& s) { return signed_distance(s, a, b, c, reach); }, shape);
 }
 
 Vec3 pivot(const ColliderShape& shape) {

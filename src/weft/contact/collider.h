@@ -32,6 +32,10 @@ struct Collider {
 /// Signed distance from p to the shape's surface, and the normal there (geometry/shape_distance.h).
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p);
 
+/// The same of the triangle a, b, c, as far as `reach`.
+TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
+                                       const Vec3& c, double reach = kNoReach);
+
 /// The point that the collider turns about: a sphere's or box's centre, a plane's point, the middle of a
 /// capsule's axis, a mesh's own origin.
 Vec3 pivot(const ColliderShape& shape);

@@ -198,7 +198,7 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
 }
 
 int ContactSystem::wild_cloth() const {
-  return proximity_.wildest() < 0 ? -1 : cloth_of(proximity_.wildest());
+  return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
 void ContactSystem::hold_off(JobSystem& jobs) {
@@ -218,7 +218,6 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
     end_of(c);
     origins_.push_back(cloths_[c].state->origin);
   }
-  arrived_ = motion_.end;
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const LastLineReport report = last_line_.hold(
       {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
@@ -226,7 +225,7 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
-      const Vec3 moved = motion_.end[v] - arrived_[v];
+      const Vec3 moved = motion_.end[v] - state.position(i);
       if (moved.isZero(0)) continue;
       state.history.had_contact = true;
       state.set_position(i, motion_.end[v]);
@@ -240,9 +239,11 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
 /// metres in a step is no motion of cloth.
 bool ContactSystem::is_of_this_world() const {
   constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
-  for (int v = 0; v < first_vertex_.back(); ++v) {
-    const Vec3 offset = motion_.start[v] - origins_[cloth_of(v)], way = motion_.end[v] - motion_.start[v];
-    if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
+      const Vec3 offset = motion_.start[v] - origins_[c], way = motion_.end[v] - motion_.start[v];
+      if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
+    }
   }
   return true;
 }

@@ -102,7 +102,6 @@ class ContactSystem {
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
-  int cloth_of(int vertex) const;
   double friction_of(int vertex) const;
   const Body& body_of(int vertex) const;
   bool is_on_closed_body(int vertex) const;

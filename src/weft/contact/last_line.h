@@ -33,9 +33,8 @@ struct Infeasible {
 
 /// What the last line had to do.
 struct LastLineReport {
-  int hits = 0;           // pairs that would have met, when first looked at
-  int zones = 0;          // zones that were left to move rigidly, wholly or in part
-  int zone_vertices = 0;  // in them
+  int hits = 0;   // pairs that would have met, when first looked at
+  int zones = 0;  // zones that were left to move rigidly, wholly or in part
   std::vector<Infeasible> infeasible;
 };
 
@@ -80,7 +79,6 @@ class LastLine {
   bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
   bool is_tangled(const Hit& hit) const;
-  void triangles_at(const std::array<int, 4>& vertices, int begin, int end, std::vector<int>& found) const;
   bool is_behind_faces(int v, int w, const Vec3& direction) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;
@@ -96,7 +94,6 @@ class LastLine {
   int find_root(int vertex) const;
   void gather_zones();
   void scale_zone(const Zone& zone);
-  int cloth_of(int vertex) const;
   int num_cloth_vertices() const { return step_.first_vertex->back(); }
 
   LastLineStep step_;
