@@ -23,6 +23,7 @@ Vec3 pivot_of(const MeshShape& mesh) { return mesh.translation; }
 struct Mover {
   Pose pose;
   Vec3 pivot;
+  double time;
 
   Vec3 point(const Vec3& p) const { return apply(pose, pivot, p); }
 
@@ -33,7 +34,8 @@ struct Mover {
     return OrientedBox{point(b.center), b.half_size, pose.rotation * b.rotation};
   }
   ColliderShape operator()(const MeshShape& m) const {
-    return MeshShape{m.mesh, pose.rotation * m.rotation, point(m.translation)};
+    return MeshShape{m.mesh, pose.rotation * m.rotation, point(m.translation), m.sequence,
+                     m.sequence ? m.sequence->at(time) : m.blend};
   }
 };
 
@@ -53,7 +55,7 @@ Vec3 pivot(const ColliderShape& shape) {
 }
 
 ColliderShape shape_at(const Collider& collider, double time) {
-  return std::visit(Mover{collider.motion.at(time), pivot(collider.shape)}, collider.shape);
+  return std::visit(Mover{collider.motion.at(time), pivot(collider.shape), time}, collider.shape);
 }
 
 }  // namespace weft

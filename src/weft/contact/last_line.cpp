@@ -77,6 +77,7 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
   only_moved_ = false;
   is_moved_.assign(motion.end.size(), 0);
   LastLineReport report;
+  pushes_.clear();
   parent_.clear();
   find_hits(jobs, report);
   report.hits = static_cast<int>(hits_.size());
@@ -308,7 +309,6 @@ void LastLine::move(int vertex, const Vec3& to) {
 }
 
 void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
-  pushes_.clear();
   pushed_ = motion_->end;
   for (int round = 0; round < kPushRounds && !hits_.empty(); ++round) {
     for (const Hit& hit : hits_) pushes_.push_back(hit.constraint);

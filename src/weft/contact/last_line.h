@@ -54,6 +54,9 @@ class LastLine {
   /// afterwards.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
 
+  /// The impulses of the last hold(): `push` tells what each moved [kg m].
+  const std::vector<Constraint>& pushes() const { return pushes_; }
+
  private:
   /// A pair that meets, as what would keep it apart.
   struct Hit {
