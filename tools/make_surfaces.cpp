@@ -1,5 +1,5 @@
-// Makes the meshes of the contact scenes: make_surfaces FOLDER writes folded_sheet.obj, tube.obj and
-// funnel.obj.
+// Makes the meshes of the contact scenes: make_surfaces FOLDER writes folded_sheet.obj, tube.obj, funnel.obj
+// and legs_0.obj to legs_6.obj, frames of one mesh.
 //
 // Each is a polyline that is swept: along z (a sheet), or round an axis (a tube, a funnel).
 
@@ -106,6 +106,24 @@ TriangleMesh make_funnel() {
   return turn({{0.5, 1.4, 0}, {0.3, 1.2, 0}, {0.1, 1.0, 0}, {0.1, 0.85, 0}}, {0, 1, 0}, 32);
 }
 
+/// Frame `k` of a body whose two legs swing through each other: capsules along z whose middles are
+/// `kApart[k]` from the plane x = 0, and which grow a little thicker on the way.
+constexpr double kApart[] = {0.1, 0.1, 0.075, 0.05, 0.05, 0.075, 0.1};
+
+TriangleMesh make_legs(int k) {
+  constexpr int kRings = 10;
+  const double apart = kApart[k], radius = 0.1 + 0.1 * (0.2 - apart);
+  TriangleMesh legs;
+  for (const double side : {-1.0, 1.0}) {
+    const TriangleMesh leg =
+        make_capsule_mesh({side * apart, 0, -0.35}, {side * apart, 0, 0.35}, radius, kRings);
+    const int first = legs.num_vertices();
+    for (const Vec3& x : leg.positions) legs.positions.push_back(rounded(x));
+    for (const auto& [a, b, c] : leg.triangles) legs.triangles.push_back({first + a, first + b, first + c});
+  }
+  return legs;
+}
+
 }  // namespace
 }  // namespace weft
 
@@ -119,6 +137,8 @@ int main(int argc, char** argv) {
     weft::write_obj(folder / "folded_sheet.obj", weft::make_folded_sheet());
     weft::write_obj(folder / "tube.obj", weft::make_tube());
     weft::write_obj(folder / "funnel.obj", weft::make_funnel());
+    for (int k = 0; k < static_cast<int>(std::size(weft::kApart)); ++k)
+      weft::write_obj(folder / ("legs_" + std::to_string(k) + ".obj"), weft::make_legs(k));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_surfaces: %s\n", error.what());
     return 1;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/collision.h"
+#include "bench/contact.h"
 #include "bench/frontier.h"
 #include "bench/integrators.h"
 #include "bench/pictures.h"
@@ -95,6 +96,23 @@ void add_collision(CLI::App& bench, int& exit_code) {
   });
 }
 
+void add_contact(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<bench::ContactBenchOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "contact", "What contact holds and what it costs: every scene checked at every frame, rest, friction");
+  command->add_option("--scenes", options->scenes, "Which (default: all of contact/)")->delimiter(',');
+  command->add_option("--threads", options->threads, "Numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "Of each scene at most (default: all)")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_flag("--quick", options->quick, "The beginning of each scene, and coarser sheets");
+  command->callback([options, &exit_code] {
+    if (!bench::bench_contact(*options)) exit_code = 1;
+  });
+}
+
 void add_pictures(CLI::App& bench) {
   auto options = std::make_shared<bench::PictureBenchOptions>();
   CLI::App* command = bench.add_subcommand("pictures", "Cost of drawing a picture without a display");
@@ -164,6 +182,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   add_integrators(*command);
   add_frontier(*command);
   add_collision(*command, exit_code);
+  add_contact(*command, exit_code);
   add_pictures(*command);
   add_random(*command, exit_code);
   add_scaling(*command);

@@ -30,7 +30,10 @@ bool ViewSide::update() {
     cloth.frames[0] = frame_.cloths[c];
     cloth.triangles = frame_.topologies[c]->mesh.triangles;
   }
-  for (std::size_t b = 0; b < frame_.bodies.size(); ++b) animation_.bodies[b].poses = {frame_.bodies[b]};
+  for (std::size_t b = 0; b < frame_.bodies.size(); ++b) {
+    animation_.bodies[b].poses = {frame_.bodies[b]};
+    animation_.bodies[b].frames = frame_.body_frames[b];
+  }
   return true;
 }
 

@@ -104,7 +104,7 @@ void compare_with_a_walk(const Find& find, const Distance& distance, std::uint64
     for (int k = 0; k < 4; ++k) offset += impact->weights[k] * x[k];
     EXPECT_NEAR(impact->normal.dot(offset), distance(x), 1e-12) << "case " << i;
   }
-  EXPECT_LT(grazing, 200) << "those that graze each other for very long are the exception";
+  EXPECT_LT(grazing, 5) << "those that graze each other for very long are the exception";
   EXPECT_GT(hits, 1000);
   EXPECT_GT(misses, 1000);
 }

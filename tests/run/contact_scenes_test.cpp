@@ -35,6 +35,10 @@ TEST(ContactScenes, CrossedRibbonsHoldEachOther) {
   expect_held("crossed_strips", 110, {"cloth[0].grid.cells=[40, 8]", "cloth[1].grid.cells=[8, 40]"});
 }
 
+TEST(ContactScenes, ABodyThatCrossesItselfCarriesTheSheet) {
+  expect_held("self_crossing_body", 120, {"cloth[0].grid.cells=[20, 20]"});
+}
+
 TEST(ContactScenes, FoldedLayersLandOnEachOther) { expect_held("folded_fall", 40, {}); }
 
 }  // namespace

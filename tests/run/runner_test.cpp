@@ -241,6 +241,45 @@ TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
   EXPECT_FALSE(report.penetration_max.has_value());
 }
 
+/// The second sheet's lowest tenth goes through the first one.
+SceneDesc crossed_sheets() {
+  SceneDesc scene = shipped("two_layers", {"cloth[0].name=sheet", "cloth[0].grid.cells=[16, 16]"});
+  scene.colliders.clear();
+  scene.cloths.resize(1);
+  scene.cloths[0].pins.clear();
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].name = "blade";
+  const double size = std::get<Grid>(scene.cloths[0].shape).size_z;
+  scene.cloths[1].rotation_deg = scene.cloths[0].rotation_deg + Vec3(90, 0, 0);
+  scene.cloths[1].position += Vec3(0.013, 0.9 * size, 0.5 * size);
+  return scene;
+}
+
+TEST(Report, OfAStartThatIsUntangledHasNoCrossings) {
+  SceneDesc scene = crossed_sheets();
+  scene.untangle = true;
+  scene.crossed_start = CrossedStart::refuse;  // what is left
+  const RunReport report = run_scene(scene, {.frames = 20, .record_animation = false}).report;
+  EXPECT_EQ(report.intersections, 0);
+  EXPECT_TRUE(warns(report, "set apart in "));
+  EXPECT_TRUE(warns(report, "cloth \"blade\""));
+}
+
+TEST(Report, OfACrossedStartThatIsRefusedNamesClothsTrianglesAndCounts) {
+  SceneDesc scene = crossed_sheets();
+  scene.crossed_start = CrossedStart::refuse;
+  try {
+    run_scene(scene, {.frames = 1, .record_animation = false});
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("cloth \"sheet\" triangle "), std::string::npos) << message;
+    EXPECT_NE(message.find(" crosses cloth \"blade\" triangle "), std::string::npos) << message;
+    EXPECT_NE(message.find(" crossing pairs"), std::string::npos) << message;
+    EXPECT_NE(message.find("solver.untangle = true"), std::string::npos) << message;
+  }
+}
+
 TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {
   // Particles stand around a ball that pokes through the one triangle between them.
   const SceneDesc scene = shipped(

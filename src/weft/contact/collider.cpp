@@ -10,6 +10,10 @@ SignedDistance signed_distance(const MeshShape&, const Vec3&) {
   return {std::numeric_limits<double>::infinity(), Vec3::UnitY()};
 }
 
+TriangleSignedDistance signed_distance(const MeshShape&, const Vec3&, const Vec3&, const Vec3&, double) {
+  return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
+}
+
 Vec3 pivot_of(const Sphere& sphere) { return sphere.center; }
 Vec3 pivot_of(const Plane& plane) { return plane.point; }
 Vec3 pivot_of(const Capsule& capsule) { return 0.5 * (capsule.a + capsule.b); }
@@ -19,6 +23,7 @@ Vec3 pivot_of(const MeshShape& mesh) { return mesh.translation; }
 struct Mover {
   Pose pose;
   Vec3 pivot;
+  double time;
 
   Vec3 point(const Vec3& p) const { return apply(pose, pivot, p); }
 
@@ -29,7 +34,8 @@ struct Mover {
     return OrientedBox{point(b.center), b.half_size, pose.rotation * b.rotation};
   }
   ColliderShape operator()(const MeshShape& m) const {
-    return MeshShape{m.mesh, pose.rotation * m.rotation, point(m.translation)};
+    return MeshShape{m.mesh, pose.rotation * m.rotation, point(m.translation), m.sequence,
+                     m.sequence ? m.sequence->at(time) : m.blend};
   }
 };
 
@@ -39,12 +45,17 @@ SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p) {
   return std::visit([&](const auto& s) { return signed_distance(s, p); }, shape);
 }
 
+TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
+                                       const Vec3& c, double reach) {
+  return std::visit([&](const auto& s) { return signed_distance(s, a, b, c, reach); }, shape);
+}
+
 Vec3 pivot(const ColliderShape& shape) {
   return std::visit([](const auto& s) { return pivot_of(s); }, shape);
 }
 
 ColliderShape shape_at(const Collider& collider, double time) {
-  return std::visit(Mover{collider.motion.at(time), pivot(collider.shape)}, collider.shape);
+  return std::visit(Mover{collider.motion.at(time), pivot(collider.shape), time}, collider.shape);
 }
 
 }  // namespace weft

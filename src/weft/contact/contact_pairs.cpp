@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/contact/collect.h"
 #include "weft/contact/contact_system.h"
 #include "weft/geometry/coplanar_time.h"
 #include "weft/geometry/distance.h"
@@ -29,20 +30,15 @@ constexpr double kTouching = 1e-9;
 
 void ContactSystem::collect_pairs(JobSystem& jobs) {
   const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& make) {
-    const int count = static_cast<int>(pairs.size());
-    const std::size_t num_chunks = (count + kPairGrain - 1) / kPairGrain;
-    if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
-    parallel_for(jobs, count, kPairGrain, [&](int begin, int end) {
-      std::vector<Constraint>& chunk = chunks_[begin / kPairGrain];
-      chunk.clear();
-      for (int p = begin; p < end; ++p) {
-        Constraint c;
-        if (make(p, c)) chunk.push_back(c);
-      }
-    });
-    for (std::size_t k = 0; k < num_chunks; ++k) {
-      constraints_.insert(constraints_.end(), chunks_[k].begin(), chunks_[k].end());
-    }
+    collect_in_order(
+        jobs, static_cast<int>(pairs.size()), kPairGrain, chunks_,
+        [&](int p, std::vector<Constraint>& chunk) {
+          Constraint c;
+          if (make(p, c)) chunk.push_back(c);
+        },
+        [&](const std::vector<Constraint>& chunk) {
+          constraints_.insert(constraints_.end(), chunk.begin(), chunk.end());
+        });
   };
   const std::vector<FeaturePair>& vertex_triangle = proximity_.vertex_triangle();
   const std::vector<FeaturePair>& edge_edge = proximity_.edge_edge();
@@ -206,23 +202,17 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   return true;
 }
 
-int ContactSystem::cloth_of(int vertex) const {
-  return static_cast<int>(std::upper_bound(first_vertex_.begin(), first_vertex_.end(), vertex) -
-                          first_vertex_.begin()) -
-         1;
-}
-
 ContactSystem::Place ContactSystem::place_of(int vertex) const {
   if (vertex >= first_vertex_.back()) {
     const Body& body = body_of(vertex);
     return {-1, body.collider, vertex - body.first_vertex};
   }
-  const int cloth = cloth_of(vertex);
+  const int cloth = mesh_of(first_vertex_, vertex);
   return {cloth, -1, vertex - first_vertex_[cloth]};
 }
 
 double ContactSystem::friction_of(int vertex) const {
-  return cloths_[cloth_of(vertex)].model->material.friction;
+  return cloths_[mesh_of(first_vertex_, vertex)].model->material.friction;
 }
 
 const ContactSystem::Body& ContactSystem::body_of(int vertex) const {

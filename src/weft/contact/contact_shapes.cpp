@@ -23,19 +23,6 @@ Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).
 Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
 Bound bound_of(const MeshShape&) { return {}; }
 
-TriangleSignedDistance triangle_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
-                                         const Vec3& c, double reach = kNoReach) {
-  return std::visit(
-      [&](const auto& s) -> TriangleSignedDistance {
-        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) {
-          return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
-        } else {
-          return signed_distance(s, a, b, c, reach);
-        }
-      },
-      shape);
-}
-
 }  // namespace
 
 void ContactSystem::collect_shapes(double share_of_travel) {
@@ -73,7 +60,7 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
     const double reach = 2 * motion_.half_thickness[t[0]] + travel;
     if (nearest > reach + triangle_reach) continue;
     const std::vector<Vec3>& x = motion_.end;
-    const double distance = triangle_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
+    const double distance = signed_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
     if (distance < reach &&
         distance < nearest - std::max(kNearerThanCorners, share_of_travel * motion_.half_thickness[t[0]]))
       add_shape_constraint(shape, 3, t);
@@ -98,7 +85,7 @@ ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, c
     return {d.distance, d.normal, a - d.distance * d.normal, {1, 0, 0, 0}};
   }
   const Vec3 &b = x[c.vertex[1]], &e = x[c.vertex[2]];
-  const TriangleSignedDistance d = triangle_distance(shape, a, b, e);
+  const TriangleSignedDistance d = signed_distance(shape, a, b, e);
   return {d.distance,
           d.normal,
           point_at(d.weights, a, b, e) - d.distance * d.normal,
@@ -111,15 +98,13 @@ void ContactSystem::take_plane(Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
   Nearest nearest = find_nearest(moving.after, c, motion_.end);
   if (nearest.distance < 0) {
-    const Mat3 turn = moving.pose_after.rotation * moving.pose_before.rotation.transpose();
     const Nearest before = find_nearest(moving.before, c, motion_.start);
-    const Vec3 normal_before = turn * before.normal;
+    const Vec3 normal_before = moving.turned(before.normal);
     if (before.distance > 0 && nearest.normal.dot(normal_before) <= 0) {
       c.is_fixed = true;
       nearest = before;
       nearest.normal = normal_before;
-      nearest.foot = apply(moving.pose_after, moving.pivot,
-                           apply_inverse(moving.pose_before, moving.pivot, before.foot));
+      nearest.foot = moving.at_end(before.foot);
     }
   }
   c.normal = nearest.normal;

@@ -42,6 +42,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
   is_predicted_ = false;
+  touches_.clear();
   shapes_.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
@@ -127,9 +128,8 @@ void ContactSystem::place_bodies() {
     const MovingShape& shape = shapes_[body.collider];
     const MeshShape &before = std::get<MeshShape>(shape.before), &after = std::get<MeshShape>(shape.after);
     for (int v = body.first_vertex; v < body.end_vertex; ++v) {
-      const Vec3& p = after.mesh->positions[v - body.first_vertex];
-      motion_.start[v] = before.rotation * p + before.translation;
-      motion_.end[v] = after.rotation * p + after.translation;
+      motion_.start[v] = before.vertex(v - body.first_vertex);
+      motion_.end[v] = after.vertex(v - body.first_vertex);
       velocity_[v] = (motion_.end[v] - motion_.start[v]) / step_.step;
     }
   }
@@ -166,13 +166,16 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   collect_pairs(jobs);
 }
 
-void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) const {
+void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
   contacts.clear();
+  found_.clear();
   const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
   const Vec3& origin = cloths_[cloth].state->origin;
   const double h = step_.step;
-  for (const Constraint& c : constraints_) {
+  for (int n = 0; n < static_cast<int>(constraints_.size()); ++n) {
+    const Constraint& c = constraints_[n];
     if (c.inverse_mass_of(inverse_mass_, begin, end) == 0) continue;
+    found_.push_back(n);
     Contact contact;
     contact.num_particles = 0;
     contact.normal = c.normal;
@@ -198,7 +201,7 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) con
 }
 
 int ContactSystem::wild_cloth() const {
-  return proximity_.wildest() < 0 ? -1 : cloth_of(proximity_.wildest());
+  return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
 void ContactSystem::hold_off(JobSystem& jobs) {
@@ -218,15 +221,15 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
     end_of(c);
     origins_.push_back(cloths_[c].state->origin);
   }
-  arrived_ = motion_.end;
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const LastLineReport report = last_line_.hold(
       {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
   if (report.hits == 0) return report;
+  for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
-      const Vec3 moved = motion_.end[v] - arrived_[v];
+      const Vec3 moved = motion_.end[v] - state.position(i);
       if (moved.isZero(0)) continue;
       state.history.had_contact = true;
       state.set_position(i, motion_.end[v]);
@@ -240,9 +243,11 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
 /// metres in a step is no motion of cloth.
 bool ContactSystem::is_of_this_world() const {
   constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
-  for (int v = 0; v < first_vertex_.back(); ++v) {
-    const Vec3 offset = motion_.start[v] - origins_[cloth_of(v)], way = motion_.end[v] - motion_.start[v];
-    if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
+      const Vec3 offset = motion_.start[v] - origins_[c], way = motion_.end[v] - motion_.start[v];
+      if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
+    }
   }
   return true;
 }
@@ -271,6 +276,8 @@ void ContactSystem::project(JobSystem& jobs) {
     }
   }
   project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
+  for (const Constraint& c : constraints_)
+    add_touch(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
   take_back_slides();
   settle_positions();
   mark_touched();

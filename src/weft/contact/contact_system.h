@@ -8,9 +8,11 @@
 #include "weft/contact/collider.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/contact.h"
+#include "weft/contact/contact_point.h"
 #include "weft/contact/last_line.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
+#include "weft/contact/untangle.h"
 #include "weft/core/job_system.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
@@ -25,8 +27,9 @@ struct ContactCloth {
 };
 
 struct ContactStep {
-  double time = 0;  // at the end of the step [s]
-  double step = 0;  // its length [s]
+  double time = 0;      // at the end of the step [s]
+  double step = 0;      // its length [s]
+  bool tracks = false;  // whether contact_points() will be asked for
 };
 
 /// Contact of all cloths with all colliders and with each other, step by step:
@@ -52,7 +55,10 @@ class ContactSystem {
 
   /// The contacts of a cloth's particles; what the other cloths will do is taken from where they have been
   /// moved already, or from the prediction.
-  void find_contacts(int cloth, std::vector<Contact>& contacts) const;
+  void find_contacts(int cloth, std::vector<Contact>& contacts);
+
+  /// The forces that the cloth's integrator gave the contacts it was told of last (contacts) [N].
+  void add_solved(int cloth, std::span<const Vec3> forces);
 
   /// The cloth's state now is that of the end of the step.
   void end_of(int cloth);
@@ -64,12 +70,23 @@ class ContactSystem {
   /// Makes sure that nothing has gone through anything since begin_step. To be called last.
   LastLineReport stop_crossings(JobSystem& jobs);
 
+  /// Everything that has touched since begin_step, if the step is tracked, each pair of features once: what
+  /// the solve, hold_off and the impulses of stop_crossings have done to it, as a mean force over the step.
+  /// What zones of the last line do is not in it.
+  std::vector<ContactPoint> contact_points() const;
+
+  /// Sets apart what crosses as it is now, colliders where they are at `time` (see untangle.h).
+  UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
+                          double time);
+  const Surface& surface() const { return proximity_.surface(); }
+
   /// What a vertex of the common numbering belongs to, and its number there; exactly one of cloth and
   /// collider is not -1.
   struct Place {
     int cloth = -1, collider = -1, index = 0;
   };
   Place place_of(int vertex) const;
+  Place place_of_triangle(int triangle) const;
 
   /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
   int wild_cloth() const;
@@ -88,6 +105,18 @@ class ContactSystem {
     Vec3 normal, foot;  // outwards; on the surface
     std::array<double, 4> weight;
   };
+
+  /// A force between two features, or on one.
+  struct Touch {
+    std::array<int, 4> vertex;  // as in Constraint
+    std::array<double, 4> weight;
+    int num_vertices, shape;
+    Vec3 normal;
+    Vec3 force;  // on what has positive weights [N]
+  };
+  void add_touch(const Constraint& c, const Vec3& force);
+  ContactPoint describe(const Touch& touch) const;
+
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
   void renumber(const std::vector<Collider>& colliders);
@@ -102,7 +131,6 @@ class ContactSystem {
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
-  int cloth_of(int vertex) const;
   double friction_of(int vertex) const;
   const Body& body_of(int vertex) const;
   bool is_on_closed_body(int vertex) const;
@@ -134,6 +162,8 @@ class ContactSystem {
   SurfaceMotion motion_;
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;
+  std::vector<int> found_;      // of these, those that find_contacts told of last
+  std::vector<Touch> touches_;  // in this step
 
   // Work space.
   std::vector<std::vector<Constraint>> chunks_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/contact/collect.h"
 #include "weft/geometry/distance.h"
 
 namespace weft {
@@ -66,19 +67,6 @@ class RigidFit {
   Mat3 rotation_ = Mat3::Identity();
 };
 
-TriangleSignedDistance signed_distance_to(const ColliderShape& shape, const std::array<Vec3, 3>& x,
-                                          double reach) {
-  return std::visit(
-      [&](const auto& s) -> TriangleSignedDistance {
-        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) {
-          return {kNoReach, Vec3::UnitX(), Vec3::UnitY()};
-        } else {
-          return signed_distance(s, x[0], x[1], x[2], reach);
-        }
-      },
-      shape);
-}
-
 }  // namespace
 
 LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion,
@@ -89,12 +77,12 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
   only_moved_ = false;
   is_moved_.assign(motion.end.size(), 0);
   LastLineReport report;
+  pushes_.clear();
   parent_.clear();
   find_hits(jobs, report);
   report.hits = static_cast<int>(hits_.size());
   if (!hits_.empty()) push_apart(jobs, report);
   if (!hits_.empty()) join_zones(jobs, report);
-  proximity.update(motion, jobs);
   return report;
 }
 
@@ -103,19 +91,13 @@ void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   hits_.clear();
   proximity_->update(*motion_, jobs);
   const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& test) {
-    const int count = static_cast<int>(pairs.size());
-    const std::size_t num_chunks = (count + kPairGrain - 1) / kPairGrain;
-    if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
-    parallel_for(jobs, count, kPairGrain, [&](int begin, int end) {
-      std::vector<Hit>& chunk = chunks_[begin / kPairGrain];
-      chunk.clear();
-      Hit hit;
-      for (int p = begin; p < end; ++p) {
-        if (test(pairs[p], hit)) chunk.push_back(hit);
-      }
-    });
-    for (std::size_t k = 0; k < num_chunks; ++k)
-      hits_.insert(hits_.end(), chunks_[k].begin(), chunks_[k].end());
+    collect_in_order(
+        jobs, static_cast<int>(pairs.size()), kPairGrain, chunks_,
+        [&](int p, std::vector<Hit>& chunk) {
+          Hit hit;
+          if (test(pairs[p], hit)) chunk.push_back(hit);
+        },
+        [&](const std::vector<Hit>& chunk) { hits_.insert(hits_.end(), chunk.begin(), chunk.end()); });
   };
   collect(proximity_->vertex_triangle(),
           [&](const FeaturePair& pair, Hit& hit) { return test_vertex_triangle(pair, hit); });
@@ -157,7 +139,7 @@ bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
 
 /// `thickness` is what contact holds the pair apart by; `vertex` is one of the pair's.
 ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
-  const int cloth = cloth_of(std::min(vertex, num_cloth_vertices() - 1));
+  const int cloth = mesh_of(*step_.first_vertex, std::min(vertex, num_cloth_vertices() - 1));
   const Vec3 offset = motion_->start[vertex] - (*step_.origins)[cloth];
   const double separation = std::max(kSeparation * thickness, kFloor);
   return {separation, std::min(kFloor, separation), kRounding * (1 + offset.norm())};
@@ -194,52 +176,38 @@ bool LastLine::is_tangled(const Hit& hit) const {
   const Constraint& c = hit.constraint;
   if (c.shape >= 0) return false;
   const int middle = hit.is_edge_edge ? 2 : 3;
-  std::vector<int> first, second;
-  triangles_at(c.vertex, 0, middle, first);
-  triangles_at(c.vertex, middle, 4, second);
+  const Surface& surface = proximity_->surface();
+  const std::vector<Triangle>& triangles = surface.triangles;
+  const std::span<const int> vertices = c.vertex;
   const std::vector<Vec3>& x = motion_->start;
   const auto pierces = [&](const Triangle& s, const Triangle& t) {
     for (int k = 0; k < 3; ++k) {
       const int v = s[k], w = s[(k + 1) % 3];
-      const bool is_joined =
-          std::find(t.begin(), t.end(), v) != t.end() || std::find(t.begin(), t.end(), w) != t.end();
+      const bool is_joined = has_vertex(t, v) || has_vertex(t, w);
       if (!is_joined && segment_triangle_distance(x[v], x[w], x[t[0]], x[t[1]], x[t[2]]).distance_sq == 0)
         return true;
     }
     return false;
   };
-  const std::vector<Triangle>& triangles = proximity_->surface().triangles;
-  for (const int s : first) {
-    for (const int t : second) {
-      if (pierces(triangles[s], triangles[t]) || pierces(triangles[t], triangles[s])) return true;
-    }
-  }
-  return false;
-}
-
-/// The triangles that have all of these vertices.
-void LastLine::triangles_at(const std::array<int, 4>& vertices, int begin, int end,
-                            std::vector<int>& found) const {
-  const Surface& surface = proximity_->surface();
-  const int v = vertices[begin];
-  for (int f = surface.fan_begin[v]; f < surface.fan_begin[v + 1]; ++f) {
-    const Triangle& t = surface.triangles[surface.fan[f]];
-    const bool has_all = std::all_of(vertices.begin() + begin, vertices.begin() + end,
-                                     [&](int w) { return std::find(t.begin(), t.end(), w) != t.end(); });
-    if (has_all) found.push_back(surface.fan[f]);
-  }
+  bool is_pierced = false;
+  surface.for_triangles_with(vertices.first(middle), [&](int s) {
+    surface.for_triangles_with(vertices.subspan(middle), [&](int t) {
+      is_pierced = is_pierced || pierces(triangles[s], triangles[t]) || pierces(triangles[t], triangles[s]);
+    });
+  });
+  return is_pierced;
 }
 
 /// Whether what lies in this direction is behind all faces that have both vertices: inside of a closed mesh.
 bool LastLine::is_behind_faces(int v, int w, const Vec3& direction) const {
   const Surface& surface = proximity_->surface();
   const std::vector<Vec3>& x = motion_->start;
-  for (int f = surface.fan_begin[v]; f < surface.fan_begin[v + 1]; ++f) {
-    const auto [i, j, k] = surface.triangles[surface.fan[f]];
-    if (w != i && w != j && w != k) continue;
-    if ((x[j] - x[i]).cross(x[k] - x[i]).dot(direction) >= 0) return false;
-  }
-  return true;
+  bool is_behind = true;
+  surface.for_triangles_with(std::array{v, w}, [&](int t) {
+    const auto [i, j, k] = surface.triangles[t];
+    is_behind &= (x[j] - x[i]).cross(x[k] - x[i]).dot(direction) < 0;
+  });
+  return is_behind;
 }
 
 template <class Find>
@@ -301,15 +269,16 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   }
   const ImpactLimit limit = limit_for(motion_->half_thickness[t[0]], t[0]);
   const double reach = travel + 3 * limit.separation;
-  const TriangleSignedDistance before = signed_distance_to(shape.before, x, reach);
+  const TriangleSignedDistance before = signed_distance(shape.before, x[0], x[1], x[2], reach);
   const double lift = std::max(0.0, limit.floor - before.distance);
   struct Place {
     double distance;
     TriangleSignedDistance nearest;
   };
   const auto at = [&](double time) -> Place {
-    const TriangleSignedDistance d = signed_distance_to(
-        shape.before, {x[0] + time * way[0], x[1] + time * way[1], x[2] + time * way[2]}, reach);
+    if (time == 0) return {before.distance + lift, before};
+    const TriangleSignedDistance d = signed_distance(shape.before, x[0] + time * way[0], x[1] + time * way[1],
+                                                     x[2] + time * way[2], reach);
     return {d.distance + lift, d};
   };
   const auto impact = find_impact(at, travel, limit);
@@ -325,7 +294,7 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   c.num_vertices = 3;
   c.vertex = {t[0], t[1], t[2], 0};
   c.weight = {d.weights[0], d.weights[1], d.weights[2], 0};
-  c.normal = shape.pose_after.rotation * shape.pose_before.rotation.transpose() * d.normal;
+  c.normal = shape.turned(d.normal);
   c.target = c.normal.dot(hit.foot_end) + target_for(limit, before.distance + lift) - lift;
   c.shape = s;
   c.inverse_mass = c.inverse_mass_of(*step_.inverse_mass);
@@ -334,13 +303,12 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
 
 /// To the nearest place that can be stored.
 void LastLine::move(int vertex, const Vec3& to) {
-  const Vec3& origin = (*step_.origins)[cloth_of(vertex)];
+  const Vec3& origin = (*step_.origins)[mesh_of(*step_.first_vertex, vertex)];
   motion_->end[vertex] = origin + (to - origin).cast<float>().cast<double>();
   is_moved_[vertex] = 1;
 }
 
 void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
-  pushes_.clear();
   pushed_ = motion_->end;
   for (int round = 0; round < kPushRounds && !hits_.empty(); ++round) {
     for (const Hit& hit : hits_) pushes_.push_back(hit.constraint);
@@ -370,7 +338,6 @@ void LastLine::join_zones(JobSystem& jobs, LastLineReport& report) {
   }
   for (const Hit& hit : hits_) add_infeasible(hit, report);
   report.zones = static_cast<int>(zones_.size());
-  for (const Zone& zone : zones_) report.zone_vertices += static_cast<int>(zone.vertices.size());
 }
 
 int LastLine::find_root(int vertex) const {
@@ -444,11 +411,6 @@ void LastLine::scale_zone(const Zone& zone) {
     const Vec3 rigid = fit.apply(motion_->start[v]);
     move(v, rigid + share_[zone.root] * (wanted_[v] - rigid));
   }
-}
-
-int LastLine::cloth_of(int vertex) const {
-  const std::vector<int>& first = *step_.first_vertex;
-  return static_cast<int>(std::upper_bound(first.begin(), first.end(), vertex) - first.begin()) - 1;
 }
 
 }  // namespace weft

@@ -33,9 +33,8 @@ struct Infeasible {
 
 /// What the last line had to do.
 struct LastLineReport {
-  int hits = 0;           // pairs that would have met, when first looked at
-  int zones = 0;          // zones that were left to move rigidly, wholly or in part
-  int zone_vertices = 0;  // in them
+  int hits = 0;   // pairs that would have met, when first looked at
+  int zones = 0;  // zones that were left to move rigidly, wholly or in part
   std::vector<Infeasible> infeasible;
 };
 
@@ -54,6 +53,9 @@ class LastLine {
   /// alone, and so is what is inside a closed mesh: it may leave. `proximity` holds for the motion
   /// afterwards.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
+
+  /// The impulses of the last hold(): `push` tells what each moved [kg m].
+  const std::vector<Constraint>& pushes() const { return pushes_; }
 
  private:
   /// A pair that meets, as what would keep it apart.
@@ -80,7 +82,6 @@ class LastLine {
   bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
   bool is_tangled(const Hit& hit) const;
-  void triangles_at(const std::array<int, 4>& vertices, int begin, int end, std::vector<int>& found) const;
   bool is_behind_faces(int v, int w, const Vec3& direction) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;
@@ -96,7 +97,6 @@ class LastLine {
   int find_root(int vertex) const;
   void gather_zones();
   void scale_zone(const Zone& zone);
-  int cloth_of(int vertex) const;
   int num_cloth_vertices() const { return step_.first_vertex->back(); }
 
   LastLineStep step_;

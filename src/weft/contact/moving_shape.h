@@ -20,6 +20,11 @@ struct MovingShape {
   }
   Vec3 at_end(const Vec3& p) const { return apply(pose_after, pivot, apply_inverse(pose_before, pivot, p)); }
 
+  /// Where a direction has turned that moves with the shape.
+  Vec3 turned(const Vec3& direction) const {
+    return pose_after.rotation * pose_before.rotation.transpose() * direction;
+  }
+
   /// Mean velocity during the step of what is at p at its end [m/s].
   Vec3 velocity_at(const Vec3& p, double step) const {
     if (collider->motion.is_still()) return Vec3::Zero();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "weft/contact/collect.h"
 #include "weft/geometry/distance.h"
 
 namespace weft {
@@ -53,7 +54,7 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
 
 /// Whatever two features do in straight lines, each corner stays within the slack of where it was in the
 /// motion that the lists were made for, at every time.
-bool Proximity::still_holds(const SurfaceMotion& motion) {
+bool Proximity::still_holds(const SurfaceMotion& motion) const {
   if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness)
     return false;
   return is_within_slack(motion.start, made_for_.start) && is_within_slack(motion.end, made_for_.end);
@@ -173,22 +174,18 @@ void Proximity::measure_edges(const SurfaceMotion& motion) {
 void Proximity::add_pairs(const SurfaceMotion& motion, const std::vector<ItemPair>& triangles, int first,
                           bool is_fan, JobSystem& jobs) {
   constexpr int kGrain = 2048;
-  const int count = static_cast<int>(triangles.size());
-  const std::size_t num_chunks = (count + kGrain - 1) / kGrain;
-  if (chunks_.size() < num_chunks) chunks_.resize(num_chunks);
-  parallel_for(jobs, count, kGrain, [&](int begin, int end) {
-    PairChunk& chunk = chunks_[begin / kGrain];
-    chunk.vertex_triangle.clear();
-    chunk.edge_edge.clear();
-    for (int p = begin; p < end; ++p)
-      add_pairs_of_triangles(motion, {triangles[p].a, triangles[p].b + first}, is_fan, chunk);
-  });
-  for (std::size_t c = 0; c < num_chunks; ++c) {
-    const PairChunk& chunk = chunks_[c];
-    vertex_triangle_.insert(vertex_triangle_.end(), chunk.vertex_triangle.begin(),
-                            chunk.vertex_triangle.end());
-    edge_edge_.insert(edge_edge_.end(), chunk.edge_edge.begin(), chunk.edge_edge.end());
-  }
+  const auto append = [](const std::vector<FeaturePair>& from, std::vector<FeaturePair>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  collect_in_order(
+      jobs, static_cast<int>(triangles.size()), kGrain, chunks_,
+      [&](int p, PairChunk& chunk) {
+        add_pairs_of_triangles(motion, {triangles[p].a, triangles[p].b + first}, is_fan, chunk);
+      },
+      [&](const PairChunk& chunk) {
+        append(chunk.vertex_triangle, vertex_triangle_);
+        append(chunk.edge_edge, edge_edge_);
+      });
 }
 
 /// By a, then by b, each once; a is below `end_of_a`.
@@ -214,12 +211,11 @@ void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPa
                                        PairChunk& chunk) const {
   const Surface::OwnedFeatures &a = surface_.owned[pair.a], &b = surface_.owned[pair.b];
   const Triangle &ta = surface_.triangles[pair.a], &tb = surface_.triangles[pair.b];
-  const auto has = [](const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; };
   for (const int v : a.vertex) {
-    if (v >= 0 && !has(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan, chunk);
+    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan, chunk);
   }
   for (const int v : b.vertex) {
-    if (v >= 0 && !has(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan, chunk);
+    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan, chunk);
   }
   for (const int e : a.edge) {
     for (const int f : b.edge) {
@@ -289,11 +285,10 @@ void Proximity::mark_sharp(const std::vector<Vec3>& x) {
   }
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     Vec3 sum = Vec3::Zero();
-    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f)
-      sum += fan_shape_[surface_.fan[f]].normal;
+    for (const int t : surface_.triangles_at(v)) sum += fan_shape_[t].normal;
     const double length = sum.norm();
-    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
-      const FanShape& shape = fan_shape_[surface_.fan[f]];
+    for (const int t : surface_.triangles_at(v)) {
+      const FanShape& shape = fan_shape_[t];
       const double facing = shape.normal.dot(sum);
       if (!(facing >= kSharp * length && facing * shape.height > 2 * slack_ * length)) is_sharp_[v] = 1;
     }
@@ -309,10 +304,9 @@ void Proximity::find_fans(const SurfaceMotion& motion) {
   mark_sharp(motion.end);
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     if (!is_sharp_[v]) continue;
-    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
-      for (int g = f + 1; g < surface_.fan_begin[v + 1]; ++g) {
-        fans_.push_back({surface_.fan[f], surface_.fan[g]});
-      }
+    const std::span<const int> fan = surface_.triangles_at(v);
+    for (std::size_t f = 0; f < fan.size(); ++f) {
+      for (std::size_t g = f + 1; g < fan.size(); ++g) fans_.push_back({fan[f], fan[g]});
     }
   }
 }

@@ -57,6 +57,11 @@ class Proximity {
  private:
   struct PairChunk {
     std::vector<FeaturePair> vertex_triangle, edge_edge;
+
+    void clear() {
+      vertex_triangle.clear();
+      edge_edge.clear();
+    }
   };
 
   struct FanShape {
@@ -64,7 +69,7 @@ class Proximity {
     double height;  // the least of three [m]
   };
 
-  bool still_holds(const SurfaceMotion& motion);
+  bool still_holds(const SurfaceMotion& motion) const;
   bool is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
   void choose_slack();
   void measure_edges(const SurfaceMotion& motion);

@@ -50,8 +50,13 @@ void Surface::build_fans() {
 }
 
 int num_shared_vertices(const Triangle& a, const Triangle& b) {
-  return static_cast<int>(
-      std::count_if(a.begin(), a.end(), [&](int v) { return v == b[0] || v == b[1] || v == b[2]; }));
+  return static_cast<int>(std::count_if(a.begin(), a.end(), [&](int v) { return has_vertex(b, v); }));
+}
+
+int mesh_of(const std::vector<int>& first_vertex, int vertex) {
+  return static_cast<int>(std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex) -
+                          first_vertex.begin()) -
+         1;
 }
 
 }  // namespace weft

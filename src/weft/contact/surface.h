@@ -2,12 +2,16 @@
 /// The triangles of all cloths and mesh colliders under one numbering, and who stands for whose vertices and
 /// edges.
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
+
+inline bool has_vertex(const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; }
 
 /// Each vertex and each edge is owned by one of the triangles around it. Every vertex–triangle pair and every
 /// edge–edge pair then belongs to exactly one pair of triangles, and is found once.
@@ -24,6 +28,20 @@ struct Surface {
   std::vector<int> fan;                   // the triangles around each vertex
   int num_vertices = 0;
 
+  /// The triangles around a vertex, by ascending number.
+  std::span<const int> triangles_at(int vertex) const {
+    return std::span(fan).subspan(fan_begin[vertex], fan_begin[vertex + 1] - fan_begin[vertex]);
+  }
+
+  /// Calls body(triangle's number) for those that have all of these vertices.
+  template <class Body>
+  void for_triangles_with(std::span<const int> vertices, const Body& body) const {
+    for (const int t : triangles_at(vertices[0])) {
+      const auto is_corner = [&](int v) { return has_vertex(triangles[t], v); };
+      if (std::all_of(vertices.begin(), vertices.end(), is_corner)) body(t);
+    }
+  }
+
   /// Appends a mesh, whose vertex v becomes num_vertices (before) + v.
   void add(const std::vector<Triangle>& mesh_triangles, int mesh_vertices);
 
@@ -33,5 +51,8 @@ struct Surface {
 
 /// Vertices that the two triangles have in common, 0 to 3.
 int num_shared_vertices(const Triangle& a, const Triangle& b);
+
+/// Which of several meshes a vertex belongs to; `first_vertex` (meshes + 1) ascends.
+int mesh_of(const std::vector<int>& first_vertex, int vertex);
 
 }  // namespace weft

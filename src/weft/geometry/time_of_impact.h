@@ -36,8 +36,9 @@ struct ImpactLimit {
   double tolerance(double start) const { return 0.1 * std::min(start - gap(start), separation); }
 };
 
-/// Where features are at an impact: gap < normal · Σ w_i x_i(time) <= gap + tolerance. Features that touch at
-/// the start have their impact then.
+/// Where features are at an impact: gap < normal · Σ w_i x_i(time) <= gap + tolerance; farther apart only
+/// where features have grazed each other for so long that advancing was given up. Features that touch at the
+/// start have their impact then.
 struct Impact {
   double time;                    // 0 to 1, from start to end
   double distance_before;         // at the start [m]
@@ -65,8 +66,9 @@ auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
     decltype(at(0.0)) place;
   };
   constexpr double kShare = 0.9;
-  constexpr int kMostAdvances = 1000,
-                kMostWhereTouching = 100;  // enough but for features that graze each other for long
+  // Features that graze each other for long need more advances than these. To stop early is safe: it counts
+  // as an impact. Features that lie on each other do so in every step, and are given up sooner.
+  constexpr int kMostAdvances = 1000, kMostWhereTouching = 100;
   Found now{0, 0, at(0.0)};
   const double start = now.distance_before = now.place.distance;
   if (start - travel > 2 * limit.separation) return std::optional<Found>();

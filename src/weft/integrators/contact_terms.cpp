@@ -1,6 +1,7 @@
 #include "weft/integrators/contact_terms.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weft {
 namespace {
@@ -8,6 +9,28 @@ namespace {
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
 
 }  // namespace
+
+void give_rest_to_contacts(std::span<const Contact* const> contacts, const std::vector<Vec3>& left,
+                           std::vector<Vec3>& forces) {
+  std::vector<double> share(left.size(), 0);  // Σ w² over the contacts that push
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    if (forces[n].isZero(0)) continue;
+    for (int k = 0; k < contacts[n]->num_particles; ++k)
+      share[contacts[n]->particle[k]] += contacts[n]->weight[k] * contacts[n]->weight[k];
+  }
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    if (forces[n].isZero(0)) continue;
+    const Contact& c = *contacts[n];
+    double sum = 0;
+    Vec3 rest = Vec3::Zero();
+    for (int k = 0; k < c.num_particles; ++k) {
+      const double w = c.weight[k];
+      sum += std::abs(w);
+      if (w != 0) rest += w * std::abs(w) / share[c.particle[k]] * left[c.particle[k]];
+    }
+    forces[n] -= rest / sum;
+  }
+}
 
 void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel& model,
                          const PinTargets& pins, double step, const Vec3& driven) {
@@ -75,6 +98,29 @@ double ContactTerms::energy(const OffsetPositions& x) const {
     if (t.is_active) energy += 0.5 * t.friction * t.contact->slide(x).squaredNorm();
   }
   return energy;
+}
+
+void ContactTerms::compute_forces(const OffsetPositions& x, const Vec3Array& others,
+                                  std::vector<Vec3>& forces) const {
+  forces.clear();
+  std::vector<const Contact*> contacts;
+  int num_particles = 0;
+  for (const Term& t : terms_) {
+    const Contact& c = *t.contact;
+    Vec3 force = Vec3::Zero();
+    if (t.inertia > 0) force = c.stiffness * c.depth(x) * c.normal;
+    if (t.is_active) force -= t.friction * c.slide(x);
+    forces.push_back(force);
+    contacts.push_back(&c);
+    for (int k = 0; k < c.num_particles; ++k) num_particles = std::max(num_particles, c.particle[k] + 1);
+  }
+  std::vector<Vec3> left;
+  for (int i = 0; i < num_particles; ++i) left.push_back(others.get(x.rows.index(i)));
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    const Contact& c = *contacts[n];
+    for (int k = 0; k < c.num_particles; ++k) left[c.particle[k]] += c.weight[k] * forces[n];
+  }
+  give_rest_to_contacts(contacts, left, forces);
 }
 
 double ContactTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const {

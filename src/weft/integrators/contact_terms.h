@@ -1,6 +1,7 @@
 #pragma once
 /// Private to integrators/: contacts in the potential of `newton`.
 
+#include <span>
 #include <vector>
 
 #include "weft/contact/contact.h"
@@ -22,6 +23,12 @@ struct OffsetPositions {
   }
 };
 
+/// A contact's depth under a weight is some micrometres, and no solve goes that far: what it has left over at
+/// the particles of contacts that push is theirs. `left` (num_particles) is the sum of all forces there,
+/// those of contacts and of inertia too, 0 at pins; `forces` (contacts) [N].
+void give_rest_to_contacts(std::span<const Contact* const> contacts, const std::vector<Vec3>& left,
+                           std::vector<Vec3>& forces);
+
 /// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew
 /// at each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after
 /// the solve; slides slower than 1 mm/s count as sticking.
@@ -40,6 +47,10 @@ class ContactTerms {
   double linearise(const OffsetPositions& x, Vec3Array& force);
 
   double energy(const OffsetPositions& x) const;
+
+  /// The force on each contact's point at these positions, friction as in the last linearise() (contacts);
+  /// `others` are all other forces on particles, inertia's too [N].
+  void compute_forces(const OffsetPositions& x, const Vec3Array& others, std::vector<Vec3>& forces) const;
 
   /// q += H p, and p·Hp [J].
   double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;

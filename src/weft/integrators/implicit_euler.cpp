@@ -16,6 +16,7 @@
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
 #include "weft/integrators/common.h"
+#include "weft/integrators/contact_terms.h"
 #include "weft/integrators/element_terms.h"
 #include "weft/solvers/block_cholesky.h"
 
@@ -32,11 +33,13 @@ class ImplicitEulerIntegrator final : public Integrator {
   explicit ImplicitEulerIntegrator(const ImplicitEulerSettings& settings) : settings_(settings) {}
 
   bool resolves_contacts() const override { return true; }
+  std::span<const Vec3> contact_forces() const override { return contact_forces_; }
 
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step, JobSystem&,
                            ClothState& state) override {
     begin_step(model, environment, step, state);
     const IntegratorReport report = minimise();
+    if (environment.tells_contact_forces) tell_contact_forces();
     for (int i = 0; i < model.num_particles(); ++i) {
       state.v.set(i, (x_[i] - start_[i]) / step);
       state.x.set(i, x_[i]);
@@ -46,6 +49,21 @@ class ImplicitEulerIntegrator final : public Integrator {
   }
 
  private:
+  void tell_contact_forces() {
+    contact_forces_.clear();
+    std::vector<const Contact*> contacts;
+    for (const Contact& c : environment_->contacts) {
+      contact_forces_.push_back(contact_force(contacts.size()));
+      contacts.push_back(&c);
+    }
+    compute_gradient();
+    for (std::size_t i = 0; i < gradient_.size(); ++i) {
+      if (is_pinned_[i]) gradient_[i].setZero();
+      gradient_[i] = -gradient_[i];
+    }
+    give_rest_to_contacts(contacts, gradient_, contact_forces_);
+  }
+
   void begin_step(const ClothModel& model, const Environment& environment, double step,
                   const ClothState& state) {
     model_ = &model;
@@ -226,6 +244,14 @@ class ImplicitEulerIntegrator final : public Integrator {
     return projected_damping_jacobian(b, start_[s.j] - start_[s.i]);
   }
 
+  /// On the contact's point at x_.
+  Vec3 contact_force(std::size_t c) const {
+    const Contact& contact = environment_->contacts[c];
+    const Vec3 s = contact.slide(x_);
+    const double friction = contact.friction * normal_force_[c] / std::max(s.norm(), kStickSpeed * step_);
+    return contact.stiffness * contact.depth(x_) * contact.normal - friction * s;
+  }
+
   void compute_gradient() {
     const Wind& wind = environment_->wind;
     gradient_.resize(x_.size());
@@ -242,11 +268,9 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       const Contact& contact = environment_->contacts[c];
-      const Vec3 s = contact.slide(x_);
-      const double friction = contact.friction * normal_force_[c] / std::max(s.norm(), kStickSpeed * step_);
-      const Vec3 pull = friction * s - contact.stiffness * contact.depth(x_) * contact.normal;
+      const Vec3 force = contact_force(c);
       for (int k = 0; k < contact.num_particles; ++k)
-        gradient_[contact.particle[k]] += contact.weight[k] * pull;
+        gradient_[contact.particle[k]] -= contact.weight[k] * force;
     }
     if (model_->elements) elements_.add_gradient(x_, gradient_);
     for (const int i : environment_->pins.particle) gradient_[i].setZero();
@@ -373,6 +397,7 @@ class ImplicitEulerIntegrator final : public Integrator {
   double step_ = 0;
   std::vector<char> is_pinned_;
   std::vector<double> normal_force_;  // of each contact [N]
+  std::vector<Vec3> contact_forces_;  // of each contact, at the end of the step [N]
   std::vector<Vec3> start_, inertial_, x_, trial_, gradient_, direction_;
 };
 

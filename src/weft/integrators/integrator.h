@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,8 @@ struct Environment {
   Vec3 gravity = {0, -9.81, 0};  // [m/s²]
   Wind wind;
   PinTargets pins;
-  std::vector<Contact> contacts;  // for integrators that resolve them
+  std::vector<Contact> contacts;      // for integrators that resolve them
+  bool tells_contact_forces = false;  // whether contact_forces() will be asked for
 };
 
 struct ExplicitSettings {
@@ -102,6 +104,10 @@ class Integrator {
   /// alone; what an integrator keeps between calls only saves time.
   virtual IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                                    JobSystem& jobs, ClothState& state) = 0;
+
+  /// The force on each contact's Σ w_i x_i in the last advance(), friction included (contacts); empty for
+  /// integrators that do not resolve them, and if the environment did not ask for them [N].
+  virtual std::span<const Vec3> contact_forces() const { return {}; }
 };
 
 /// Names that make_integrator knows, in the order of the list above.

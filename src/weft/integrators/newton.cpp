@@ -41,6 +41,7 @@ class NewtonIntegrator final : public Integrator {
   explicit NewtonIntegrator(const NewtonSettings& settings) : settings_(settings) {}
 
   bool resolves_contacts() const override { return true; }
+  std::span<const Vec3> contact_forces() const override { return contact_forces_; }
 
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
@@ -56,6 +57,7 @@ class NewtonIntegrator final : public Integrator {
     if (model.elements) choose_start(scheme, jobs, state);
     const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
     finish_step(environment.pins, scheme, jobs, state);
+    if (environment.tells_contact_forces) tell_contact_forces(jobs);
     return report;
   }
 
@@ -344,6 +346,12 @@ class NewtonIntegrator final : public Integrator {
     state.history.had_contact = contacts_.any_active(positions(correction_));
   }
 
+  void tell_contact_forces(JobSystem& jobs) {
+    potential_.linearise(correction_, jobs, force_);
+    set_at_pins(Vec3::Zero(), force_);
+    contacts_.compute_forces(positions(correction_), force_, contact_forces_);
+  }
+
   static void clear(Vec3Array& field) {
     for (float* component : {field.x(), field.y(), field.z()}) std::fill_n(component, field.size(), 0.0f);
   }
@@ -363,6 +371,7 @@ class NewtonIntegrator final : public Integrator {
   ScalarPreconditioner preconditioner_;
   ConjugateGradients gradients_;
   ContactTerms contacts_;
+  std::vector<Vec3> contact_forces_;
   bool coasts_ = false;                                // the step started from x + h v
   bool has_contact_diagonal_ = false;                  // of the preconditioner
   std::vector<float> diagonal_;                        // D and contacts [N/m]

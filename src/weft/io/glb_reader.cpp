@@ -167,6 +167,19 @@ std::array<double, 3> read_color(const tinygltf::Model& model, const tinygltf::P
   return {factor[0], factor[1], factor[2]};
 }
 
+/// Adds the morph targets to `frames`, which holds the first frame.
+void add_targets(const tinygltf::Model& model, const tinygltf::Node& node,
+                 const tinygltf::Primitive& primitive, std::vector<std::vector<float>>& frames) {
+  const std::vector<float> base = frames[0];
+  for (const auto& target : primitive.targets) {
+    auto frame = read_positions(model, target);
+    if (frame.size() != base.size())
+      fail("the frames of mesh '" + node.name + "' have unequal numbers of vertices");
+    for (size_t k = 0; k < base.size(); ++k) frame[k] += base[k];
+    frames.push_back(std::move(frame));
+  }
+}
+
 AnimatedMesh read_cloth(const tinygltf::Model& model, const tinygltf::Node& node) {
   const tinygltf::Primitive& primitive = primitive_of(model, node);
   AnimatedMesh cloth;
@@ -181,13 +194,7 @@ AnimatedMesh read_cloth(const tinygltf::Model& model, const tinygltf::Node& node
     if (cloth.fabric_coordinates.size() != base.size() / 3 * 2)
       fail("cloth '" + node.name + "' has more or fewer texture coordinates than vertices");
   }
-  for (const auto& target : primitive.targets) {
-    auto frame = read_positions(model, target);
-    if (frame.size() != base.size())
-      fail("the frames of cloth '" + node.name + "' have unequal numbers of vertices");
-    for (size_t k = 0; k < base.size(); ++k) frame[k] += base[k];
-    cloth.frames.push_back(std::move(frame));
-  }
+  add_targets(model, node, primitive, cloth.frames);
   return cloth;
 }
 
@@ -282,6 +289,10 @@ class Reader {
       body.mesh.positions.emplace_back(positions[k], positions[k + 1], positions[k + 2]);
     }
     body.mesh.triangles = read_triangles(model_, primitive.indices, body.mesh.positions.size());
+    if (!primitive.targets.empty()) {
+      body.frames = {positions};
+      add_targets(model_, node, primitive, body.frames);
+    }
     body.shape = read_shape(node.extras.Get("weft"));
     body.poses = read_poses(index);
     return body;
@@ -324,12 +335,14 @@ class Reader {
   static void require_equal_frames(const Animation& animation) {
     size_t count = 1;
     for (const auto& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
-    for (const auto& body : animation.bodies) count = std::max(count, body.poses.size());
+    for (const auto& body : animation.bodies)
+      count = std::max({count, body.poses.size(), body.frames.size()});
     for (const auto& cloth : animation.cloths) {
       if (cloth.frames.size() != count) fail("cloth '" + cloth.name + "' lacks frames");
     }
     for (const auto& body : animation.bodies) {
       if (body.poses.size() != 1 && body.poses.size() != count) fail("body '" + body.name + "' lacks poses");
+      if (!body.frames.empty() && body.frames.size() != count) fail("body '" + body.name + "' lacks frames");
     }
   }
 

@@ -38,7 +38,8 @@ constexpr Layout kRotations{TINYGLTF_TYPE_VEC4, 4, 0, false};
 size_t num_frames(const Animation& animation) {
   size_t count = 1;
   for (const AnimatedMesh& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
-  for (const RigidMesh& body : animation.bodies) count = std::max(count, body.poses.size());
+  for (const RigidMesh& body : animation.bodies)
+    count = std::max({count, body.poses.size(), body.frames.size()});
   return count;
 }
 
@@ -83,6 +84,11 @@ void require_valid(const AnimatedMesh& cloth, size_t frames) {
 void require_valid(const RigidMesh& body, size_t frames) {
   if (body.poses.size() != 1) require_count(body.name, "poses", body.poses.size(), frames);
   require_triangles(body.name, body.mesh.triangles, body.mesh.positions.size());
+  if (!body.frames.empty()) require_count(body.name, "frames", body.frames.size(), frames);
+  for (size_t k = 0; k < body.frames.size(); ++k) {
+    require_count(body.name, "coordinates in a frame", body.frames[k].size(), 3 * body.mesh.positions.size());
+    require_finite(body.name, k, body.frames[k]);
+  }
   for (size_t k = 0; k < body.poses.size(); ++k) {
     const auto& [translation, rotation] = body.poses[k];
     if (!translation.allFinite() || !rotation.coeffs().allFinite()) {
@@ -219,7 +225,10 @@ class GlbBuilder {
       times[k] = static_cast<float>(static_cast<double>(k) / animation_.frames_per_second);
     }
     times_ = add_floats(times, kTimes);
-    if (animation_.cloths.empty()) return;
+    const bool is_any_deforming =
+        !animation_.cloths.empty() || std::any_of(animation_.bodies.begin(), animation_.bodies.end(),
+                                                  [](const RigidMesh& body) { return !body.frames.empty(); });
+    if (!is_any_deforming) return;
     const size_t num_targets = num_frames_ - 1;
     std::vector<float> weights(num_frames_ * num_targets, 0.0f);
     for (size_t k = 1; k < num_frames_; ++k) weights[k * num_targets + k - 1] = 1;
@@ -229,16 +238,9 @@ class GlbBuilder {
   void add_cloth(const AnimatedMesh& cloth) {
     tinygltf::Mesh mesh;
     tinygltf::Primitive primitive = make_primitive(cloth.triangles, add_material(cloth.name, cloth.color));
-    const auto& base = cloth.frames[0];
-    const auto base_normals = compute_vertex_normals(cloth.triangles, base);
-    primitive.attributes = add_vertices(base, base_normals);
+    add_frames(cloth.triangles, cloth.frames, primitive);
     if (!cloth.fabric_coordinates.empty())
       primitive.attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
-    for (size_t k = 1; k < num_frames_; ++k) {
-      const auto normals = compute_vertex_normals(cloth.triangles, cloth.frames[k]);
-      primitive.targets.push_back(
-          add_vertices(difference(cloth.frames[k], base), difference(normals, base_normals)));
-    }
     mesh.weights.assign(num_frames_ - 1, 0.0);
     mesh.primitives.push_back(std::move(primitive));
     const int node = add_node(cloth.name, std::move(mesh));
@@ -246,15 +248,34 @@ class GlbBuilder {
     if (is_moving()) add_channel(node, "weights", weights_sampler_);
   }
 
+  /// The first frame as the vertices, the others as morph targets.
+  void add_frames(const std::vector<Triangle>& triangles, const std::vector<std::vector<float>>& frames,
+                  tinygltf::Primitive& primitive) {
+    const auto& base = frames[0];
+    const auto base_normals = compute_vertex_normals(triangles, base);
+    primitive.attributes = add_vertices(base, base_normals);
+    for (size_t k = 1; k < num_frames_; ++k) {
+      const auto normals = compute_vertex_normals(triangles, frames[k]);
+      primitive.targets.push_back(
+          add_vertices(difference(frames[k], base), difference(normals, base_normals)));
+    }
+  }
+
   void add_body(const RigidMesh& body) {
     tinygltf::Mesh mesh;
     mesh.primitives.push_back(make_primitive(body.mesh.triangles, add_material(body.name, body.color)));
-    const auto positions = flatten(body.mesh.positions);
-    require_finite(body.name, 0, positions);
-    mesh.primitives[0].attributes =
-        add_vertices(positions, compute_vertex_normals(body.mesh.triangles, positions));
+    if (body.frames.empty()) {
+      const auto positions = flatten(body.mesh.positions);
+      require_finite(body.name, 0, positions);
+      mesh.primitives[0].attributes =
+          add_vertices(positions, compute_vertex_normals(body.mesh.triangles, positions));
+    } else {
+      add_frames(body.mesh.triangles, body.frames, mesh.primitives[0]);
+      mesh.weights.assign(num_frames_ - 1, 0.0);
+    }
     const int node = add_node(body.name, std::move(mesh));
     model_.nodes[node].extras = extras_of(body);
+    if (!body.frames.empty() && is_moving()) add_channel(node, "weights", weights_sampler_);
     const auto& [translation, rotation] = body.poses[0];
     const Eigen::Vector4d xyzw = rotation.normalized().coeffs();
     model_.nodes[node].translation.assign(translation.begin(), translation.end());

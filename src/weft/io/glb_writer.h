@@ -22,7 +22,8 @@ struct AnimatedMesh {
   std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
 };
 
-/// A mesh that moves rigidly: for each frame a pose, which takes it to the world. One pose: it stands still.
+/// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, which takes it to the world.
+/// One pose: it stands still. In the file a body's `frames` are morph targets, as a cloth's.
 struct RigidMesh {
   struct Pose {
     Vec3 translation = Vec3::Zero();                               // [m]
@@ -32,7 +33,15 @@ struct RigidMesh {
   std::string name;
   TriangleMesh mesh;
   std::array<double, 3> color = {0.5, 0.5, 0.5};
-  std::vector<Pose> poses;          // (1 or num_frames)
+  std::vector<Pose> poses;                 // (1 or num_frames)
+  std::vector<std::vector<float>> frames;  // of a body that deforms: (num_frames) of (num_vertices x 3), in
+                                           // the mesh's coordinates; empty: the mesh stays as it is [m]
+  /// Where a vertex is in a frame, in the mesh's coordinates.
+  Vec3 vertex(std::size_t v, std::size_t frame) const {
+    if (frames.empty()) return mesh.positions[v];
+    return Eigen::Map<const Eigen::Vector3f>(&frames[frame][3 * v]).cast<double>();
+  }
+
   std::optional<SolidShape> shape;  // what `mesh` shows, exactly, in its coordinates; empty: just the mesh
 };
 

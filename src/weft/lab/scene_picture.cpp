@@ -39,7 +39,8 @@ void add_points(const Animation& animation, int frame, std::vector<Vec3>& points
   for (const RigidMesh& body : animation.bodies) {
     if (is_plane(body)) continue;
     const RigidMesh::Pose& pose = pose_at(body, frame);
-    for (const Vec3& p : body.mesh.positions) points.push_back(pose.rotation * p + pose.translation);
+    for (std::size_t v = 0; v < body.mesh.positions.size(); ++v)
+      points.push_back(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation);
   }
 }
 
@@ -54,8 +55,9 @@ DrawnMesh draw_cloth(const AnimatedMesh& cloth, int frame) {
 DrawnMesh draw_body(const RigidMesh& body, int frame) {
   DrawnMesh mesh{.triangles = body.mesh.triangles, .look = {.color = body.color}};
   const RigidMesh::Pose& pose = pose_at(body, frame);
-  for (const Vec3& p : body.mesh.positions) {
-    for (const double c : Vec3(pose.rotation * p + pose.translation))
+  for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
+    for (const double c :
+         Vec3(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation))
       mesh.positions.push_back(static_cast<float>(c));
   }
   return mesh;

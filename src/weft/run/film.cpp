@@ -45,9 +45,21 @@ RigidMesh show(const Collider& collider) {
     body.mesh = make_box_mesh(Vec3::Zero(), box->half_size, box->rotation);
   } else if (const MeshShape* shape = std::get_if<MeshShape>(&collider.shape)) {
     body.mesh = *shape->mesh;
-    for (Vec3& p : body.mesh.positions) p = shape->rotation * p;
+    for (int v = 0; v < body.mesh.num_vertices(); ++v)
+      body.mesh.positions[v] = shape->vertex(v) - shape->translation;
   }
   return body;
+}
+
+/// A deforming collider's vertices at a time, around its pivot and before its motion.
+std::vector<float> positions(const MeshShape& shape, double time) {
+  MeshShape now = shape;
+  now.blend = shape.sequence->at(time);
+  std::vector<float> values;
+  for (int v = 0; v < shape.mesh->num_vertices(); ++v) {
+    for (const double c : Vec3(now.vertex(v) - shape.translation)) values.push_back(static_cast<float>(c));
+  }
+  return values;
 }
 
 std::vector<float> positions(const ClothState& state) {
@@ -81,6 +93,8 @@ void Film::add_frame() {
     animation_.cloths[c].frames.push_back(positions(world_.state({c})));
   for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
     const Collider& collider = world_.colliders()[b];
+    const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
+    if (mesh && mesh->sequence) animation_.bodies[b].frames.push_back(positions(*mesh, world_.time()));
     if (collider.motion.is_still() && !animation_.bodies[b].poses.empty()) continue;
     const Pose pose = collider.motion.at(world_.time());
     const Vec3 center = pivot(collider.shape);
@@ -90,7 +104,10 @@ void Film::add_frame() {
 
 void Film::clear() {
   for (AnimatedMesh& cloth : animation_.cloths) cloth.frames.clear();
-  for (RigidMesh& body : animation_.bodies) body.poses.clear();
+  for (RigidMesh& body : animation_.bodies) {
+    body.poses.clear();
+    body.frames.clear();
+  }
 }
 
 }  // namespace weft

@@ -24,18 +24,28 @@ struct Placement {
   }
 };
 
-/// The mesh where it is placed; its positions are kept in `result`.
-MeshView place_mesh(const TriangleMesh& mesh, const Placement& placement, bool is_closed,
-                    FrameToCheck& result) {
-  auto& positions = result.positions.emplace_back();
-  positions.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) positions.push_back(placement.point(p));
-  return {positions, mesh.triangles, is_closed};
+/// A mesh whose positions are kept in `result`.
+MeshView view_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles, bool is_closed,
+                   FrameToCheck& result) {
+  return {result.positions.emplace_back(std::move(positions)), triangles, is_closed};
+}
+
+/// The mesh where it is placed.
+MeshView place_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles,
+                    const Placement& placement, bool is_closed, FrameToCheck& result) {
+  for (Vec3& p : positions) p = placement.point(p);
+  return view_mesh(std::move(positions), triangles, is_closed, result);
+}
+
+std::vector<Vec3> positions_of(const MeshShape& shape) {
+  std::vector<Vec3> positions;
+  for (int v = 0; v < shape.mesh->num_vertices(); ++v) positions.push_back(shape.vertex(v));
+  return positions;
 }
 
 Solid place(const ColliderShape& shape, bool is_closed, FrameToCheck& result) {
   if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
-    return place_mesh(*mesh->mesh, {mesh->rotation, mesh->translation}, is_closed, result);
+    return view_mesh(positions_of(*mesh), mesh->mesh->triangles, is_closed, result);
   }
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
   if (const auto* plane = std::get_if<Plane>(&shape)) return *plane;
@@ -144,8 +154,11 @@ FrameToCheck AnimationFrames::at(int frame) const {
     const RigidMesh& body = animation_.bodies[k];
     const auto& [translation, rotation] = body.poses[body.poses.size() > 1 ? frame : 0];
     const Placement placement{rotation.toRotationMatrix(), translation};
-    const Solid shape = body.shape ? std::visit(placement, *body.shape)
-                                   : Solid(place_mesh(body.mesh, placement, is_closed_[k], result));
+    const Solid shape =
+        body.shape
+            ? std::visit(placement, *body.shape)
+            : Solid(place_mesh(body.frames.empty() ? body.mesh.positions : to_positions(body.frames[frame]),
+                               body.mesh.triangles, placement, is_closed_[k], result));
     result.frame.colliders.push_back({body.name, shape});
   }
   return result;

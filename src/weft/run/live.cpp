@@ -336,7 +336,11 @@ void LiveSimulation::publish() {
     next_.topologies[c] = built_.world.model({static_cast<int>(c)}).topology;
   }
   next_.bodies.clear();
-  for (const RigidMesh& body : now.bodies) next_.bodies.push_back(body.poses[0]);
+  next_.body_frames.clear();
+  for (const RigidMesh& body : now.bodies) {
+    next_.bodies.push_back(body.poses[0]);
+    next_.body_frames.push_back(body.frames);
+  }
   const std::lock_guard lock(frame_mutex_);
   std::swap(next_, frame_);
   is_fresh_ = true;

@@ -61,8 +61,9 @@ struct LiveStatus {
 /// Everything at one moment.
 struct LiveFrame {
   LiveStatus status;
-  std::vector<std::vector<float>> cloths;                        // (num_cloths) of (num_particles x 3) [m]
-  std::vector<RigidMesh::Pose> bodies;                           // (num_bodies)
+  std::vector<std::vector<float>> cloths;                    // (num_cloths) of (num_particles x 3) [m]
+  std::vector<RigidMesh::Pose> bodies;                       // (num_bodies)
+  std::vector<std::vector<std::vector<float>>> body_frames;  // (num_bodies) as RigidMesh::frames: one or none
   std::vector<std::shared_ptr<const ClothTopology>> topologies;  // (num_cloths)
 };
 

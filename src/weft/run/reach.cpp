@@ -36,7 +36,7 @@ Eigen::AlignedBox3d box_around(const ColliderShape& shape) {
       box.extend(solid->center + solid->rotation * signs.cwiseProduct(solid->half_size));
     }
   } else if (const MeshShape* mesh = std::get_if<MeshShape>(&shape)) {
-    for (const Vec3& p : mesh->mesh->positions) box.extend(mesh->translation + mesh->rotation * p);
+    for (int v = 0; v < mesh->mesh->num_vertices(); ++v) box.extend(mesh->vertex(v));
   }
   return box;
 }

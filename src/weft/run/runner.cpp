@@ -17,6 +17,7 @@ namespace weft {
 namespace {
 
 constexpr int kMostInfeasible = 100;     // listed in a report
+constexpr int kMostJudged = 100000;      // crossings at the start that are told apart by surfaces
 constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
 
 std::string hex(std::uint64_t value) {
@@ -41,20 +42,23 @@ class Recorder {
     }
   }
 
-  /// Warns of cloth that crosses something before anything has moved.
-  void judge_start() {
+  /// Warns of cloth that crosses something before anything has moved, or refuses it by an InputError.
+  void judge_start(const SceneDesc& scene) {
     const FrameToCheck start = frames_.now();
-    const verify::FrameCheck check = verify::check_frame(start.frame, 1);
-    if (check.intersections > 0) {
-      report_.warnings.push_back("at the start " + verify::describe(start.frame, check.first[0]) +
-                                 ", the first of " + std::to_string(check.intersections) + " crossing pairs");
-    }
+    const verify::FrameCheck check = verify::check_frame(start.frame, kMostJudged);
+    std::vector<std::string> found = verify::describe_by_surfaces(start.frame, check.first);
+    for (std::string& sentence : found) sentence.insert(0, "at the start ");
     if (check.penetration() > kInsideAtStart) {
       char depth[32];
       std::snprintf(depth, sizeof depth, "%.3g", 1000 * check.penetration());
-      report_.warnings.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " +
-                                 depth + " mm deep");
+      found.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " + depth +
+                      " mm deep");
     }
+    report_.warnings.insert(report_.warnings.end(), found.begin(), found.end());
+    if (found.empty() || scene.crossed_start == CrossedStart::warn) return;
+    std::string all = "the start is refused (solver.crossed_start = \"refuse\"):";
+    for (const std::string& sentence : found) all += "\n  " + sentence;
+    throw InputError(all + "\nmove them apart, or let solver.untangle = true do it");
   }
 
   void add_frame() {
@@ -126,7 +130,7 @@ class Run {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
-    recorder_.judge_start();
+    recorder_.judge_start(scene);
     if (options.record_animation) film_.add_frame();
   }
 

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <system_error>
+
 #include "weft/scene/scene_sections.h"
 
 namespace weft {
@@ -8,7 +11,7 @@ using Shape = decltype(ColliderSceneDesc::shape);
 /// Keys of a mesh, on a shape that is given by keys of its own: refused with the reason, rather than being
 /// unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
-  for (const std::string_view key : {"file", "up", "scale", "position", "rotation"}) {
+  for (const std::string_view key : {"file", "frames", "frame_rate", "up", "scale", "position", "rotation"}) {
     const bool is_own = has_rotation && key == "rotation";
     if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
   }
@@ -61,10 +64,49 @@ OrientedBox read_box(TomlTable& collider) {
   return box;
 }
 
+/// The files of a name with one star, in the order of their names.
+std::vector<std::filesystem::path> find_files(const std::filesystem::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const std::size_t star = name.find('*');
+  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
+  std::vector<std::filesystem::path> files;
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(pattern.parent_path(), unreadable)) {
+    const std::string candidate = entry.path().filename().string();
+    if (candidate.size() >= begin.size() + end.size() && candidate.starts_with(begin) &&
+        candidate.ends_with(end))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void read_frames(TomlTable& collider, const std::filesystem::path& folder, PlacedMesh& mesh) {
+  std::string name;
+  collider.read("frame_rate", mesh.frame_rate, above_zero("frames per second"));
+  const TomlValue frames = collider.get("frames");
+  if (!frames.read(name)) return;
+  const std::filesystem::path pattern = folder / name;
+  if (std::count(name.begin(), name.end(), '*') != 1 ||
+      pattern.filename().string().find('*') == std::string::npos)
+    return frames.expected("file names with one star, as in \"walk/body_*.obj\"");
+  mesh.frames = find_files(pattern);
+  if (mesh.frames.empty())
+    return frames.mistake("there are no files " + quote(pattern.generic_string(), 1000));
+  mesh.source.file = mesh.frames[0];
+}
+
 PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   PlacedMesh mesh;
-  collider.require({"file"}, "a mesh file, as in \"body.obj\"");
+  collider.require(
+      {"file", "frames"},
+      "a mesh file, as in \"body.obj\", or the frames of one that deforms, as in \"body_*.obj\"");
   mesh.source = read_mesh_file(collider, "file", folder);
+  if (collider.has("frames")) {
+    read_frames(collider, folder, mesh);
+  } else {
+    collider.refuse("frame_rate", "only a mesh with \"frames\" has it");
+  }
   mesh.source.weld = true;
   mesh.source.weld_distance = 0;
   collider.refuse("weld", "a collider has no seams; its vertices are always sewn where they coincide");

@@ -46,8 +46,10 @@ struct MeshFile {
 
 /// A collider's mesh, where it is at the start.
 struct PlacedMesh {
-  MeshFile source;
-  Vec3 position = Vec3::Zero();      // added after the rotation [m]
+  MeshFile source;                            // of a sequence: the first frame's
+  std::vector<std::filesystem::path> frames;  // of a sequence, in order, the first one too; empty: none
+  double frame_rate = 30;                     // of a sequence, > 0 [1/s]
+  Vec3 position = Vec3::Zero();               // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the mesh's own origin [degrees]
 };
 
@@ -79,7 +81,7 @@ struct ClothSceneDesc {
   SpringModel model = SpringModel::simplified;  // of a fabric on a grid: alternating
   ClothMaterial material;                       // with a fabric: its density, thickness and friction alone
   std::optional<FabricDesc> fabric;             // empty: `material` has the stiffness of springs
-  Vec3 position = Vec3::Zero();      // added after the rotation [m]
+  Vec3 position = Vec3::Zero();                 // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
@@ -96,6 +98,12 @@ struct WindDesc {
   std::vector<WindKey> keys;  // at least one if drag > 0; linear between, constant outside
 };
 
+/// What to do with a start at which cloth crosses something, after it has been untangled if that is wished.
+enum class CrossedStart {
+  warn,    // and run
+  refuse,  // by an InputError that names it
+};
+
 struct SceneDesc {
   std::string name;              // the file's name without ending, with its folders below one called "scenes"
   std::string description;       // one line
@@ -108,6 +116,8 @@ struct SceneDesc {
   IntegratorSettings solver;
   int steps_per_frame = 1;  // >= 1
   bool contact = true;      // whether colliders, cloth itself and other cloths hold cloth off
+  bool untangle = false;    // set apart what crosses at the start
+  CrossedStart crossed_start = CrossedStart::warn;
 
   int num_frames() const;  // round(duration · fps), at least 1
 };

@@ -22,6 +22,11 @@ ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
   }
 }
 
+/// In metres, y up.
+Vec3 to_world(const Vec3& p, const MeshFile& source) {
+  return source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+}
+
 std::string count_edges(int count) { return std::to_string(count) + (count == 1 ? " edge" : " edges"); }
 
 /// Turns the mesh right side out if it needs that, and says what else is wrong with it as a solid.
@@ -56,20 +61,59 @@ struct ShapeMaker {
   }
 
   ColliderShape operator()(const PlacedMesh& placed) const {
-    TriangleMesh mesh = load_mesh(placed.source, MeshUse::collider, owner, warnings).mesh;
-    judge_as_solid(mesh, name_with_file(owner, placed.source), warnings);
-    return MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)),
-                     rotation_from_angles_deg(placed.rotation_deg), placed.position};
+    CleanMesh clean = load_mesh(placed.source, MeshUse::collider, owner, warnings);
+    judge_as_solid(clean.mesh, name_with_file(owner, placed.source), warnings);
+    MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
+                    .rotation = rotation_from_angles_deg(placed.rotation_deg),
+                    .translation = placed.position};
+    if (!placed.frames.empty())
+      shape.sequence = load_sequence(placed, clean.vertex_of_source, shape.mesh->num_vertices());
+    return shape;
+  }
+
+  /// What cleaning made of the first frame's vertices it makes of every frame's.
+  std::shared_ptr<const MeshSequence> load_sequence(const PlacedMesh& placed,
+                                                    const std::vector<int>& vertex_of_source,
+                                                    int num_vertices) const {
+    const std::vector<Triangle> triangles = read(placed.frames[0], owner).mesh.triangles;
+    std::vector<MeshSequence::Key> keys;
+    for (std::size_t k = 0; k < placed.frames.size(); ++k) {
+      const TriangleMesh frame = read_frame(placed.frames[k], placed.source);
+      if (frame.positions.size() != vertex_of_source.size() || frame.triangles != triangles) {
+        throw InputError(
+            owner + ": frame " + std::to_string(k) + " (" + placed.frames[k].filename().string() + ") has " +
+            describe(frame) + ", the first one (" + placed.frames[0].filename().string() + ") " +
+            std::to_string(vertex_of_source.size()) + " vertices and " + std::to_string(triangles.size()) +
+            " triangles; all frames must have the same triangles of the same vertices, in the "
+            "same order");
+      }
+      MeshSequence::Key key{static_cast<double>(k) / placed.frame_rate, {}};
+      key.positions.resize(static_cast<std::size_t>(num_vertices));
+      for (std::size_t v = 0; v < vertex_of_source.size(); ++v) {
+        if (vertex_of_source[v] >= 0) key.positions[vertex_of_source[v]] = frame.positions[v];
+      }
+      keys.push_back(std::move(key));
+    }
+    return std::make_shared<const MeshSequence>(std::move(keys));
+  }
+
+  TriangleMesh read_frame(const std::filesystem::path& file, const MeshFile& source) const {
+    TriangleMesh mesh = read(file, owner).mesh;
+    for (Vec3& p : mesh.positions) p = to_world(p, source);
+    return mesh;
+  }
+
+  static std::string describe(const TriangleMesh& mesh) {
+    return std::to_string(mesh.positions.size()) + " vertices and " + std::to_string(mesh.triangles.size()) +
+           " triangles";
   }
 };
 
 int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
-  const TriangleMesh& mesh = *shape.mesh;
+  TriangleMesh mesh = *shape.mesh;
   if (count_surface_edges(mesh).border > 0) return 0;
-  std::vector<Vec3> local;  // in the mesh's own coordinates
-  local.reserve(points.size());
-  for (const Vec3& p : points) local.push_back(shape.rotation.transpose() * (p - shape.translation));
-  const std::vector<int> winding = compute_winding_numbers(mesh, local);
+  for (int v = 0; v < mesh.num_vertices(); ++v) mesh.positions[v] = shape.vertex(v);
+  const std::vector<int> winding = compute_winding_numbers(mesh, points);
   return static_cast<int>(winding.size() - std::count(winding.begin(), winding.end(), 0));
 }
 
@@ -79,10 +123,7 @@ CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owne
                     std::vector<std::string>& warnings) {
   const std::string who = name_with_file(owner, source);
   ObjMesh obj = read(source.file, owner);
-  for (Vec3& p : obj.mesh.positions) {
-    if (source.up_is_z) p = {p.x(), p.z(), -p.y()};
-    p *= source.scale;
-  }
+  for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   try {
     CleanMesh clean = clean_mesh(obj.mesh, {.weld_distance = source.weld ? source.weld_distance : -1,
                                             .is_cloth = use == MeshUse::cloth});

@@ -116,6 +116,9 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
+  table.read("untangle", scene.untangle);
+  table.read_choice<CrossedStart>("crossed_start", scene.crossed_start,
+                                  {{"warn", CrossedStart::warn}, {"refuse", CrossedStart::refuse}});
   table.table("explicit").read("substeps", solver.explicit_euler.substeps, IntegerRule{0, INT_MAX});
   table.table("paper").read_choice<bool>("damping_sign", solver.paper.printed_damping_sign,
                                          {{"corrected", false}, {"as_printed", true}});

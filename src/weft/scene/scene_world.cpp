@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "weft/core/error.h"
@@ -176,6 +177,18 @@ void warn_about_start(const std::vector<Collider>& colliders, const std::string&
   }
 }
 
+void untangle(World& world, std::vector<std::string>& warnings) {
+  const UntangleReport report = world.untangle();
+  if (report.rounds == 0) return;
+  char how[96];
+  std::snprintf(how, sizeof how, "; set apart in %d rounds, by %.3g m at most", report.rounds,
+                report.farthest);
+  for (const std::string& what : report.crossed)
+    warnings.push_back("at the start " + what + (report.left.empty() ? how : ""));
+  for (const std::string& what : report.left)
+    warnings.push_back("could not be untangled: " + what + "; move them apart, or unpin what is held there");
+}
+
 }  // namespace
 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
@@ -201,8 +214,9 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
                                         .positions = positions,
                                         .velocity = desc.velocity});
     world.set_pins(id, make_pins(desc, loaded, positions));
-    warn_about_start(world.colliders(), desc.name, positions, result.warnings);
+    if (!scene.untangle) warn_about_start(world.colliders(), desc.name, positions, result.warnings);
   }
+  if (scene.untangle) untangle(world, result.warnings);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "weft/verify/checker.h"
 
 #include <algorithm>
+#include <map>
 
 namespace weft::verify {
 namespace {
@@ -50,6 +51,18 @@ std::string describe(const Frame& frame, const Crossing& crossing) {
   const std::string other = a.surface == b.surface ? "its" : name_of(frame, b.surface);
   return name_of(frame, a.surface) + " triangle " + std::to_string(a.triangle) + " crosses " + other +
          " triangle " + std::to_string(b.triangle);
+}
+
+std::vector<std::string> describe_by_surfaces(const Frame& frame, std::span<const Crossing> crossings) {
+  std::map<std::pair<int, int>, std::pair<const Crossing*, int>> counts;  // the first, how many
+  for (const Crossing& c : crossings)
+    ++counts.try_emplace({c.a.surface, c.b.surface}, &c, 0).first->second.second;
+  std::vector<std::string> sentences;
+  for (const auto& [surfaces, found] : counts) {
+    sentences.push_back(describe(frame, *found.first) + ", the first of " + std::to_string(found.second) +
+                        (found.second == 1 ? " crossing pair" : " crossing pairs"));
+  }
+  return sentences;
 }
 
 std::string describe(const Frame& frame, const Penetration& deepest) {

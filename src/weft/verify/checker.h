@@ -44,6 +44,10 @@ FrameCheck check_frame(const Frame& frame, int num_listed = 8);
 /// `cloth "sheet" triangle 7 crosses collider "chair" triangle 120`
 std::string describe(const Frame& frame, const Crossing& crossing);
 
+/// A sentence for every two surfaces that cross: `cloth "sheet" triangle 7 crosses collider "chair" triangle
+/// 120, the first of 14 crossing pairs`.
+std::vector<std::string> describe_by_surfaces(const Frame& frame, std::span<const Crossing> crossings);
+
 /// `cloth "sheet" triangle 7 in collider "ball"`; "nowhere" if the depth is 0.
 std::string describe(const Frame& frame, const Penetration& deepest);
 

@@ -179,16 +179,21 @@ int World::num_substeps(double dt) const {
   return substeps;
 }
 
-void World::begin_contact(double time, double dt) {
+void World::show_contact_cloths() {
   contact_cloths_.clear();
+  for (Cloth& cloth : cloths_) contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
+}
+
+void World::begin_contact(double time, double dt) {
+  show_contact_cloths();
   pin_positions_.clear();
   bool is_predicted = false;
   for (Cloth& cloth : cloths_) {
-    contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
     pin_positions_.insert(pin_positions_.end(), cloth.targets.position.begin(), cloth.targets.position.end());
     is_predicted |= cloth.integrator->resolves_contacts();
   }
-  contact_system_.begin_step(contact_cloths_, colliders_, {.time = time, .step = dt});
+  contact_system_.begin_step(contact_cloths_, colliders_,
+                             {.time = time, .step = dt, .tracks = tracks_contacts_});
   if (is_predicted) contact_system_.predict(environment_.gravity, pin_positions_, *jobs_);
 }
 
@@ -208,6 +213,7 @@ void World::advance(double time, double dt, StepReport& report) {
     // What is in the cloth's way.
     environment_.pins = cloth.targets;
     environment_.contacts.clear();
+    environment_.tells_contact_forces = tracks_contacts_;
     if (contact_ && cloth.integrator->resolves_contacts()) {
       contact_system_.find_contacts(c, environment_.contacts);
     }
@@ -219,7 +225,9 @@ void World::advance(double time, double dt, StepReport& report) {
     add(done.linear_iterations, report.linear_iterations);
     add(done.guard_events, report.guard_events);
     if (!done.converged) has_converged_[c] = 0;
-    if (contact_) contact_system_.end_of(c);
+    if (!contact_) continue;
+    if (tracks_contacts_) contact_system_.add_solved(c, cloth.integrator->contact_forces());
+    contact_system_.end_of(c);
   }
   // What has come too close all the same.
   if (!contact_) return;
@@ -237,16 +245,70 @@ void World::stop_crossings(StepReport& report) {
   for (const Infeasible& pair : stopped.infeasible) report.infeasible.push_back(describe(pair));
 }
 
+std::string World::name_of(const ContactSystem::Place& place) const {
+  if (place.cloth < 0) return "collider \"" + colliders_[place.collider].name + '"';
+  return "cloth \"" + cloths_[place.cloth].name + '"';
+}
+
 /// `cloth "sheet" particle 12 and collider "ball"`
 std::string World::describe(const Infeasible& pair) const {
-  const auto name_of = [&](int vertex) {
+  const auto name_vertex = [&](int vertex) {
     const ContactSystem::Place place = contact_system_.place_of(vertex);
-    if (place.cloth < 0) return "collider \"" + colliders_[place.collider].name + '"';
-    return "cloth \"" + cloths_[place.cloth].name + "\" particle " + std::to_string(place.index);
+    const std::string particle = place.cloth < 0 ? "" : " particle " + std::to_string(place.index);
+    return name_of(place) + particle;
   };
-  const std::string other =
-      pair.shape >= 0 ? "collider \"" + colliders_[pair.shape].name + '"' : name_of(pair.other);
-  return name_of(pair.vertex) + " and " + other;
+  const std::string other = pair.shape >= 0 ? name_of({-1, pair.shape, 0}) : name_vertex(pair.other);
+  return name_vertex(pair.vertex) + " and " + other;
+}
+
+/// One sentence for every two things that cross.
+std::vector<std::string> World::describe(const Knots& knots) const {
+  std::vector<std::pair<std::string, int>> counts;  // what, how often; in order of the first
+  const auto add = [&](const std::string& what, const auto& first) {
+    const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& c) {
+      return c.first.compare(0, what.size(), what) == 0;
+    });
+    if (known != counts.end()) return void(++known->second);
+    counts.emplace_back(what + first(), 1);
+  };
+  for (const Pierced& p : knots.pierced) {
+    const auto [i, j] = contact_system_.surface().edges[p.edge];
+    const ContactSystem::Place edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
+                               triangle = contact_system_.place_of_triangle(p.triangle);
+    add("edges of " + name_of(edge) + " run through triangles of " + name_of(triangle), [&] {
+      return ", the first one between " + std::to_string(edge.index) + " and " + std::to_string(other.index) +
+             " through triangle " + std::to_string(triangle.index);
+    });
+  }
+  for (const Inside& inside : knots.inside) {
+    const ContactSystem::Place place = contact_system_.place_of(inside.vertex);
+    add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
+        [&] { return ", the first one " + std::to_string(place.index); });
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [what, count] : counts) sentences.push_back(std::to_string(count) + ' ' + what);
+  return sentences;
+}
+
+UntangleReport World::untangle() {
+  UntangleReport report;
+  const Snapshot before = snapshot();
+  show_contact_cloths();
+  const UntangleResult result = contact_system_.untangle(contact_cloths_, colliders_, time_);
+  report.rounds = result.rounds;
+  report.crossed = describe(result.before);
+  report.left = describe(result.after);
+  for (int c = 0; c < num_cloths(); ++c) {
+    const ClothState &now = cloths_[c].state, &then = before.states[c];
+    for (std::size_t i = 0; i < now.x.size(); ++i)
+      report.farthest = std::max(report.farthest, (now.position(i) - then.position(i)).norm());
+  }
+  return report;
+}
+
+std::vector<ContactPoint> World::contact_points() const {
+  if (!contact_ || !tracks_contacts_) return {};
+  return contact_system_.contact_points();
 }
 
 StepReport World::step(double dt) {

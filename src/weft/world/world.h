@@ -57,6 +57,14 @@ struct StepReport {
   std::vector<std::string> infeasible;   // what prescribed motions have pushed through each other, by name
 };
 
+/// What World::untangle found and did.
+struct UntangleReport {
+  int rounds = 0;                    // of repair; 0: nothing crossed [1]
+  double farthest = 0;               // that a particle was moved [m]
+  std::vector<std::string> crossed;  // what crossed at the start, by name
+  std::vector<std::string> left;     // what crosses still, by name: empty if all is well
+};
+
 class World {
  public:
   World();
@@ -77,9 +85,16 @@ class World {
   void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
   void set_wind(const Wind& wind) { environment_.wind = wind; }
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
+  void track_contacts(bool enabled) {
+    tracks_contacts_ = enabled;
+  }  // for contact_points(); costs some percent
   /// Throws InputError for an unknown name, and for one that knows springs alone if a cloth is a fabric.
   void set_integrator(const IntegratorSettings& settings);
   void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
+
+  /// Sets cloth apart that crosses itself, other cloth or colliders where it is now (contact/untangle.h), so
+  /// that from the next step on nothing crosses. Pinned particles stay. Velocities are kept.
+  UntangleReport untangle();
 
   /// Advances everything by dt > 0 [s].
   StepReport step(double dt);
@@ -92,6 +107,12 @@ class World {
   const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
   const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
   const std::vector<Collider>& colliders() const { return colliders_; }
+
+  /// What touched in the last step, where, and with what force; of a step cut into substeps, in the last one.
+  /// Ordered by what touches; empty without contact, and where contacts are not tracked. Summed over time the
+  /// forces are what cloth's momentum needs; where cloth trembles those of a single step are not its weight.
+  std::vector<ContactPoint> contact_points() const;
+
   const Vec3& gravity() const { return environment_.gravity; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
 
@@ -132,12 +153,15 @@ class World {
   void advance(double time, double dt, StepReport& report);
   void begin_contact(double time, double dt);
   void stop_crossings(StepReport& report);
+  void show_contact_cloths();
   std::string describe(const Infeasible& pair) const;
+  std::vector<std::string> describe(const Knots& knots) const;
+  std::string name_of(const ContactSystem::Place& place) const;
   void save(Snapshot& snapshot) const;
   void aim_pins(Cloth& cloth, double time);
 
   double time_ = 0;
-  bool contact_ = true;
+  bool contact_ = true, tracks_contacts_ = false;
   Environment environment_;  // its pins and contacts are filled in for each cloth
   IntegratorSettings integrator_settings_;
   std::shared_ptr<JobSystem> jobs_;

@@ -1,0 +1,191 @@
+#include "bench/contact.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bench/machine.h"
+#include "weft/lab/contact_experiments.h"
+#include "weft/run/runner.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/world/world.h"
+
+namespace weft::bench {
+namespace {
+
+constexpr int kQuickFrames = 20;
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  for (const ShippedScene& scene : list_scenes()) {
+    if (scene.name.starts_with("contact/")) names.push_back(scene.name);
+  }
+  return names;
+}
+
+/// Wall time of the frames of a run [ms].
+struct FrameTimes {
+  double mean = 0, worst = 0;
+};
+
+/// Returns whether nothing crossed.
+bool bench_scene(const std::string& name, int frames, int threads) {
+  const SceneDesc scene = read_scene(find_scene(name));
+  FrameTimes times;
+  double spent = 0;
+  const RunOptions options{.frames = frames > 0 ? std::min(frames, scene.num_frames()) : scene.num_frames(),
+                           .threads = threads,
+                           .record_animation = false};
+  const RunReport report = run_scene(scene, options, [&](const Progress& progress) {
+                             times.worst = std::max(times.worst, 1000 * (progress.seconds_spent - spent));
+                             spent = progress.seconds_spent;
+                             times.mean = 1000 * spent / progress.frame;
+                             return true;
+                           }).report;
+  const std::string depth =
+      report.penetration_max ? fmt::format("{:.2g}", *report.penetration_max) : std::string("–");
+  fmt::print("| {} | {} | {} | {} | {:.1f} | {:.1f} | {} | {} | {} | {} | {} |\n", name, report.particles,
+             report.frames, threads, times.mean, times.worst, report.intersections.value_or(-1), depth,
+             report.infeasible ? report.infeasible->size() : 0, report.contact_hits.value_or(0),
+             report.contact_zones.value_or(0));
+  std::fflush(stdout);
+  return report.outcome == RunOutcome::done && report.intersections == 0;
+}
+
+bool bench_scenes(const ContactBenchOptions& options) {
+  fmt::print(
+      "## Scenes\n\n"
+      "| scene | particles | frames | threads | mean ms | worst ms | intersections | penetration m | "
+      "infeasible | hits | zones |\n"
+      "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  bool is_clean = true;
+  const int frames = options.frames > 0 ? options.frames : options.quick ? kQuickFrames : 0;
+  for (const std::string& name : options.scenes.empty() ? shipped_scenes() : options.scenes) {
+    for (const int threads : options.threads) is_clean &= bench_scene(name, frames, threads);
+  }
+  fmt::print("\n");
+  return is_clean;
+}
+
+/// Sheets that lie on each other and on a floor.
+struct LayerCost {
+  double ms = 0, ms_without = 0;  // per step, with contact and without
+  double contacts = 0;            // that bear something
+};
+
+LayerCost measure_layers(int layers, int cells) {
+  constexpr double kSize = 0.64, kThickness = 1e-3;
+  constexpr int kSettle = 20, kSteps = 20;
+  LayerCost cost;
+  for (const bool contact : {true, false}) {
+    World world;
+    world.set_contact(contact);
+    if (!contact) world.set_gravity(Vec3::Zero());
+    world.add_collider({"floor", Plane{}, 0.3, {}});
+    const auto topology = build_grid_topology(
+        {.size_x = kSize, .size_z = kSize, .cells_x = cells, .cells_z = cells}, SpringModel::alternating);
+    for (int k = 0; k < layers; ++k) {
+      const Mat3 turn = rotation_from_angles_deg({0, 7.0 * k, 0});
+      std::vector<Vec3> positions;
+      for (const Vec3& p : topology->mesh.positions)
+        positions.push_back(turn * (p - Vec3(kSize / 2, 0, kSize / 2)) + Vec3(0, (k + 0.5) * kThickness, 0));
+      world.add_cloth({.name = "layer",
+                       .topology = topology,
+                       .material = {.structural = 2000, .shear = 1000, .bend = 20, .thickness = kThickness},
+                       .positions = positions});
+    }
+    for (int s = 0; s < kSettle; ++s) world.step(1.0 / 60);
+    const double start = seconds_now();
+    for (int s = 0; s < kSteps; ++s) world.step(1.0 / 60);
+    (contact ? cost.ms : cost.ms_without) = 1000 * (seconds_now() - start) / kSteps;
+    if (!contact) continue;
+    world.track_contacts(true);
+    world.step(1.0 / 60);
+    cost.contacts = static_cast<double>(world.contact_points().size());
+  }
+  return cost;
+}
+
+void bench_layers(bool quick) {
+  const int cells = quick ? 24 : 48;
+  fmt::print(
+      "## Cost against the number of contacts\n\n"
+      "Sheets of {0}×{0} cells on each other and on a floor, `newton`, one thread; without contact they "
+      "float.\n\n"
+      "| layers | contacts that bear | ms per step | without contact | µs per contact | |\n"
+      "|--:|--:|--:|--:|--:|---|\n",
+      cells);
+  for (const int layers : {1, 2, 3, 4, 6, 8}) {
+    const LayerCost cost = measure_layers(layers, cells);
+    const double each = 1000 * (cost.ms - cost.ms_without) / cost.contacts;
+    fmt::print("| {} | {:.0f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", layers, cost.contacts, cost.ms,
+               cost.ms_without, each, std::string(static_cast<std::size_t>(std::min(60.0, 10 * each)), '#'));
+    std::fflush(stdout);
+  }
+  fmt::print("\n");
+}
+
+void bench_rest(const ContactExperiment& setup, double seconds) {
+  fmt::print(
+      "## Rest\n\n"
+      "A sheet of 0.8 m, {0}×{0} cells, dropped from 1 cm; of the second half of {1} s. `rise` is the most "
+      "that its middle rose by "
+      "in a step at any time, `force` what all contacts bear over the weight.\n\n"
+      "| on | kinetic energy J/kg | drift mm | rise mm | force |\n|---|--:|--:|--:|--:|\n",
+      setup.cells, seconds);
+  for (const auto& [name, support] :
+       {std::pair("a floor", Support::floor), std::pair("a ball", Support::ball)}) {
+    const RestingSheet rest = rest_on(setup, support, seconds);
+    fmt::print("| {} | {:.2g} | {:.3f} | {:.4f} | {:.4f} |\n", name, rest.kinetic, 1000 * rest.drift,
+               1000 * rest.rise, rest.force);
+    std::fflush(stdout);
+  }
+  fmt::print("\n");
+}
+
+void bench_laws(const ContactExperiment& setup) {
+  fmt::print("## Friction\n\n| experiment | µ | measured | by the law | off by |\n|---|--:|--:|--:|--:|\n");
+  for (const double friction : {0.0, 0.2, 0.4, 0.566, 0.59}) {
+    const Slide slide = slide_on_incline(setup, 30, friction);
+    const std::string off = slide.expected > 0
+                                ? fmt::format("{:+.1f} %", 100 * (slide.acceleration / slide.expected - 1))
+                                : std::string("–");
+    fmt::print("| incline of 30° (tan = 0.577), m/s² | {} | {:.3f} | {:.3f} | {} |\n", friction,
+               slide.acceleration, slide.expected, off);
+  }
+  for (const double friction : {0.1, 0.3, 0.5}) {
+    const Capstan capstan = pull_over_drum(setup, friction);
+    fmt::print("| capstan, half a turn, ratio of tensions | {} | {:.3f} | {:.3f} | {:+.1f} % |\n", friction,
+               capstan.ratio, capstan.expected, 100 * (capstan.ratio / capstan.expected - 1));
+  }
+  for (const double friction : {0.0, 0.05, 0.6}) {
+    const Spin spin = spin_ball(setup, friction);
+    fmt::print("| ball that turns by {:.2f} rad: the sheet, rad | {} | {:.2f} | | |\n", spin.turned_ball,
+               friction, spin.turned_sheet);
+  }
+  const FoldedFall fall = drop_fold(setup, 0.5);
+  const Collision collision = collide_sheets(setup, 0.5);
+  fmt::print(
+      "\n## Momentum\n\n"
+      "A folded sheet in free fall gains g h of mean velocity per step, in the worst one of half a second to "
+      "{:.4f} %.\nTwo free sheets that fly into each other (up to {} contacts) change their common momentum "
+      "by {:.1g} "
+      "of one sheet's.\n",
+      100 * std::abs(fall.worst_gain - 1), collision.contacts, collision.momentum_change);
+}
+
+}  // namespace
+
+bool bench_contact(const ContactBenchOptions& options) {
+  const bool is_clean = bench_scenes(options);
+  const ContactExperiment setup{.cells = options.quick ? 16 : 32};
+  bench_layers(options.quick);
+  bench_rest(setup, options.quick ? 4 : 20);
+  bench_laws(setup);
+  return is_clean;
+}
+
+}  // namespace weft::bench

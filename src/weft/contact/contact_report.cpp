@@ -1,0 +1,124 @@
+/// ContactSystem's contact points, and the repair of what starts crossed.
+
+#include <algorithm>
+#include <tuple>
+
+#include "weft/contact/contact_system.h"
+
+namespace weft {
+
+void ContactSystem::add_touch(const Constraint& c, const Vec3& force) {
+  if (!step_.tracks || force.isZero(0)) return;
+  touches_.push_back({c.vertex, c.weight, c.num_vertices, c.shape, c.normal, force});
+}
+
+/// Where two cloths were solved for one after the other, each has its own idea of the force between them:
+/// the mean is told.
+void ContactSystem::add_solved(int cloth, std::span<const Vec3> forces) {
+  const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
+  for (std::size_t n = 0; n < forces.size(); ++n) {
+    const Constraint& c = constraints_[found_[n]];
+    const double own = c.inverse_mass_of(inverse_mass_, begin, end), all = c.inverse_mass_of(inverse_mass_);
+    const bool is_shared = own < all;
+    add_touch(c, (is_shared ? 0.5 : 1.0) * forces[n]);
+  }
+}
+
+std::vector<ContactPoint> ContactSystem::contact_points() const {
+  std::vector<Touch> touches = touches_;
+  const auto key = [](const Touch& t) { return std::tie(t.shape, t.num_vertices, t.vertex); };
+  std::stable_sort(touches.begin(), touches.end(),
+                   [&](const Touch& a, const Touch& b) { return key(a) < key(b); });
+  std::vector<ContactPoint> points;
+  for (std::size_t t = 0; t < touches.size(); ++t) {
+    Touch sum = touches[t];
+    while (t + 1 < touches.size() && key(touches[t + 1]) == key(sum)) sum.force += touches[++t].force;
+    points.push_back(describe(sum));
+  }
+  return points;
+}
+
+ContactPoint ContactSystem::describe(const Touch& touch) const {
+  struct Side {
+    Vec3 point = Vec3::Zero();
+    int vertex = -1;  // with the greatest weight
+    double weight = 0;
+  };
+  Side sides[2];
+  for (int k = 0; k < touch.num_vertices; ++k) {
+    Side& side = sides[touch.weight[k] < 0 ? 1 : 0];
+    const double weight = std::abs(touch.weight[k]);
+    side.point += weight * motion_.end[touch.vertex[k]];
+    if (side.vertex >= 0 && weight <= side.weight) continue;
+    side.vertex = touch.vertex[k];
+    side.weight = weight;
+  }
+  ContactPoint point{.normal = touch.normal, .force = touch.force};
+  point.position = touch.shape >= 0 ? sides[0].point : Vec3(0.5 * (sides[0].point + sides[1].point));
+  if (place_of(sides[0].vertex).cloth < 0) {  // told from the cloth's side
+    std::swap(sides[0], sides[1]);
+    point.normal = -point.normal;
+    point.force = -point.force;
+  }
+  const Place own = place_of(sides[0].vertex);
+  point.cloth = own.cloth;
+  point.particle = own.index;
+  point.collider = touch.shape;
+  if (touch.shape >= 0) return point;
+  const Place other = place_of(sides[1].vertex);
+  point.other_cloth = other.cloth;
+  point.collider = other.collider;
+  point.other_vertex = other.index;
+  return point;
+}
+
+ContactSystem::Place ContactSystem::place_of_triangle(int triangle) const {
+  Place place = place_of(surface().triangles[triangle][0]);
+  int first = triangle;
+  const auto is_of_it = [&](int t) {
+    const Place other = place_of(surface().triangles[t][0]);
+    return other.cloth == place.cloth && other.collider == place.collider;
+  };
+  while (first > 0 && is_of_it(first - 1)) --first;
+  place.index = triangle - first;
+  return place;
+}
+
+UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
+                                       const std::vector<Collider>& colliders, double time) {
+  begin_step(cloths, colliders, {.time = time, .step = 1});
+  Tangle tangle{.surface = &surface(),
+                .first_vertex = first_vertex_,
+                .num_cloth_vertices = first_vertex_.back(),
+                .inverse_mass = &inverse_mass_,
+                .half_thickness = &motion_.half_thickness};
+  for (const ContactCloth& cloth : cloths_) {
+    const TriangleMesh& mesh = cloth.model->topology->mesh;
+    tangle.num_cloth_triangles += mesh.num_triangles();
+    tangle.rest.insert(tangle.rest.end(), mesh.positions.begin(), mesh.positions.end());
+    tangle.origins.insert(tangle.origins.end(), mesh.positions.size(), cloth.state->origin);
+  }
+  for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
+    if (!shapes_[s].is_mesh()) tangle.solids.push_back({s, shapes_[s].after});
+  }
+  for (const Body& body : bodies_) {
+    tangle.first_vertex.push_back(body.end_vertex);
+    if (!body.is_closed) continue;
+    tangle.solids.push_back(
+        {body.collider, shapes_[body.collider].after, body.first_vertex, body.end_vertex});
+  }
+  std::vector<Vec3> positions = motion_.end;  // of colliders
+  std::copy_n(motion_.start.begin(), first_vertex_.back(), positions.begin());
+  const UntangleResult result = weft::untangle(tangle, positions);
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    ClothState& state = *cloths_[c].state;
+    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
+      if (positions[v] == motion_.start[v]) continue;
+      state.set_position(i, positions[v]);
+      state.history.step = 0;
+    }
+  }
+  return result;
+}
+
+}  // namespace weft

@@ -1,0 +1,529 @@
+#include "weft/contact/untangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "weft/geometry/aabb_tree.h"
+#include "weft/geometry/distance.h"
+#include "weft/mesh/solid.h"
+
+namespace weft {
+namespace {
+
+constexpr int kMostRounds = 600;
+constexpr int kPullPasses = 20;       // over all edges in a round
+constexpr double kMostStretch = 1.1;  // of an edge, or as much as it has at the start
+constexpr double kLeastGap = 1e-4;    // that cloth is given from what it crossed [m]
+constexpr double kMostOfEdge = 0.5;   // no push is longer than this share of the cloth's mean edge
+constexpr double kShortening = 0.1;   // of the mean edge: how far a cut's end moves in a round
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A closed mesh where it is, with what finds the nearest place on it.
+struct SolidMesh {
+  TriangleMesh mesh;
+  AabbTree tree;
+};
+
+/// How deep a particle is in a solid, and the nearest way out.
+struct Way {
+  double depth;  // [m]
+  Vec3 out;      // unit length
+};
+
+class Untangler {
+ public:
+  Untangler(const Tangle& tangle, std::vector<Vec3>& x)
+      : tangle_(tangle), surface_(*tangle.surface), inverse_mass_(*tangle.inverse_mass), x_(x) {
+    measure_edges();
+    for (const Tangle::Solid& solid : tangle.solids) meshes_.push_back(build_mesh(solid));
+    build_trees();
+  }
+
+  UntangleResult run() {
+    UntangleResult result;
+    result.before = result.after = find_knots();
+    while (!result.after.empty() && result.rounds < kMostRounds) {
+      ++result.rounds;
+      for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
+      push_ = std::vector<Vec3>(x_.size(), Vec3::Zero());
+      count_ = std::vector<int>(x_.size(), 0);
+      find_cuts(result.after.pierced);
+      for (const Pierced& p : result.after.pierced) push_back(p);
+      for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+        if (count_[v] > 0) x_[v] += push_[v] / count_[v];
+      }
+      pull();
+      for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
+      round();
+      result.after = find_knots();
+    }
+    return result;
+  }
+
+ private:
+  bool is_cloth(int v) const { return v < tangle_.num_cloth_vertices; }
+  bool is_free(int v) const { return inverse_mass_[v] > 0; }
+
+  void measure_edges() {
+    double sum = 0;
+    int count = 0;
+    neighbours_.resize(x_.size());
+    for (const auto& [i, j] : surface_.edges) {
+      const int edge = static_cast<int>(longest_.size());
+      neighbours_[i].push_back({j, edge});
+      neighbours_[j].push_back({i, edge});
+      const bool is_of_cloth = is_cloth(i);
+      const double rest = is_of_cloth ? (tangle_.rest[i] - tangle_.rest[j]).norm() : 0.0;
+      longest_.push_back(std::max(kMostStretch * rest, (x_[i] - x_[j]).norm()));
+      if (!is_of_cloth) continue;
+      sum += rest;
+      ++count;
+    }
+    mean_edge_ = count > 0 ? sum / count : 0;
+  }
+
+  SolidMesh build_mesh(const Tangle::Solid& solid) const {
+    SolidMesh result;
+    const MeshShape* shape = std::get_if<MeshShape>(&solid.shape);
+    if (!shape) return result;
+    result.mesh.triangles = shape->mesh->triangles;
+    result.mesh.positions.assign(x_.begin() + solid.first_vertex, x_.begin() + solid.end_vertex);
+    std::vector<Aabb> boxes;
+    for (const Triangle& t : result.mesh.triangles) boxes.push_back(box_of(result.mesh.positions, t));
+    result.tree.build(boxes, {}, *jobs_);
+    return result;
+  }
+
+  static Aabb box_of(const std::vector<Vec3>& x, const Triangle& t) {
+    return make_aabb(x[t[0]].cwiseMin(x[t[1]]).cwiseMin(x[t[2]]),
+                     x[t[0]].cwiseMax(x[t[1]]).cwiseMax(x[t[2]]));
+  }
+
+  void build_trees() {
+    const int num_cloth = tangle_.num_cloth_triangles, num = static_cast<int>(surface_.triangles.size());
+    std::vector<Aabb> boxes;
+    for (const Triangle& t : surface_.triangles) boxes.push_back(box_of(x_, t));
+    cloth_tree_.build({boxes.begin(), boxes.begin() + num_cloth},
+                      {surface_.triangles.begin(), surface_.triangles.begin() + num_cloth}, *jobs_);
+    if (num > num_cloth) body_tree_.build({boxes.begin() + num_cloth, boxes.end()}, {}, *jobs_);
+  }
+
+  // ---- What crosses ----
+
+  Knots find_knots() {
+    Knots knots;
+    cloth_tree_.refit([&](int t) { return box_of(x_, surface_.triangles[t]); }, *jobs_);
+    PairSearch search;
+    cloth_tree_.find_self_pairs(*jobs_, search);
+    for (const auto& [s, t] : search.pairs) add_pierced(s, t, knots.pierced);
+    const int first = tangle_.num_cloth_triangles;
+    if (static_cast<int>(surface_.triangles.size()) > first) {
+      cloth_tree_.find_pairs(body_tree_, *jobs_, search);
+      for (const auto& [s, t] : search.pairs) add_pierced(s, t + first, knots.pierced);
+    }
+    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+      const std::span<const int> fan = surface_.triangles_at(v);
+      for (std::size_t f = 0; f < fan.size(); ++f) {
+        for (std::size_t g = f + 1; g < fan.size(); ++g) add_pierced(fan[f], fan[g], knots.pierced);
+      }
+    }
+    std::sort(knots.pierced.begin(), knots.pierced.end());
+    knots.pierced.erase(std::unique(knots.pierced.begin(), knots.pierced.end()), knots.pierced.end());
+    for (std::size_t s = 0; s < meshes_.size(); ++s) {
+      for (const int v : find_inside(s)) knots.inside.push_back({v, tangle_.solids[s].collider});
+    }
+    return knots;
+  }
+
+  void add_pierced(int s, int t, std::vector<Pierced>& pierced) const {
+    for (const auto& [owner, other] : {std::pair(s, t), std::pair(t, s)}) {
+      const Triangle& triangle = surface_.triangles[other];
+      for (const int e : surface_.owned[owner].edge) {
+        if (e >= 0 && pierces(surface_.edges[e], triangle)) pierced.push_back({e, other});
+      }
+    }
+  }
+
+  bool pierces(const std::array<int, 2>& e, const Triangle& t) const {
+    if (has_vertex(t, e[0]) || has_vertex(t, e[1])) return false;
+    return segment_triangle_distance(x_[e[0]], x_[e[1]], x_[t[0]], x_[t[1]], x_[t[2]]).distance_sq == 0;
+  }
+
+  // ---- Out of solids ----
+
+  /// Free particles of cloth in a solid.
+  std::vector<int> find_inside(std::size_t s) const {
+    const ColliderShape& shape = tangle_.solids[s].shape;
+    std::vector<int> found;
+    const std::vector<Vec3> cloth(x_.begin(), x_.begin() + tangle_.num_cloth_vertices);
+    std::vector<int> winding;
+    if (std::holds_alternative<MeshShape>(shape)) winding = compute_winding_numbers(meshes_[s].mesh, cloth);
+    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+      const bool is_inside =
+          winding.empty() ? signed_distance(shape, cloth[v]).distance < 0 : winding[v] != 0;
+      if (is_inside && is_free(v)) found.push_back(v);
+    }
+    return found;
+  }
+
+  /// Of a particle that is inside.
+  Way way_out(std::size_t s, const Vec3& p) const {
+    const ColliderShape& shape = tangle_.solids[s].shape;
+    if (!std::holds_alternative<MeshShape>(shape)) {
+      const SignedDistance d = signed_distance(shape, p);
+      return {-d.distance, d.normal};
+    }
+    const TriangleMesh& mesh = meshes_[s].mesh;
+    const auto to = [&](int t) {
+      const auto [i, j, k] = mesh.triangles[t];
+      return point_triangle_distance(p, mesh.positions[i], mesh.positions[j], mesh.positions[k]);
+    };
+    const int t = meshes_[s].tree.find_nearest(p, kInfinity, [&](int item) { return to(item).distance_sq; });
+    const auto [i, j, k] = mesh.triangles[t];
+    const Vec3 foot = point_at(to(t).weights, mesh.positions[i], mesh.positions[j], mesh.positions[k]);
+    const double depth = (foot - p).norm();
+    const Vec3 face = (mesh.positions[j] - mesh.positions[i])
+                          .cross(mesh.positions[k] - mesh.positions[i])
+                          .stableNormalized();
+    return {depth, depth > 1e-9 ? Vec3((foot - p) / depth) : face};
+  }
+
+  double gap(int v) const { return std::max(kLeastGap, (*tangle_.half_thickness)[v]); }
+
+  /// Takes all cloth out of a solid; triangles that only their corners have left are pushed out whole.
+  void leave(std::size_t s) {
+    const std::vector<int> inside = find_inside(s);
+    std::vector<Way> ways;
+    for (const int v : inside) ways.push_back(way_out(s, x_[v]));
+    const std::optional<Vec3> common = find_common_way(inside, ways);
+    for (std::size_t n = 0; n < inside.size(); ++n) {
+      Vec3& p = x_[inside[n]];
+      if (common) {
+        go_along(s, *common, p);
+      } else {
+        p += (ways[n].depth + gap(inside[n])) * ways[n].out;
+      }
+    }
+    const ColliderShape& shape = tangle_.solids[s].shape;
+    if (!std::holds_alternative<MeshShape>(shape)) lift_triangles(shape);
+  }
+
+  /// Where neighbours would leave by opposite sides: the one direction in which all leave, that which is
+  /// nearest to all their ways, or else across the cloth.
+  std::optional<Vec3> find_common_way(const std::vector<int>& inside, const std::vector<Way>& ways) const {
+    std::vector<int> number(x_.size(), -1);
+    for (std::size_t n = 0; n < inside.size(); ++n) number[inside[n]] = static_cast<int>(n);
+    bool do_agree = true;
+    for (const auto& [i, j] : surface_.edges) {
+      if (!is_cloth(i) || number[i] < 0 || number[j] < 0) continue;
+      do_agree &= ways[number[i]].out.dot(ways[number[j]].out) > 0;
+    }
+    if (do_agree) return {};
+    Vec3 mean = Vec3::Zero(), across = Vec3::Zero();
+    for (const Way& way : ways) mean += way.out / static_cast<double>(ways.size());
+    for (const int v : inside) {
+      for (const int t : surface_.triangles_at(v)) across += area(surface_.triangles[t]);
+    }
+    constexpr double kTelling = 0.3;  // the ways' mean is a direction
+    if (mean.norm() > kTelling || across.norm() == 0) return mean.stableNormalized();
+    return Vec3(across.normalized() * (across.dot(mean) < 0 ? -1.0 : 1.0));
+  }
+
+  Vec3 area(const Triangle& t) const { return (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]); }
+
+  /// No step goes farther than the nearest surface is, so that the first way out is found.
+  void go_along(std::size_t s, const Vec3& direction, Vec3& p) const {
+    constexpr int kMostSteps = 1000;
+    for (int step = 0; step < kMostSteps && is_in(s, p); ++step)
+      p += (way_out(s, p).depth + kLeastGap) * direction;
+  }
+
+  bool is_in(std::size_t s, const Vec3& p) const {
+    const ColliderShape& shape = tangle_.solids[s].shape;
+    if (!std::holds_alternative<MeshShape>(shape)) return signed_distance(shape, p).distance < 0;
+    return compute_winding_numbers(meshes_[s].mesh, {p})[0] != 0;
+  }
+
+  void lift_triangles(const ColliderShape& shape) {
+    for (int t = 0; t < tangle_.num_cloth_triangles; ++t) {
+      const Triangle& v = surface_.triangles[t];
+      const TriangleSignedDistance d = signed_distance(shape, x_[v[0]], x_[v[1]], x_[v[2]]);
+      if (d.distance >= 0) continue;
+      double give = 0;
+      for (int k = 0; k < 3; ++k) give += is_free(v[k]) ? d.weights[k] * d.weights[k] : 0.0;
+      if (give == 0) continue;
+      for (int k = 0; k < 3; ++k) {
+        if (is_free(v[k])) x_[v[k]] += (kLeastGap - d.distance) * d.weights[k] / give * d.normal;
+      }
+    }
+  }
+
+  // ---- Cuts ----
+
+  bool is_solid(int triangle) const {
+    const int v = surface_.triangles[triangle][0];
+    return std::any_of(tangle_.solids.begin(), tangle_.solids.end(),
+                       [&](const Tangle::Solid& s) { return v >= s.first_vertex && v < s.end_vertex; });
+  }
+
+  /// Where a surface is cut by another one, or by itself: by which part of it the lighter one is.
+  struct Cut {
+    int mesh = 0;
+    std::vector<Pierced> crossings;
+    int side = 0;  // of the triangles that cut, where the lighter part is: +1 where normals point
+    double weight = kInfinity;  // of it [kg]
+  };
+
+  int mesh_at(int vertex) const { return mesh_of(tangle_.first_vertex, vertex); }
+
+  int side_of(int vertex, const Triangle& t) const { return area(t).dot(x_[vertex] - x_[t[0]]) > 0 ? 1 : -1; }
+
+  /// A cut's name: the mesh, and the other one that cuts it; of a mesh that cuts itself each curve has its
+  /// own number, those of different meshes have 0.
+  using CutKey = std::array<int, 3>;
+
+  CutKey key_of(const Pierced& p) const {
+    const int a = mesh_at(surface_.edges[p.edge][0]), b = mesh_at(surface_.triangles[p.triangle][0]);
+    return {a, b, a == b ? root_of(p.edge) : 0};
+  }
+
+  int root_of(int edge) const {
+    while (curve_[edge] != edge) edge = curve_[edge];
+    return edge;
+  }
+
+  void find_cuts(const std::vector<Pierced>& pierced) {
+    join_curves(pierced);
+    cuts_.clear();
+    for (const Pierced& p : pierced) {
+      if (!is_solid(p.triangle)) cuts_[key_of(p)].crossings.push_back(p);
+    }
+    for (auto& [key, cut] : cuts_) {
+      cut.mesh = key[0];
+      weigh(cut);
+    }
+  }
+
+  /// Edges that are pierced at the same triangle of their own are of one curve.
+  void join_curves(const std::vector<Pierced>& pierced) {
+    curve_.resize(surface_.edges.size());
+    std::iota(curve_.begin(), curve_.end(), 0);
+    std::map<int, int> edge_of_triangle;
+    for (const Pierced& p : pierced) {
+      surface_.for_triangles_with(surface_.edges[p.edge], [&](int t) {
+        const auto [known, is_new] = edge_of_triangle.try_emplace(t, p.edge);
+        if (is_new) return;
+        const int a = root_of(known->second), b = root_of(p.edge);
+        curve_[std::max(a, b)] = std::min(a, b);
+      });
+    }
+  }
+
+  /// Finds the lighter part: each particle is on the side of the nearest cut edge's end on its side of the
+  /// cut. A cut that ends before the cloth's border is thus prolonged.
+  void weigh(Cut& cut) const {
+    const int begin = tangle_.first_vertex[cut.mesh], end = tangle_.first_vertex[cut.mesh + 1];
+    std::vector<int> side(end - begin, 0), queue;
+    std::vector<char> is_cut(surface_.edges.size(), 0);
+    for (const Pierced& p : cut.crossings) {
+      is_cut[p.edge] = 1;
+      for (const int v : surface_.edges[p.edge]) {
+        if (side[v - begin] == 0) queue.push_back(v);
+        side[v - begin] = side_of(v, surface_.triangles[p.triangle]);
+      }
+    }
+    for (std::size_t n = 0; n < queue.size(); ++n) {
+      for (const auto& [neighbour, edge] : neighbours_[queue[n]]) {
+        if (is_cut[edge] || side[neighbour - begin] != 0) continue;
+        side[neighbour - begin] = side[queue[n] - begin];
+        queue.push_back(neighbour);
+      }
+    }
+    double above = 0, below = 0;
+    for (const int v : queue)
+      (side[v - begin] > 0 ? above : below) += inverse_mass_[v] > 0 ? 1 / inverse_mass_[v] : kInfinity;
+    cut.side = above < below ? 1 : -1;
+    cut.weight = std::min(above, below);
+  }
+
+  static constexpr int kNobody = -1;     // this crossing is the others' matter
+  static constexpr int kUndecided = -2;  // nothing can tell
+
+  /// The end of the edge that has to go over: if the lighter part of its own surface is lighter than that of
+  /// the other one.
+  int find_wrong(const Pierced& p) const {
+    const Triangle& t = surface_.triangles[p.triangle];
+    const auto& [i, j] = surface_.edges[p.edge];
+    const CutKey key = key_of(p);
+    const Cut& own = cuts_.at(key);
+    const auto is_before = [&](const CutKey& other_key, const Cut& other) {
+      return other.weight < own.weight || (other.weight == own.weight && other_key < key);
+    };
+    bool is_others = false;
+    for (const auto& [other_key, other] : cuts_) {
+      if (other_key[0] != key[1] || other_key[1] != key[0] || other_key == key) continue;
+      if (key[0] == key[1] && !has_edge_of(other_key[2], p.triangle)) continue;
+      is_others |= is_before(other_key, other) && other.weight < kInfinity;
+    }
+    if (is_others) return kNobody;
+    if (own.weight == kInfinity) return kUndecided;
+    return side_of(i, t) == own.side ? i : j;
+  }
+
+  /// Whether a triangle has an edge of a curve.
+  bool has_edge_of(int curve, int triangle) const {
+    const Triangle& t = surface_.triangles[triangle];
+    bool has = false;
+    for (const int v : t) {
+      for (const auto& [neighbour, edge] : neighbours_[v])
+        has |= has_vertex(t, neighbour) && root_of(edge) == curve;
+    }
+    return has;
+  }
+
+  // ---- Moves ----
+
+  void push_back(const Pierced& p) {
+    const Triangle& t = surface_.triangles[p.triangle];
+    const auto& [i, j] = surface_.edges[p.edge];
+    if (is_solid(p.triangle)) return push_from_solid(p, area(t).stableNormalized());
+    if (is_cloth(t[0]) && !is_cloth(i)) {
+      if (const std::optional<Vec3> out = ridge_direction(p.edge)) return push_from_solid(p, *out);
+    }
+    const int wrong = find_wrong(p);
+    if (wrong == kNobody) return;
+    if (wrong == kUndecided) return shorten_cut(p);
+    const int right = wrong == i ? j : i;
+    const SegmentTriangleDistance d =
+        segment_triangle_distance(x_[wrong], x_[right], x_[t[0]], x_[t[1]], x_[t[2]]);
+    const Vec3 point = x_[wrong] + d.s * (x_[right] - x_[wrong]);
+    Vec3 normal = area(t).stableNormalized();
+    if (normal.dot(x_[right] - x_[wrong]) < 0) normal = -normal;
+    const double lack = normal.dot(point - x_[wrong]) + gap(wrong) + gap(t[0]);
+    move(std::array{wrong}, std::array{1.0}, t, d.weights, limited(lack) * normal);
+  }
+
+  double limited(double length) const { return std::min(length, kMostOfEdge * mean_edge_); }
+
+  /// The outward direction at an edge of a closed mesh; nothing at an open one's.
+  std::optional<Vec3> ridge_direction(int edge) const {
+    Vec3 sum = Vec3::Zero();
+    bool is_on_solid = false;
+    surface_.for_triangles_with(surface_.edges[edge], [&](int t) {
+      is_on_solid |= is_solid(t);
+      sum += area(surface_.triangles[t]).stableNormalized();
+    });
+    return is_on_solid ? std::optional(sum.stableNormalized()) : std::nullopt;
+  }
+
+  /// Cloth whose corners are all outside, but not all of it.
+  void push_from_solid(const Pierced& p, const Vec3& out) {
+    const Triangle& t = surface_.triangles[p.triangle];
+    const auto& [i, j] = surface_.edges[p.edge];
+    const SegmentTriangleDistance d = segment_triangle_distance(x_[i], x_[j], x_[t[0]], x_[t[1]], x_[t[2]]);
+    move(std::array{i, j}, std::array{1 - d.s, d.s}, t, d.weights,
+         (is_cloth(i) ? 1.0 : -1.0) * limited(kShortening * mean_edge_) * out);
+  }
+
+  /// Moves the edge against the triangle such that the cut's end there, where the triangles at the edge meet
+  /// the pierced one, moves towards the cut's inside:
+  ///
+  ///     Σ R − (E·R)/(E·N) N        R along the cut from the edge, E along the edge, N the triangle's normal
+  void shorten_cut(const Pierced& p) {
+    const Triangle& t = surface_.triangles[p.triangle];
+    const auto& [i, j] = surface_.edges[p.edge];
+    const Vec3 n = area(t).stableNormalized(), e = (x_[j] - x_[i]).stableNormalized();
+    constexpr double kLeastSine = 0.1;
+    const double sine = std::abs(e.dot(n)) > kLeastSine ? e.dot(n) : std::copysign(kLeastSine, e.dot(n));
+    Vec3 way = Vec3::Zero();
+    surface_.for_triangles_with(surface_.edges[p.edge], [&](int s) {
+      const Triangle& side = surface_.triangles[s];
+      Vec3 along = area(side).cross(n).stableNormalized();
+      const Vec3 inwards = area(side).cross(e);
+      const Vec3 centre = (x_[side[0]] + x_[side[1]] + x_[side[2]]) / 3 - 0.5 * (x_[i] + x_[j]);
+      const double is_in = inwards.dot(centre) > 0 ? 1 : -1;
+      if (is_in * inwards.dot(along) < 0) along = -along;
+      way += along - along.dot(e) / sine * n;
+    });
+    if (way.norm() < 1e-6) return;
+    const SegmentTriangleDistance d = segment_triangle_distance(x_[i], x_[j], x_[t[0]], x_[t[1]], x_[t[2]]);
+    const double length = kShortening * mean_edge_ * std::min(1.0, way.norm());
+    move(std::array{i, j}, std::array{1 - d.s, d.s}, t, d.weights, length * way.normalized());
+  }
+
+  /// Moves points of an edge and a triangle against each other, each vertex by its share.
+  template <std::size_t kCount>
+  void move(const std::array<int, kCount>& first, const std::array<double, kCount>& weights,
+            const Triangle& second, const Vec3& second_weights, const Vec3& way) {
+    double give = 0;
+    for (std::size_t k = 0; k < kCount; ++k) give += weights[k] * weights[k] * inverse_mass_[first[k]];
+    for (int k = 0; k < 3; ++k) give += second_weights[k] * second_weights[k] * inverse_mass_[second[k]];
+    if (give == 0) return;
+    const auto add = [&](int v, double weight) {
+      if (!is_free(v) || weight == 0) return;
+      push_[v] += weight * inverse_mass_[v] / give * way;
+      ++count_[v];
+    };
+    for (std::size_t k = 0; k < kCount; ++k) add(first[k], weights[k]);
+    for (int k = 0; k < 3; ++k) add(second[k], -second_weights[k]);
+  }
+
+  // ---- Threads ----
+
+  /// Shortens what has become too long.
+  void pull() {
+    for (int pass = 0; pass < kPullPasses; ++pass) {
+      bool is_done = true;
+      for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
+        const auto& [i, j] = surface_.edges[e];
+        if (!is_cloth(i)) break;
+        const double give = inverse_mass_[i] + inverse_mass_[j];
+        const Vec3 between = x_[j] - x_[i];
+        const double length_sq = between.squaredNorm();
+        if (give == 0 || length_sq <= longest_[e] * longest_[e]) continue;
+        const double length = std::sqrt(length_sq);
+        const Vec3 pull = (length - longest_[e]) / length / give * between;
+        x_[i] += inverse_mass_[i] * pull;
+        x_[j] -= inverse_mass_[j] * pull;
+        is_done = false;
+      }
+      if (is_done) return;
+    }
+  }
+
+  /// To places that can be stored.
+  void round() {
+    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+      const Vec3& origin = tangle_.origins[v];
+      x_[v] = origin + (x_[v] - origin).cast<float>().cast<double>();
+    }
+  }
+
+  const Tangle& tangle_;
+  const Surface& surface_;
+  const std::vector<double>& inverse_mass_;
+  std::vector<Vec3>& x_;
+  std::shared_ptr<JobSystem> jobs_ = make_serial_jobs();
+  std::vector<double> longest_;    // (edges) that each may become [m]
+  double mean_edge_ = 0;           // of cloth [m]
+  std::vector<SolidMesh> meshes_;  // (solids)
+  AabbTree cloth_tree_, body_tree_;
+  std::vector<int> curve_;  // (edges) of a union-find forest: those that one curve cuts
+  std::map<CutKey, Cut> cuts_;
+  std::vector<std::vector<std::pair<int, int>>> neighbours_;  // (num_vertices) and the edge to each
+  std::vector<Vec3> push_;                                    // (num_vertices) sum of a round's moves [m]
+  std::vector<int> count_;                                    // (num_vertices) of them
+};
+
+}  // namespace
+
+UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions) {
+  return Untangler(tangle, positions).run();
+}
+
+}  // namespace weft

@@ -1,0 +1,234 @@
+#include "weft/lab/contact_experiments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/forces/spring.h"
+#include "weft/world/measures.h"
+#include "weft/world/world.h"
+
+namespace weft {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kPi = 3.14159265358979323846;
+const ClothMaterial kSoft{.structural = 100, .shear = 30, .bend = 0.2, .damping = 1e-3, .friction = 0.3};
+
+double radians(double angle_deg) { return angle_deg * kPi / 180; }
+
+World make_world(const ContactExperiment& setup) {
+  World world;
+  world.set_integrator({.integrator = setup.integrator});
+  world.track_contacts(true);
+  return world;
+}
+
+/// The sheet's middle at the origin, then turned and moved.
+ClothId add_sheet(World& world, const std::string& name, int cells, double size, const Mat3& turn,
+                  const Vec3& middle, const ClothMaterial& material = kSoft,
+                  const Vec3& velocity = Vec3::Zero()) {
+  const auto topology = build_grid_topology(
+      {.size_x = size, .size_z = size, .cells_x = cells, .cells_z = cells}, SpringModel::alternating);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions)
+    positions.push_back(middle + turn * (p - Vec3(size / 2, 0, size / 2)));
+  return world.add_cloth({.name = name,
+                          .topology = topology,
+                          .material = material,
+                          .positions = positions,
+                          .velocity = velocity});
+}
+
+Vec3 middle_of(const World& world, ClothId cloth) {
+  return compute_center_of_mass(world.model(cloth), world.state(cloth));
+}
+
+double mass_of(const World& world, ClothId cloth) {
+  double mass = 0;
+  for (const double m : world.model(cloth).mass) mass += m;
+  return mass;
+}
+
+template <class AfterStep>
+void run(World& world, const ContactExperiment& setup, double seconds, const AfterStep& after_step) {
+  const int num_steps = static_cast<int>(std::lround(seconds * setup.steps_per_second));
+  for (int s = 0; s < num_steps; ++s) {
+    world.step(1.0 / setup.steps_per_second);
+    after_step();
+  }
+}
+
+}  // namespace
+
+Slide slide_on_incline(const ContactExperiment& setup, double angle_deg, double friction) {
+  constexpr double kSeconds = 0.4;
+  const Mat3 tilt = rotation_from_angles_deg({0, 0, angle_deg});
+  World world = make_world(setup);
+  world.add_collider({"slope", Plane{Vec3::Zero(), tilt * Vec3::UnitY()}, friction, {}});
+  const ClothId sheet =
+      add_sheet(world, "sheet", setup.cells, 0.4, tilt, tilt * Vec3(0, kSoft.thickness / 2, 0));
+  const Vec3 before = middle_of(world, sheet);
+  run(world, setup, kSeconds, [] {});
+  const double way = -(middle_of(world, sheet) - before).dot(tilt * Vec3::UnitX());
+  const double angle = radians(angle_deg);
+  // Implicit and semi-implicit Euler alike: n steps from rest cover a h² n (n + 1) / 2.
+  const double h = 1.0 / setup.steps_per_second, n = std::round(kSeconds / h);
+  return {way / (0.5 * h * h * n * (n + 1)),
+          std::max(0.0, kGravity * (std::sin(angle) - friction * std::cos(angle)))};
+}
+
+Capstan pull_over_drum(const ContactExperiment& setup, double friction) {
+  constexpr double kRadius = 0.1, kHang = 0.1, kWidth = 0.08, kSpeed_deg = 60, kTension = 1.02;
+  ClothMaterial material = kSoft;
+  material.structural = 500;
+  material.shear = 0;
+  material.bend = 0;
+  const double reach = kRadius + material.thickness / 2;
+  const double length = (kPi * reach + 2 * kHang) / kTension;
+  const Grid grid{.size_x = length, .size_z = kWidth, .cells_x = 3 * setup.cells, .cells_z = 4};
+  const auto topology = build_grid_topology(grid, SpringModel::alternating);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions) {
+    const double s = kTension * p.x() - kHang, angle = std::clamp(s / reach, 0.0, kPi);
+    const double below = std::min(0.0, s) + std::min(0.0, kPi * reach - s);
+    positions.push_back({-reach * std::cos(angle), reach * std::sin(angle) + below, p.z() - kWidth / 2});
+  }
+  World world = make_world(setup);
+  world.set_gravity(Vec3::Zero());
+  world.add_collider({"drum", Capsule{Vec3(0, 0, -0.3), Vec3(0, 0, 0.3), kRadius}, friction,
+                      RigidMotion({{.time = 0}, {.time = 100, .angles_deg = {0, 0, -100 * kSpeed_deg}}})});
+  const ClothId strip =
+      world.add_cloth({.name = "strip", .topology = topology, .material = material, .positions = positions});
+  Pin ends;
+  for (int j = 0; j <= grid.cells_z; ++j) {
+    ends.particles.push_back(grid.index(0, j));
+    ends.particles.push_back(grid.index(grid.cells_x, j));
+  }
+  world.set_pins(strip, {ends});
+  // The tension that springs carry from one column of particles to the next.
+  const auto tension = [&](int column) {
+    Vec3 sum = Vec3::Zero();
+    const ClothModel& model = world.model(strip);
+    for (const Spring& s : topology->springs) {
+      const int i = s.i % (grid.cells_x + 1), j = s.j % (grid.cells_x + 1);
+      if (std::min(i, j) != column || std::max(i, j) != column + 1) continue;
+      const Vec3 between = world.state(strip).position(s.j) - world.state(strip).position(s.i);
+      sum += (i < j ? 1.0 : -1.0) * spring_force(model.stiffness(s), s.rest_length, between);
+    }
+    return sum.norm();
+  };
+  run(world, setup, 2.0, [] {});
+  double slack = 0, tight = 0;
+  run(world, setup, 1.0, [&] {
+    tight += tension(1);
+    slack += tension(grid.cells_x - 2);
+  });
+  return {tight / slack, std::exp(friction * kPi)};
+}
+
+RestingSheet rest_on(const ContactExperiment& setup, Support support, double seconds) {
+  World world = make_world(setup);
+  constexpr double kRadius = 0.3;
+  double height = kSoft.thickness / 2 + 0.01;
+  if (support == Support::ball) {
+    world.add_collider({"ball", Sphere{Vec3::Zero(), kRadius}, 0.4, {}});
+    height += kRadius;
+  } else {
+    world.add_collider({"floor", Plane{Vec3::Zero(), Vec3::UnitY()}, 0.4, {}});
+  }
+  const ClothId sheet = add_sheet(world, "sheet", setup.cells, 0.8, Mat3::Identity(), Vec3(0, height, 0));
+  const double mass = mass_of(world, sheet);
+  RestingSheet rest;
+  double last = height;
+  const auto watch_rise = [&] {
+    const double now = middle_of(world, sheet).y();
+    rest.rise = std::max(rest.rise, now - last);
+    last = now;
+  };
+  run(world, setup, seconds / 2, watch_rise);
+  const Vec3 before = middle_of(world, sheet);
+  run(world, setup, seconds / 2, [&] {
+    watch_rise();
+    rest.kinetic =
+        std::max(rest.kinetic, compute_kinetic_energy(world.model(sheet), world.state(sheet)) / mass);
+    rest.drift = std::max(rest.drift, (middle_of(world, sheet) - before).norm());
+  });
+  for (const ContactPoint& p : world.contact_points()) rest.force += p.force.y() / (mass * kGravity);
+  return rest;
+}
+
+Spin spin_ball(const ContactExperiment& setup, double friction) {
+  constexpr double kRadius = 0.3, kSize = 0.4, kTurns_deg = 180;
+  // Key frames every twentieth of a second: half a turn per second after one second, then on.
+  std::vector<KeyFrame> keys;
+  const auto angle_at = [](double t) { return t < 1 ? 0.5 * kTurns_deg * t * t : kTurns_deg * (t - 0.5); };
+  for (int k = 0; k <= 40; ++k)
+    keys.push_back({.time = 1 + 0.05 * k, .angles_deg = {0, angle_at(0.05 * k), 0}});
+  World world = make_world(setup);
+  world.add_collider({"ball", Sphere{Vec3::Zero(), kRadius}, friction, RigidMotion(keys)});
+  const ClothId sheet =
+      add_sheet(world, "sheet", setup.cells, kSize, Mat3::Identity(), Vec3(0, kRadius + kSoft.thickness, 0));
+  const auto heading = [&] {
+    const Vec3 side = world.state(sheet).position(setup.cells) - world.state(sheet).position(0);
+    return std::atan2(-side.z(), side.x());
+  };
+  double turned = 0, last = heading();
+  run(world, setup, 3, [&] {
+    const double now = heading();
+    turned += std::remainder(now - last, 2 * kPi);
+    last = now;
+  });
+  return {radians(angle_at(2)), turned};
+}
+
+FoldedFall drop_fold(const ContactExperiment& setup, double seconds) {
+  // Two halves 1.5 thicknesses apart, joined by half a circle.
+  constexpr double kLength = 0.6, kWidth = 0.3;
+  const double radius = 0.75 * kSoft.thickness, turn = kPi * radius, half = (kLength - turn) / 2;
+  const Grid grid{.size_x = kLength, .size_z = kWidth, .cells_x = 2 * setup.cells, .cells_z = setup.cells};
+  const auto topology = build_grid_topology(grid, SpringModel::alternating);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions) {
+    const double arc = std::clamp((p.x() - half) / radius, 0.0, kPi),
+                 rest = std::max(0.0, p.x() - half - turn);
+    positions.push_back(
+        {std::min(p.x(), half) + radius * std::sin(arc) - rest, radius * (1 - std::cos(arc)), p.z()});
+  }
+  World world = make_world(setup);
+  const ClothId fold =
+      world.add_cloth({.name = "fold", .topology = topology, .material = kSoft, .positions = positions});
+  const double mass = mass_of(world, fold), gain = kGravity / setup.steps_per_second;
+  FoldedFall fall{1};
+  Vec3 last = Vec3::Zero();
+  run(world, setup, seconds, [&] {
+    const Vec3 now = compute_momentum(world.model(fold), world.state(fold)) / mass;
+    const double share = (last - now).y() / gain;
+    if (std::abs(share - 1) > std::abs(fall.worst_gain - 1)) fall.worst_gain = share;
+    last = now;
+  });
+  return fall;
+}
+
+Collision collide_sheets(const ContactExperiment& setup, double seconds) {
+  World world = make_world(setup);
+  world.set_gravity(Vec3::Zero());
+  constexpr double kSpeed = 1;
+  const ClothId below = add_sheet(world, "below", setup.cells, 0.4, Mat3::Identity(), Vec3::Zero(), kSoft,
+                                  Vec3(0.2, kSpeed, 0));
+  const ClothId above = add_sheet(world, "above", setup.cells, 0.3, rotation_from_angles_deg({4, 25, 3}),
+                                  Vec3(0.03, 0.05, 0.02), kSoft, Vec3(0, -kSpeed, 0));
+  const auto momentum = [&] {
+    return Vec3(compute_momentum(world.model(below), world.state(below)) +
+                compute_momentum(world.model(above), world.state(above)));
+  };
+  const Vec3 before = momentum();
+  const double scale = compute_momentum(world.model(below), world.state(below)).norm();
+  Collision collision;
+  run(world, setup, seconds, [&] {
+    collision.momentum_change = std::max(collision.momentum_change, (momentum() - before).norm() / scale);
+    collision.contacts = std::max(collision.contacts, static_cast<int>(world.contact_points().size()));
+  });
+  return collision;
+}
+
+}  // namespace weft

@@ -1,0 +1,37 @@
+#include "weft/animation/mesh_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include "weft/core/error.h"
+
+namespace weft {
+namespace {
+
+using Key = MeshSequence::Key;
+
+TEST(MeshSequence, MovesInStraightLinesBetweenItsKeysAndStaysOutside) {
+  const MeshSequence sequence({Key{1, {Vec3(0, 0, 0)}}, Key{2, {Vec3(2, 0, 0)}}, Key{4, {Vec3(2, 4, 0)}}});
+  const auto at = [&](double time) { return sequence.position(sequence.at(time), 0); };
+  EXPECT_EQ(at(0), Vec3(0, 0, 0));
+  EXPECT_EQ(at(1), Vec3(0, 0, 0));
+  EXPECT_EQ(at(1.25), Vec3(0.5, 0, 0));
+  EXPECT_EQ(at(2), Vec3(2, 0, 0));
+  EXPECT_EQ(at(3), Vec3(2, 2, 0));
+  EXPECT_EQ(at(4), Vec3(2, 4, 0));
+  EXPECT_EQ(at(100), Vec3(2, 4, 0));
+}
+
+TEST(MeshSequence, OfKeysThatDoNotFitIsRefused) {
+  EXPECT_THROW(MeshSequence({}), InputError);
+  EXPECT_THROW(MeshSequence({Key{0, {Vec3::Zero()}}, Key{0, {Vec3::Zero()}}}), InputError);
+  try {
+    MeshSequence({Key{0, {Vec3::Zero()}}, Key{1, {Vec3::Zero(), Vec3::Zero()}}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "key 1 of the mesh sequence has 2 vertices, the first one 1; all must have the same");
+  }
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,142 @@
+/// Cloth that starts crossed is set apart, and stays so: by the independent checker.
+
+#include "weft/contact/untangle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support.h"
+#include "weft/mesh/sample_meshes.h"
+#include "weft/run/frame_checks.h"
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+const ClothMaterial kCotton{.structural = 200, .shear = 60, .bend = 0.5, .damping = 2e-3, .thickness = 2e-3};
+
+ClothId add_sheet(World& world, const std::string& name, const Vec3& middle, const Vec3& angles_deg,
+                  double size = 0.4, int cells = 16) {
+  const auto topology = build_grid_topology(test::square(cells, size), SpringModel::alternating);
+  const Mat3 turn = rotation_from_angles_deg(angles_deg);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions)
+    positions.push_back(middle + turn * (p - Vec3(size / 2, 0, size / 2)));
+  return world.add_cloth({.name = name, .topology = topology, .material = kCotton, .positions = positions});
+}
+
+verify::FrameCheck check(const World& world) {
+  return verify::check_frame(WorldFrames(world).now().frame, 1);
+}
+
+double largest_strain(const World& world, ClothId cloth) {
+  return compute_strain(world.model(cloth), world.state(cloth)).max;
+}
+
+/// What crosses is set apart, and a second and a half later nothing has crossed at any frame.
+void expect_untangled(World& world, const std::string& what_crossed) {
+  ASSERT_TRUE(check(world).intersections > 0 || check(world).penetration() > 1e-3)
+      << "else nothing is tested";
+  const UntangleReport report = world.untangle();
+  ASSERT_FALSE(report.crossed.empty());
+  EXPECT_NE(report.crossed[0].find(what_crossed), std::string::npos) << report.crossed[0];
+  for (const std::string& left : report.left) ADD_FAILURE() << left;
+  testing::Test::RecordProperty("rounds", report.rounds);
+  testing::Test::RecordProperty("farthest_mm", std::to_string(1000 * report.farthest));
+  EXPECT_EQ(check(world).intersections, 0);
+  for (int frame = 0; frame < 90; ++frame) {
+    const StepReport step = world.step(1.0 / 60);
+    ASSERT_TRUE(step.ok);
+    EXPECT_EQ(step.infeasible, std::vector<std::string>()) << frame;
+    ASSERT_EQ(check(world).intersections, 0) << frame;
+    ASSERT_LE(check(world).penetration(), 1e-6) << frame;
+  }
+}
+
+TEST(Untangle, CrossedPlanesOfClothGoApart) {
+  World world;
+  // Upright, its lowest quarter below the level one.
+  const ClothId upright = add_sheet(world, "upright", {0.013, 0.1, 0.007}, {90, 0, 0}, 0.35, 14);
+  const ClothId level = add_sheet(world, "level", {0, 0, 0}, {0, 0, 0}, 0.5, 20);
+  world.set_pins(level, {{{0, 20, 440 - 20, 440}, {}, Vec3::Zero()}});
+  expect_untangled(world, "cloth \"upright\"");
+  (void)upright;
+}
+
+TEST(Untangle, StripsThatCrossInTheMiddleGoApart) {
+  World world;
+  add_sheet(world, "a", {0, 0, 0}, {0, 0, 12}, 0.4, 16);
+  add_sheet(world, "b", {0.011, 0.003, 0.005}, {0, 0, -12}, 0.4, 15);
+  world.add_collider({"floor", Plane{Vec3(0, -0.3, 0), Vec3::UnitY()}, 0.3, {}});
+  expect_untangled(world, "cloth \"a\"");
+}
+
+TEST(Untangle, ClothPartlyInABallComesOut) {
+  for (const double height : {0.1, 0.0}) {
+    World world;
+    world.add_collider({"ball", Sphere{Vec3::Zero(), 0.12}, 0.3, {}});
+    const ClothId sheet = add_sheet(world, "sheet", {0.07, height, 0.02}, {5, 0, 0});
+    expect_untangled(world, "inside collider \"ball\"");
+    EXPECT_LT(largest_strain(world, sheet), 0.3) << "it has not torn";
+  }
+}
+
+TEST(Untangle, ClothPartlyInAClosedMeshComesOut) {
+  World world;
+  MeshShape shape;
+  shape.mesh = std::make_shared<const TriangleMesh>(make_sphere_mesh(Vec3::Zero(), 0.12, 12));
+  world.add_collider({"rock", shape, 0.3, {}});
+  add_sheet(world, "sheet", {0.05, 0.08, 0.02}, {5, 0, 0});
+  expect_untangled(world, "cloth \"sheet\"");
+}
+
+/// A sheet bent over by `turn_deg` round an edge, so that its end comes back through the rest.
+TEST(Untangle, AFoldThroughItselfComesOut) {
+  const auto topology = build_grid_topology({.size_x = 0.7, .size_z = 0.2, .cells_x = 35, .cells_z = 10},
+                                            SpringModel::alternating);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions) {
+    // Straight, then round a circle of 0.05 m by 240 degrees, then straight on: through the first part.
+    constexpr double kRadius = 0.05, kStart = 0.3, kTurn = 240 * 3.14159265358979 / 180;
+    const double s = std::max(0.0, p.x() - kStart), arc = std::min(s / kRadius, kTurn),
+                 rest = s - arc * kRadius;
+    positions.push_back({std::min(p.x(), kStart) + kRadius * std::sin(arc) + rest * std::cos(arc),
+                         kRadius * (1 - std::cos(arc)) + rest * std::sin(arc), p.z()});
+  }
+  World world;
+  world.add_collider({"floor", Plane{Vec3(0, -0.2, 0), Vec3::UnitY()}, 0.3, {}});
+  world.add_cloth({.name = "fold", .topology = topology, .material = kCotton, .positions = positions});
+  expect_untangled(world, "cloth \"fold\"");
+}
+
+TEST(Untangle, LeavesAloneWhatDoesNotCross) {
+  World world;
+  const ClothId sheet = add_sheet(world, "sheet", {0, 0, 0}, {0, 0, 0});
+  add_sheet(world, "other", {0, 0.01, 0}, {0, 10, 0});
+  const std::uint64_t hash = world.state_hash();
+  const UntangleReport report = world.untangle();
+  EXPECT_EQ(report.rounds, 0);
+  EXPECT_TRUE(report.crossed.empty());
+  EXPECT_EQ(world.state_hash(), hash);
+  (void)sheet;
+}
+
+TEST(Untangle, WhatPinsHoldThroughEachOtherIsNamed) {
+  World world;
+  const ClothId a = add_sheet(world, "a", {0, 0, 0}, {0, 0, 0}, 0.1, 4);
+  const ClothId b = add_sheet(world, "b", {0.003, 0.002, 0.001}, {90, 0, 0}, 0.1, 4);
+  for (const ClothId cloth : {a, b}) {
+    std::vector<int> all;
+    for (int i = 0; i < 25; ++i) all.push_back(i);
+    world.set_pins(cloth, {{all, {}, Vec3::Zero()}});
+  }
+  const UntangleReport report = world.untangle();
+  ASSERT_FALSE(report.left.empty());
+  EXPECT_NE(report.left[0].find("cloth \"a\""), std::string::npos) << report.left[0];
+  EXPECT_NE(report.left[0].find("cloth \"b\""), std::string::npos) << report.left[0];
+  EXPECT_NE(report.left[0].find("through triangle"), std::string::npos) << report.left[0];
+}
+
+}  // namespace
+}  // namespace weft

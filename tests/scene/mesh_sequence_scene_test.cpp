@@ -1,0 +1,89 @@
+/// Colliders that deform, from files.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "weft/core/error.h"
+#include "weft/io/obj_reader.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
+
+namespace weft {
+namespace {
+
+class DeformingMesh : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const TriangleMesh& mesh) { write_obj(folder_ / name, mesh); }
+
+  /// A box whose top is at this height; its corners are sewn in the first frame.
+  static TriangleMesh box(double height) {
+    TriangleMesh mesh = make_box_mesh(Vec3::Zero(), Vec3::Constant(0.5), Mat3::Identity());
+    for (Vec3& p : mesh.positions) p.y() = p.y() > 0 ? height : 0.0;
+    return mesh;
+  }
+
+  SceneWorld build(const std::string& keys = "") {
+    const std::string text = R"([scene]
+format = 1
+[[cloth]]
+grid = { size = [1, 1], cells = [8, 8] }
+position = [-0.5, 3, -0.5]
+[[collider]]
+name = "body"
+shape = "mesh"
+frames = "body_*.obj"
+frame_rate = 4
+)";
+    return build_world(parse_scene(text + keys, folder_ / "scene.toml"), make_serial_jobs());
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(WEFT_OUTPUT_DIR) /
+      testing::UnitTest::GetInstance()->current_test_info()->test_suite_name() /
+      testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(DeformingMesh, TakesFramesInTheOrderOfTheirNames) {
+  write("body_02.obj", box(2));
+  write("body_00.obj", box(1));
+  write("body_01.obj", box(1.5));
+  write("other.obj", box(7));
+  const SceneWorld built = build("scale = 0.5\nposition = [0, 1, 0]\n");
+  EXPECT_TRUE(built.warnings.empty()) << testing::PrintToString(built.warnings);
+  const Collider& body = built.world.colliders().at(0);
+  const auto top_at = [&](double time) {
+    const ColliderShape now = shape_at(body, time);
+    double top = 0;
+    for (int v = 0; v < 8; ++v) top = std::max(top, std::get<MeshShape>(now).vertex(v).y());
+    return top;
+  };
+  EXPECT_EQ(std::get<MeshShape>(body.shape).mesh->num_vertices(), 8) << "sewn";
+  EXPECT_NEAR(top_at(0), 1.5, 1e-12);
+  EXPECT_NEAR(top_at(0.25), 1.75, 1e-12);
+  EXPECT_NEAR(top_at(0.375), 1.875, 1e-12);
+  EXPECT_NEAR(top_at(5), 2, 1e-12);
+}
+
+TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
+  write("body_00.obj", box(1));
+  TriangleMesh other = box(2);
+  other.triangles.pop_back();
+  write("body_01.obj", other);
+  try {
+    build();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "collider \"body\": frame 1 (body_01.obj) has 24 vertices and 11 triangles, the first one "
+        "(body_00.obj) 24 vertices and 12 triangles; all frames must have the same triangles of the same "
+        "vertices, in the same order");
+  }
+}
+
+}  // namespace
+}  // namespace weft
