@@ -33,6 +33,7 @@ const std::vector<ChapterCommand>& chapter_commands() {
   static const std::vector<ChapterCommand> commands = {
       {"paper", "The paper's claims, and what it does not say", study_paper, 240, 30},
       {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
+      {"contact", "What contact holds, and at what cost", study_contact, 900, 60},
       {"fabric", "One fabric on many meshes and at many steps", study_fabric, 600, 40},
       {"peers", "The same cloth in other engines", bench::study_peers, 120, 20},
   };

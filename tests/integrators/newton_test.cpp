@@ -13,30 +13,11 @@
 namespace weft {
 namespace {
 
+using test::Hung;
+using test::rms_distance;
 using test::square;
 
 std::unique_ptr<Integrator> newton(int iterations = 0) { return make_newton({.iterations = iterations}); }
-
-/// A cloth hung by the two corners of its first row, released horizontally.
-struct Hung {
-  std::shared_ptr<const ClothModel> model;
-  ClothState state;
-  Environment environment;
-
-  explicit Hung(std::shared_ptr<const ClothTopology> topology, int cells, const ClothMaterial& material = {})
-      : model(build_cloth_model(topology, material)), state(make_state(topology->mesh.positions)) {
-    for (const int i : {0, cells}) {
-      environment.pins.particle.push_back(i);
-      environment.pins.position.push_back(state.position(i));
-    }
-  }
-};
-
-double rms_distance(const ClothState& a, const ClothState& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) sum += (a.position(i) - b.position(i)).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(a.x.size()));
-}
 
 double largest_strain(const ClothModel& model, const ClothState& state) {
   return compute_strain(model, state).max;

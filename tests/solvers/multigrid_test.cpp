@@ -215,19 +215,24 @@ TEST(Multigrid, HandlesParticlesThatNothingHolds) {
   EXPECT_EQ(z.get(3).x(), 0);
 }
 
+/// The matrix of a problem, as conjugate gradients want it.
+auto make_multiply(const Problem& p, const Eigen::SparseMatrix<double>& a) {
+  return [&](const Vec3Array& in, Vec3Array& out) {
+    Eigen::MatrixXd v(p.size, 3);
+    for (int i = 0; i < p.size; ++i) v.row(i) = in.get(p.index[i]).transpose();
+    const Eigen::MatrixXd product = a * v;
+    for (int i = 0; i < p.size; ++i) out.set(p.index[i], product.row(i).transpose());
+    return v.cwiseProduct(product).sum();
+  };
+}
+
 TEST(ConjugateGradients, ComeToTheSolutionOfSparseCholesky) {
   for (const Problem& p : {grid_problem(50, 50, false), mesh_problem(50)}) {
     const Eigen::SparseMatrix<double> a = p.matrix();
     const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(a);
     const Eigen::VectorXd b = without_pins(p, random_vector(p.size, 3));
     const Eigen::VectorXd expected = cholesky.solve(b);
-    const auto multiply = [&](const Vec3Array& in, Vec3Array& out) {
-      Eigen::MatrixXd v(p.size, 3);
-      for (int i = 0; i < p.size; ++i) v.row(i) = in.get(p.index[i]).transpose();
-      const Eigen::MatrixXd product = a * v;
-      for (int i = 0; i < p.size; ++i) out.set(p.index[i], product.row(i).transpose());
-      return v.cwiseProduct(product).sum();
-    };
+    const auto multiply = make_multiply(p, a);
     ConjugateGradients gradients;
     Vec3Array x;
     const CgReport report =
@@ -248,13 +253,7 @@ TEST(ConjugateGradients, StopWhereNothingIsLeftToGain) {
   const Problem p = grid_problem(50, 50, false);
   const Eigen::SparseMatrix<double> a = p.matrix();
   const Eigen::VectorXd b = without_pins(p, random_vector(p.size, 3));
-  const auto multiply = [&](const Vec3Array& in, Vec3Array& out) {
-    Eigen::MatrixXd v(p.size, 3);
-    for (int i = 0; i < p.size; ++i) v.row(i) = in.get(p.index[i]).transpose();
-    const Eigen::MatrixXd product = a * v;
-    for (int i = 0; i < p.size; ++i) out.set(p.index[i], product.row(i).transpose());
-    return v.cwiseProduct(product).sum();
-  };
+  const auto multiply = make_multiply(p, a);
   ConjugateGradients gradients;
   Vec3Array x;
   const CgSettings settings{.iterations = 100, .enough = 1e-4};

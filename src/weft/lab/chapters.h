@@ -28,6 +28,9 @@ Chapter study_paper(const ChapterOptions& options);
 /// How right every integrator is, for how much time; convergence, energy, frequencies.
 Chapter study_accuracy(const ChapterOptions& options);
 
+/// What contact holds, and at what cost.
+Chapter study_contact(const ChapterOptions& options);
+
 /// One fabric on many meshes and at many steps.
 Chapter study_fabric(const ChapterOptions& options);
 

@@ -1,0 +1,189 @@
+/// What contact holds, and at what cost.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/core/version.h"
+#include "weft/lab/chapters.h"
+#include "weft/lab/contact_experiments.h"
+#include "weft/run/runner.h"
+#include "weft/run/stopwatch.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft {
+namespace {
+
+void say(const ChapterOptions& options, const std::string& words) {
+  if (options.say) options.say(words);
+}
+
+Claim nothing_crosses(const ChapterOptions& options) {
+  Claim claim{.title = "Nothing crosses, whatever happens", .source = "the paper, section 5, and Weft"};
+  const int most_frames = options.quick ? 8 : 90;
+  claim.text = {
+      fmt::format("The first {} frames of every scene in `scenes/contact`, {} thread{}, every frame given to "
+                  "the independent checker: pairs of "
+                  "triangles that cross, and the deepest point of cloth inside a collider. `make scenes` and "
+                  "`weft bench contact` run them "
+                  "whole. Hits are what the repulsion of the solve left to the last line; zones what "
+                  "impulses could not part.",
+                  most_frames, options.threads, options.threads == 1 ? "" : "s")};
+  claim.tables = {
+      {{"scene", "particles", "crossings", "deepest, mm", "infeasible", "hits", "zones", "ms per frame"},
+       {}}};
+  int crossings = 0, infeasible = 0;
+  double deepest = 0;
+  for (const ShippedScene& shipped : list_scenes()) {
+    if (!shipped.name.starts_with("contact/")) continue;
+    say(options, shipped.name);
+    const SceneDesc scene = read_scene(shipped.file);
+    const RunReport r = run_scene(scene, {.frames = std::min(most_frames, scene.num_frames()),
+                                          .threads = options.threads,
+                                          .record_animation = false})
+                            .report;
+    const std::size_t impossible = r.infeasible ? r.infeasible->size() : 0;
+    crossings += r.intersections.value_or(0);
+    deepest = std::max(deepest, r.penetration_max.value_or(0));
+    if (shipped.name != "contact/self_crossing_body") infeasible += static_cast<int>(impossible);
+    claim.tables[0].rows.push_back(
+        {"`" + shipped.name + "`", fmt::format("{}", r.particles),
+         fmt::format("{}", r.intersections.value_or(0)),
+         r.penetration_max ? fmt::format("{:.2g}", 1000 * *r.penetration_max) : "–",
+         fmt::format("{}", impossible), fmt::format("{}", r.contact_hits.value_or(0)),
+         fmt::format("{}", r.contact_zones.value_or(0)), fmt::format("{:.0f}", r.ms_per_frame_median)});
+  }
+  claim.figures = {
+      {"contact_crossings", static_cast<double>(crossings), "1", "0", 0.5},
+      {"contact_deepest", 1e6 * deepest, "µm", "≤ 1", 1},
+      {"contact_infeasible", static_cast<double>(infeasible), "1", "0 but for self_crossing_body", 0.5}};
+  claim.verdict = crossings > 0                      ? Verdict::fails
+                  : infeasible > 0 || deepest > 1e-6 ? Verdict::holds_in_part
+                                                     : Verdict::holds;
+  return claim;
+}
+
+Claim friction_is_coulombs(const ChapterOptions& options) {
+  say(options, "friction");
+  Claim claim{.title = "Friction is Coulomb's", .source = "Weft"};
+  const ContactExperiment setup;
+  claim.text = {fmt::format(
+      "A sheet of {0}×{0} cells on an incline of 30° (tan = 0.577), `newton`: its acceleration against g "
+      "(sin α − µ cos α). A strip "
+      "over half a turn of a drum that turns: the ratio of the tensions at its ends against e^{{µπ}}.",
+      setup.cells)};
+  claim.tables = {{{"experiment", "µ", "measured", "by the law", "off by, %"}, {}}};
+  double incline = 0, capstan = 0;
+  bool sticks = true;
+  for (const double friction : {0.0, 0.2, 0.4, 0.566, 0.59}) {
+    const Slide slide = slide_on_incline(setup, 30, friction);
+    const double off = slide.expected > 0 ? 100 * (slide.acceleration / slide.expected - 1) : 0;
+    if (slide.expected > 0.5) incline = std::max(incline, std::abs(off));
+    if (slide.expected == 0) sticks = sticks && slide.acceleration < 0.02;
+    claim.tables[0].rows.push_back(
+        {"incline, m/s²", fmt::format("{}", friction), fmt::format("{:.3f}", slide.acceleration),
+         fmt::format("{:.3f}", slide.expected), slide.expected > 0 ? fmt::format("{:+.1f}", off) : "–"});
+  }
+  for (const double friction : {0.1, 0.3, 0.5}) {
+    const Capstan drum = pull_over_drum(setup, friction);
+    const double off = 100 * (drum.ratio / drum.expected - 1);
+    capstan = std::max(capstan, std::abs(off));
+    claim.tables[0].rows.push_back({"capstan, ratio", fmt::format("{}", friction),
+                                    fmt::format("{:.3f}", drum.ratio), fmt::format("{:.3f}", drum.expected),
+                                    fmt::format("{:+.1f}", off)});
+  }
+  claim.figures = {{"incline_error", incline, "%", "≤ 3", 1}, {"capstan_error", capstan, "%", "≤ 5", 1.5}};
+  claim.verdict = incline <= 3 && capstan <= 5 && sticks ? Verdict::holds : Verdict::holds_in_part;
+  return claim;
+}
+
+Claim ball_takes_cloth_along(const ChapterOptions& options) {
+  say(options, "a ball that turns");
+  Claim claim{.title = "A ball takes cloth along as far as friction says", .source = "Weft"};
+  claim.text = {
+      "A sheet on a ball that is spun up to half a turn per second within a second: how far both have turned "
+      "after two seconds."};
+  claim.tables = {{{"µ", "ball, rad", "sheet, rad"}, {}}};
+  double smooth = 0, rough = 0;
+  for (const double friction : {0.0, 0.05, 0.6}) {
+    const Spin spin = spin_ball({}, friction);
+    if (friction == 0) smooth = spin.turned_sheet / spin.turned_ball;
+    if (friction == 0.6) rough = spin.turned_sheet / spin.turned_ball;
+    claim.tables[0].rows.push_back({fmt::format("{}", friction), fmt::format("{:.2f}", spin.turned_ball),
+                                    fmt::format("{:.2f}", spin.turned_sheet)});
+  }
+  claim.figures = {{"smooth_share", smooth, "1", "0", 0.05}, {"rough_share", rough, "1", "1", 0.05}};
+  claim.verdict =
+      std::abs(smooth) < 0.05 && std::abs(rough - 1) < 0.05 ? Verdict::holds : Verdict::holds_in_part;
+  return claim;
+}
+
+Claim cloth_comes_to_rest(const ChapterOptions& options) {
+  Claim claim{.title = "Cloth comes to rest and stays", .source = "Weft"};
+  const double seconds = options.quick ? 6 : 20;
+  claim.text = {
+      fmt::format("A sheet of 0.8 m dropped from 1 cm, `newton` at 60 steps per second: of the second half "
+                  "of {:.0f} s the most kinetic energy per mass, how far its "
+                  "middle has moved, by how much that ever rose in a step, and what all contacts bear over "
+                  "its weight at the end.",
+                  seconds)};
+  claim.tables = {
+      {{"on", "kinetic energy, J/kg", "drift, mm", "rise in a step, mm", "force over weight"}, {}}};
+  double energy = 0, drift = 0, force = 0;
+  for (const auto& [name, support] :
+       {std::pair("a floor", Support::floor), std::pair("a ball", Support::ball)}) {
+    say(options, std::string("rest on ") + name);
+    const RestingSheet rest = rest_on({}, support, seconds);
+    energy = std::max(energy, rest.kinetic);
+    drift = std::max(drift, 1000 * rest.drift);
+    force = std::max(force, std::abs(rest.force - 1));
+    claim.tables[0].rows.push_back(
+        {name, fmt::format("{:.2g}", rest.kinetic), fmt::format("{:.3f}", 1000 * rest.drift),
+         fmt::format("{:.4f}", 1000 * rest.rise), fmt::format("{:.4f}", rest.force)});
+  }
+  claim.figures = {{"rest_kinetic_energy", energy, "J/kg", "< 1e-6", 0},
+                   {"rest_drift", drift, "mm", "< 1", 0},
+                   {"rest_force_error", force, "1", "0", 0.02}};
+  claim.verdict = energy < 1e-6 && drift < 1 ? Verdict::holds : Verdict::holds_in_part;
+  return claim;
+}
+
+Claim momentum_is_kept(const ChapterOptions& options) {
+  say(options, "momentum");
+  Claim claim{.title = "Contact keeps momentum", .source = "Weft"};
+  const FoldedFall fall = drop_fold({}, 0.5);
+  const Collision collision = collide_sheets({}, 0.5);
+  const double gain = 100 * std::abs(fall.worst_gain - 1);
+  claim.text = {
+      fmt::format("A folded sheet in free fall, its halves within reach of each other: mean velocity gained "
+                  "per step over g h, the worst of half a second. Two free "
+                  "sheets that fly into each other (up to {} contacts): change of their common momentum over "
+                  "one sheet's.",
+                  collision.contacts)};
+  claim.figures = {{"fold_gain_error", gain, "%", "≤ 0.1", 0.1},
+                   {"collision_momentum_change", collision.momentum_change, "1", "≤ 1e-5", 1e-5}};
+  claim.verdict = gain <= 0.1 && collision.momentum_change <= 1e-5 ? Verdict::holds : Verdict::holds_in_part;
+  return claim;
+}
+
+}  // namespace
+
+Chapter study_contact(const ChapterOptions& options) {
+  Chapter chapter{.name = "contact",
+                  .title = "Contact",
+                  .introduction =
+                      "\"It is not allowed that cloth is embedded in itself or in the objects in the "
+                      "scene\": what Weft makes of it.",
+                  .version = kVersion,
+                  .is_quick = options.quick};
+  Stopwatch watch;
+  watch.start();
+  chapter.claims = {nothing_crosses(options), friction_is_coulombs(options), ball_takes_cloth_along(options),
+                    cloth_comes_to_rest(options), momentum_is_kept(options)};
+  chapter.seconds = watch.stop();
+  return chapter;
+}
+
+}  // namespace weft
