@@ -200,6 +200,18 @@ TEST(Runner, TellsWhichClothFailedWhenAndWhatToDo) {
   EXPECT_NE(result.report.failure.find("substeps"), std::string::npos);
 }
 
+TEST(Report, HasThePrincipalStretchesOfMembranesPerFrame) {
+  const RunResult result = run_scene(
+      shipped("paper/fig3_horizontal_real", {"cloth[0].grid.cells=[8, 8]", "cloth[0].fabric=gray_interlock"}),
+      {.frames = 30, .record_animation = false});
+  const nlohmann::json json = nlohmann::json::parse(to_json(result.report));
+  ASSERT_EQ(json["max_stretch"].size(), 30u);
+  EXPECT_GT(json["max_stretch"][29], 1.05) << "jersey";
+  EXPECT_LT(json["max_stretch"][29], 2);
+  EXPECT_LT(json["min_stretch"][29], json["max_stretch"][29]);
+  EXPECT_GT(json["min_stretch"][29], 0.2);
+}
+
 TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   const RunResult result =
       run_scene(shipped("paper/fig3_horizontal"), {.frames = 3, .record_animation = false});
@@ -217,6 +229,7 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   EXPECT_TRUE(json["guard_events"].is_null()) << "the paper's integrator has no guard";
   EXPECT_EQ(json["infeasible"], nlohmann::json::array());
   EXPECT_EQ(json["contact_hits"], 0);
+  EXPECT_TRUE(json["max_stretch"].is_null()) << "springs have none";
   EXPECT_EQ(json["intersections"], 0);
   EXPECT_TRUE(json["penetration_max"].is_null()) << "there is no collider in this scene";
   EXPECT_EQ(json["particles"], 33 * 33);

@@ -129,5 +129,56 @@ TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
   EXPECT_THROW(scene.world.set_integrator({.integrator = "paper"}), InputError);
 }
 
+/// A square of two triangles whose u runs along the direction (c, s) of its plane, and v sheared against it.
+SceneWorld built_with_uv(double c, double s, double shear, const std::string& keys = "") {
+  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "fabric_scenes";
+  std::filesystem::create_directories(folder);
+  std::ofstream obj(folder / "square.obj");
+  const double corners[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+  for (const auto& [x, z] : corners) obj << "v " << x << " 0 " << z << "\n";
+  for (const auto& [x, z] : corners) {
+    const double u = c * x + s * z, v = -s * x + c * z;
+    obj << "vt " << u + shear * v << " " << v << "\n";
+  }
+  obj << (keys == "no uv" ? "f 1 2 3\nf 1 3 4\n" : "f 1/1 2/2 3/3\nf 1/-4 3/-2 4/-1\n");
+  obj.close();
+  return build_world(
+      parse_scene("[scene]\nformat = 1\n[[cloth]]\nmesh = \"square.obj\"\nfabric = \"denim\"\n" +
+                      (keys == "no uv" ? "" : keys),
+                  folder / "scene.toml"),
+      make_serial_jobs());
+}
+
+/// Where warp goes in the plane of the square: the direction along which ∂x/∂(axis 1) points.
+Vec3 warp_of(const SceneWorld& scene, int triangle) {
+  const ClothModel& model = scene.world.model({0});
+  const auto& [v, rest] = model.elements->membranes[triangle];
+  Vec3 warp = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) warp += rest.gradient[c].x() * model.topology->mesh.positions[v[c]];
+  return warp;
+}
+
+TEST(FabricScenes, LayWarpAlongUOnAMeshTurnedOrSheared) {
+  for (const double shear : {0.0, 0.7}) {
+    const SceneWorld scene = built_with_uv(0.6, 0.8, shear);
+    for (const int triangle : {0, 1}) {
+      // Along warp u grows and v stays, however u is sheared.
+      EXPECT_LT((warp_of(scene, triangle) - Vec3(0.6, 0, 0.8)).norm(), 1e-9) << shear;
+    }
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+  const SceneWorld given = built_with_uv(0.6, 0.8, 0, "warp = [0, 0, 1]\n");
+  EXPECT_LT((warp_of(given, 0) - Vec3::UnitZ()).norm(), 1e-9) << "a direction goes before";
+}
+
+TEST(FabricScenes, SayWhatToDoWhereAMeshHasNoTextureCoordinates) {
+  try {
+    built_with_uv(1, 0, 0, "no uv");
+    FAIL() << "it does not know where warp goes";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("warp = [1, 0, 0]"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace weft

@@ -40,11 +40,16 @@ Vec3 along_u(const TriangleCorners3& p, const Vec2& a, const Vec2& b, const Vec2
 }  // namespace
 
 WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv) {
+  std::vector<CornerUv> by_corner;
+  for (const auto& [a, b, c] : mesh.triangles) by_corner.push_back({uv[a], uv[b], uv[c]});
+  return warp_from_uv(mesh, by_corner);
+}
+
+WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
   WarpField field;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
     const TriangleCorners3 p = corners(mesh, t);
-    const Vec3 direction = along_u(p, uv[a], uv[b], uv[c]);
+    const Vec3 direction = along_u(p, uv[t][0], uv[t][1], uv[t][2]);
     const bool is_given = direction.allFinite() && direction.norm() > 0;
     field.warp.push_back(is_given ? Vec3(direction.normalized()) : any_axis(p.normal()));
     field.num_guessed += !is_given;

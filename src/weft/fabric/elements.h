@@ -16,8 +16,11 @@ struct WarpField {
   int num_guessed = 0;     // triangles whose input gave no direction: they got another one [1]
 };
 
-/// Warp along the direction in which u grows while v stays: u = uv[vertex].x(). Where a triangle's uv have no
+/// Warp along the direction in which u grows while v stays. Where a triangle's uv are not numbers or have no
 /// area, the world's x axis serves as below.
+WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<CornerUv>& uv);
+
+/// The same by vertices: u = uv[vertex].x().
 WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv);
 
 /// Warp along a direction, projected on every triangle; where that is perpendicular to the triangle, along

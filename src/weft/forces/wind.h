@@ -1,13 +1,16 @@
 #pragma once
-/// Wind (the paper's Eq. 4), per area, so that the mesh does not matter.
+/// Wind (the paper's Eq. 4), per area, so that the mesh does not matter; and the air's drag and lift.
 
 #include "weft/core/vec.h"
+#include "weft/forces/air.h"
 
 namespace weft {
 
 struct Wind {
   Vec3 velocity = Vec3::Zero();  // of the air [m/s]
   double drag = 0;               // c_w, force per area and relative velocity, >= 0 [N·s/m³]
+  Air air = {};      // by triangles; `newton` and `implicit_euler` know it
+  Gusts gusts = {};  // besides `velocity`; only `air` feels them
 };
 
 /// c_w A (v_wind − v) [N] on a particle that stands for the area A [m²]. Still air brakes too.

@@ -1,7 +1,7 @@
 /// Implicit Euler with the true forces: the yardstick. Each step minimises the incremental potential
 ///
 ///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + membranes and bending (element_terms.h)
-///            + h · (damping and wind dissipation at velocity (x − x₀)/h)
+///            + h · (damping, wind and air dissipation at velocity (x − x₀)/h)
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
 /// by Newton's method with line search and sparse Cholesky, in double precision. Where the true Hessian is
@@ -15,6 +15,7 @@
 
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
+#include "weft/integrators/air_terms.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/contact_terms.h"
 #include "weft/integrators/element_terms.h"
@@ -72,6 +73,8 @@ class ImplicitEulerIntegrator final : public Integrator {
     const int n = model.num_particles();
     fit_pattern();
     pins_.prepare(environment.pins, step, state);
+    air_.begin(model, environment, state);
+    air_.set_still(1 / step);
     is_pinned_.assign(n, 0);
     start_.resize(n);
     inertial_.resize(n);
@@ -177,6 +180,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     double energy = model_->elements ? elements_.energy(x) : 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (is_pinned_[i]) continue;
+      if (air_.is_active()) energy += air_.energy(static_cast<int>(i), x[i] - start_[i]);
       const Vec3 slip = (x[i] - start_[i]) / step_ - wind.velocity;
       energy += 0.5 * model_->mass[i] / (step_ * step_) * (x[i] - inertial_[i]).squaredNorm() +
                 0.5 * step_ * wind.drag * model_->topology->area[i] * slip.squaredNorm();
@@ -259,6 +263,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       const Vec3 velocity = (x_[i] - start_[i]) / step_;
       gradient_[i] = model_->mass[i] / (step_ * step_) * (x_[i] - inertial_[i]) -
                      wind_force(wind, model_->topology->area[i], velocity);
+      if (air_.is_active()) gradient_[i] -= air_.force(static_cast<int>(i), x_[i] - start_[i]);
     }
     for (const Spring& s : model_->topology->springs) {
       Vec3 force = spring_force(model_->stiffness(s), s.rest_length, x_[s.j] - x_[s.i]);
@@ -283,6 +288,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       const double inertia = model_->mass[i] / (step_ * step_);
       matrix_.diagonal[i] =
           inertia * Mat3::Identity() - wind_jacobian(wind, model_->topology->area[i]) / step_;
+      if (air_.is_active()) matrix_.diagonal[i] += air_.hessian(static_cast<int>(i));
     }
     const std::vector<Spring>& springs = model_->topology->springs;
     for (std::size_t p = 0; p < springs.size(); ++p) {
@@ -386,6 +392,7 @@ class ImplicitEulerIntegrator final : public Integrator {
   std::vector<Pair> spring_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
   std::size_t num_lasting_pairs_ = 0;  // of springs and elements, before those of contacts
   ElementTerms elements_;
+  AirTerms air_;
   std::vector<std::pair<Pair, int>> pair_index_;  // of matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;

@@ -14,6 +14,8 @@ bool moves_elements(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton";
 }
 
+bool feels_air(std::string_view integrator) { return moves_elements(integrator); }
+
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;
   if (name == "explicit") return make_explicit(settings.explicit_euler);

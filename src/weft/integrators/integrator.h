@@ -35,6 +35,7 @@ struct PinTargets {
 /// What acts on a cloth from outside during a step.
 struct Environment {
   Vec3 gravity = {0, -9.81, 0};  // [m/s²]
+  double time = 0;               // at the end of the step [s]
   Wind wind;
   PinTargets pins;
   std::vector<Contact> contacts;      // for integrators that resolve them
@@ -116,6 +117,9 @@ const std::vector<std::string_view>& integrator_names();
 /// Whether the integrator of this name moves a fabric's membranes and bending (ClothModel::elements); the
 /// others know springs alone.
 bool moves_elements(std::string_view integrator);
+
+/// Whether it knows the air's drag and lift (Wind::air); the others know the paper's wind alone.
+bool feels_air(std::string_view integrator);
 
 /// Throws InputError for an unknown name.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "weft/forces/potential.h"
+#include "weft/integrators/air_terms.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/contact_terms.h"
 #include "weft/integrators/effort.h"
@@ -52,7 +53,9 @@ class NewtonIntegrator final : public Integrator {
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
     model_ = &model;
     prepare_matrices(model, environment.wind, scheme, jobs);
+    air_.begin(model, environment, state);
     begin_step(model, environment.pins, scheme, jobs, state);
+    air_.set_velocities(state.v, scheme.beta / scheme.step);
     coasts_ = false;
     if (model.elements) choose_start(scheme, jobs, state);
     const IntegratorReport report = minimise(choose_effort(settings_, step * step * reach_rate_), jobs);
@@ -204,7 +207,7 @@ class NewtonIntegrator final : public Integrator {
 
   double energy_at(const Vec3Array& offset, JobSystem& jobs) {
     const double energy = potential_.energy(offset, jobs);
-    return energy + contacts_.energy(positions(offset));
+    return energy + contacts_.energy(positions(offset)) + air_.energy(rows_, offset);
   }
 
   /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
@@ -261,6 +264,7 @@ class NewtonIntegrator final : public Integrator {
   double linearise(JobSystem& jobs) {
     double energy = potential_.linearise(correction_, jobs, force_);
     energy += contacts_.linearise(positions(correction_), force_);
+    energy += air_.linearise(rows_, correction_, force_);
     update_limit_couplings(jobs);
     update_contact_diagonal(jobs);
     set_at_pins(Vec3::Zero(), force_);
@@ -320,6 +324,7 @@ class NewtonIntegrator final : public Integrator {
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
       double dot = potential_.multiply(p, jobs, q);
       dot += contacts_.add_product(rows_, p, q);
+      dot += air_.add_product(rows_, p, q);
       set_at_pins(Vec3::Zero(), q);
       return dot;
     };
@@ -333,7 +338,7 @@ class NewtonIntegrator final : public Integrator {
   /// cloth: what an unfinished solve has moved it by is taken back.
   double try_step(double share, JobSystem& jobs) {
     add_scaled(correction_, share, direction_, jobs, trial_);
-    free_pieces_.remove_mean(rows_, potential_.weight, trial_);
+    if (!air_.is_active()) free_pieces_.remove_mean(rows_, potential_.weight, trial_);
     return energy_at(trial_, jobs);
   }
 
@@ -372,6 +377,7 @@ class NewtonIntegrator final : public Integrator {
   ConjugateGradients gradients_;
   ContactTerms contacts_;
   std::vector<Vec3> contact_forces_;
+  AirTerms air_;
   bool coasts_ = false;                                // the step started from x + h v
   bool has_contact_diagonal_ = false;                  // of the preconditioner
   std::vector<float> diagonal_;                        // D and contacts [N/m]

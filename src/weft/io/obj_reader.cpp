@@ -94,6 +94,14 @@ std::optional<long long> parse_index(std::string_view word) {
   return index;
 }
 
+/// The index of texture coordinates of a/b or a/b/c; 0 where there is none.
+long long parse_uv_index(std::string_view word) {
+  const std::size_t slash = word.find('/');
+  if (slash == word.npos) return 0;
+  word = word.substr(slash + 1);
+  return parse_index(word).value_or(0);
+}
+
 std::string in_quotes(std::string_view word) {
   constexpr size_t kLongest = 40;
   const bool is_long = word.size() > kLongest;
@@ -171,6 +179,7 @@ class ObjParser {
     if (positions().empty()) throw InputError(name_ + ": there are no vertices; expected lines v X Y Z");
     if (faces_.empty()) throw InputError(name_ + ": there are no faces; expected lines f A B C");
     for (const Face& face : faces_) add_face(face);
+    if (!has_uv_) result_.uv.clear();
     add_warnings();
     return std::move(result_);
   }
@@ -179,6 +188,7 @@ class ObjParser {
   struct Face {
     int line = 0;
     std::vector<long long> vertices;  // counted from 0; may be those of later lines
+    std::vector<long long> uv;        // likewise; -1: none
   };
   struct Unknown {
     int num_lines = 0;
@@ -192,10 +202,12 @@ class ObjParser {
   }
 
   void read_line(std::string_view keyword) {
-    constexpr std::array<std::string_view, 9> kPassedOver = {"vn", "vt", "mtllib", "usemtl", "s",
-                                                             "g",  "o",  "l",      "p"};
+    constexpr std::array<std::string_view, 8> kPassedOver = {"vn", "mtllib", "usemtl", "s",
+                                                             "g",  "o",      "l",      "p"};
     if (keyword == "v") {
       read_vertex();
+    } else if (keyword == "vt") {
+      read_uv();
     } else if (keyword == "f") {
       read_face();
     } else if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) == kPassedOver.end()) {
@@ -222,6 +234,15 @@ class ObjParser {
     positions().push_back(position);
   }
 
+  /// vt U V; a third one may follow. What is no number counts as not given.
+  void read_uv() {
+    const auto& words = lines_.words();
+    const auto number = [&](std::size_t k) {
+      return words.size() > k ? parse_coordinate(words[k]).value_or(kNotGiven) : kNotGiven;
+    };
+    uv_.emplace_back(number(1), number(2));
+  }
+
   /// f A B C …; each index counts from 1, or from -1 backwards from the vertex read last.
   void read_face() {
     const auto& words = lines_.words();
@@ -229,7 +250,8 @@ class ObjParser {
       fail(lines_.line(),
            "a face with " + std::to_string(words.size() - 1) + " vertices; expected three or more");
     }
-    Face face{lines_.line(), {}};
+    Face face{lines_.line(), {}, {}};
+    const auto num_uv = static_cast<long long>(uv_.size());
     for (size_t k = 1; k < words.size(); ++k) {
       const auto index = parse_index(words[k]);
       if (!index) {
@@ -243,6 +265,8 @@ class ObjParser {
                                 std::to_string(num_read) + " vertices come before this face");
       }
       face.vertices.push_back(*index > 0 ? *index - 1 : num_read + *index);
+      const long long uv = parse_uv_index(words[k]);
+      face.uv.push_back(uv > 0 ? uv - 1 : uv < 0 ? num_uv + uv : -1);
     }
     faces_.push_back(std::move(face));
   }
@@ -257,7 +281,22 @@ class ObjParser {
       }
       polygon.push_back(static_cast<int>(v));
     }
-    append_triangles(std::move(polygon), result_.mesh);
+    const std::size_t first = result_.mesh.triangles.size();
+    append_triangles(polygon, result_.mesh);
+    for (std::size_t t = first; t < result_.mesh.triangles.size(); ++t) {
+      CornerUv corners;
+      for (int c = 0; c < 3; ++c) {
+        const auto at = std::find(polygon.begin(), polygon.end(), result_.mesh.triangles[t][c]);
+        corners[c] = uv_at(face.uv[static_cast<std::size_t>(at - polygon.begin())]);
+      }
+      result_.uv.push_back(corners);
+    }
+  }
+
+  Eigen::Vector2d uv_at(long long index) {
+    const bool is_there = index >= 0 && index < static_cast<long long>(uv_.size());
+    has_uv_ = has_uv_ || is_there;
+    return is_there ? uv_[static_cast<std::size_t>(index)] : Eigen::Vector2d(kNotGiven, kNotGiven);
   }
 
   void add_warnings() {
@@ -275,8 +314,12 @@ class ObjParser {
     }
   }
 
+  static constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
   std::string name_;
   LineReader lines_;
+  std::vector<Eigen::Vector2d> uv_;
+  bool has_uv_ = false;  // of any triangle
   std::vector<Face> faces_;
   std::map<std::string, Unknown> unknown_;
   ObjMesh result_;

@@ -78,17 +78,21 @@ bool has_area(const TriangleMesh& mesh, int t) {
 
 /// Keeps the triangles for which keep(t); returns how many were dropped and the first of them.
 template <class Keep>
-std::pair<int, int> keep_triangles(TriangleMesh& mesh, const Keep& keep) {
+std::pair<int, int> keep_triangles(CleanMesh& clean, const Keep& keep) {
+  TriangleMesh& mesh = clean.mesh;
   std::vector<Triangle> kept;
+  std::vector<int> source;
   int dropped = 0, first = -1;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     if (keep(t)) {
       kept.push_back(mesh.triangles[t]);
+      source.push_back(clean.source_triangle[t]);
     } else if (dropped++ == 0) {
       first = t;
     }
   }
   mesh.triangles = std::move(kept);
+  clean.source_triangle = std::move(source);
   return {dropped, first};
 }
 
@@ -119,6 +123,8 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.mesh = source;
   TriangleMesh& mesh = result.mesh;
   auto& warnings = result.warnings;
+  result.source_triangle.resize(source.triangles.size());
+  std::iota(result.source_triangle.begin(), result.source_triangle.end(), 0);
 
   // Sew.
   std::vector<int> twin(source.positions.size());
@@ -131,13 +137,13 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   }
 
   // Drop triangles that are none.
-  const auto [flat, first_flat] = keep_triangles(mesh, [&](int t) { return has_area(mesh, t); });
+  const auto [flat, first_flat] = keep_triangles(result, [&](int t) { return has_area(mesh, t); });
   if (flat > 0) {
     warnings.push_back(number(flat) + " triangles without area were dropped (the first is triangle " +
                        number(first_flat) + ")");
   }
   std::set<Triangle> seen;
-  const auto [repeated, first_repeated] = keep_triangles(mesh, [&](int t) {
+  const auto [repeated, first_repeated] = keep_triangles(result, [&](int t) {
     Triangle key = mesh.triangles[t];
     std::sort(key.begin(), key.end());
     return seen.insert(key).second;

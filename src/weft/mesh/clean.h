@@ -17,6 +17,7 @@ struct CleanOptions {
 struct CleanMesh {
   TriangleMesh mesh;
   std::vector<int> vertex_of_source;  // (vertices of the input) index in `mesh`, -1 where dropped
+  std::vector<int> source_triangle;   // (triangles of `mesh`) which of the input's it was
   std::vector<std::string> warnings;  // one sentence per kind of flaw, with counts and the first place
 };
 

@@ -10,6 +10,9 @@ namespace weft {
 
 using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen from the front
 
+/// Texture coordinates of a triangle's corners: across a seam the same vertex has several.
+using CornerUv = std::array<Eigen::Vector2d, 3>;
+
 struct TriangleMesh {
   std::vector<Vec3> positions;      // (num_vertices) [m]
   std::vector<Triangle> triangles;  // (num_triangles)

@@ -211,7 +211,10 @@ void LiveSimulation::run() {
 bool LiveSimulation::take_step() {
   World& world = built_.world;
   Wind wind = wind_at(scene_.wind, world.time());
-  if (wind_) wind = {*wind_, scene_.wind.drag > 0 ? scene_.wind.drag : kDrag};
+  if (wind_) {
+    wind.velocity = *wind_;
+    if (wind.drag == 0 && wind.air.density == 0) wind.drag = kDrag;
+  }
   world.set_wind(wind);
   status_.wind = wind;
   const Clock::time_point start = Clock::now();

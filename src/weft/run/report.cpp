@@ -46,6 +46,8 @@ std::string to_json(const RunReport& r) {
       {"max_strain", r.max_strain},
       {"min_strain", r.min_strain},
       {"mean_strain", r.mean_strain},
+      {"max_stretch", r.max_stretch.empty() ? null : nlohmann::ordered_json(r.max_stretch)},
+      {"min_stretch", r.min_stretch.empty() ? null : nlohmann::ordered_json(r.min_stretch)},
       {"penetration_max", or_null(r.penetration_max)},
       {"intersections", or_null(r.intersections)},
       {"infeasible", or_null(r.infeasible)},

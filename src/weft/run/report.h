@@ -23,6 +23,7 @@ struct RunReport {
   double cpu_ms_per_frame = 0;            // process CPU time of the simulation alone, mean [ms]
   double max_strain = 0, min_strain = 0;  // extremes over the run, of l/l0 − 1 over structural springs [1]
   double mean_strain = 0;                 // mean over springs and frames [1]
+  std::vector<double> max_stretch, min_stretch;  // (frames) principal stretches of membranes; none: empty [1]
   std::vector<double> kinetic_energy;     // (frames) [J]
   std::vector<double> potential_energy;   // (frames) elastic plus gravity, zero at the world's origin [J]
   std::vector<double> lowest_y;           // (frames) the first one after the first frame [m]

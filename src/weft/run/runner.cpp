@@ -75,6 +75,7 @@ class Recorder {
     report_.kinetic_energy.push_back(kinetic);
     report_.potential_energy.push_back(potential);
     report_.lowest_y.push_back(lowest);
+    add_stretches();
     ++report_.frames;
     report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
     judge_frame();
@@ -86,6 +87,18 @@ class Recorder {
     report_.intersections = std::max(report_.intersections.value_or(0), check.intersections);
     if (!check.deepest) return;
     report_.penetration_max = std::max(report_.penetration_max.value_or(0), check.penetration());
+  }
+
+  void add_stretches() {
+    std::optional<Stretches> all;
+    for (int c = 0; c < world_.num_cloths(); ++c) {
+      const auto own = compute_principal_stretches(world_.model({c}), world_.state({c}));
+      if (!own) continue;
+      all = all ? Stretches{std::min(all->min, own->min), std::max(all->max, own->max)} : *own;
+    }
+    if (!all) return;
+    report_.min_stretch.push_back(all->min);
+    report_.max_stretch.push_back(all->max);
   }
 
   double add_strain(const Strain& strain) {

@@ -119,8 +119,10 @@ std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
 
 void read_warp(TomlTable& cloth, FabricDesc& fabric) {
   const TomlValue warp = cloth.get("warp");
-  if (!warp || !warp.read(fabric.warp, any_number(), "[1, 0, 0]")) return;
-  if (fabric.warp.norm() < 1e-6) warp.expected("a direction");
+  Vec3 direction;
+  if (!warp || !warp.read(direction, any_number(), "[1, 0, 0]")) return;
+  if (direction.norm() < 1e-6) warp.expected("a direction");
+  fabric.warp = direction;
 }
 
 /// What only a fabric in SI has; and what a fabric makes of material and model.

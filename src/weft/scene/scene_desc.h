@@ -72,7 +72,8 @@ struct FabricDesc {
   std::string name;  // for messages
   Fabric numbers;
   Membrane membrane = Membrane::triangle;
-  Vec3 warp = Vec3::UnitX();  // in the cloth's own coordinates, projected on every triangle
+  std::optional<Vec3> warp;  // in the cloth's own coordinates, projected on every triangle; empty: a mesh's
+                             // texture coordinates say it (warp = u), on a grid it is the first axis
 };
 
 struct ClothSceneDesc {
@@ -95,7 +96,9 @@ struct WindKey {
 
 struct WindDesc {
   double drag = 0;            // c_w [N·s/m³]
-  std::vector<WindKey> keys;  // at least one if drag > 0; linear between, constant outside
+  Air air;                    // density 0: none
+  Gusts gusts;                // besides the keys' velocity
+  std::vector<WindKey> keys;  // at least one if there is drag or air; linear between, constant outside
 };
 
 /// What to do with a start at which cloth crosses something, after it has been untangled if that is wished.

@@ -120,7 +120,7 @@ int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
 }  // namespace
 
 CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owner,
-                    std::vector<std::string>& warnings) {
+                    std::vector<std::string>& warnings, std::vector<CornerUv>* uv) {
   const std::string who = name_with_file(owner, source);
   ObjMesh obj = read(source.file, owner);
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
@@ -129,6 +129,9 @@ CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owne
                                             .is_cloth = use == MeshUse::cloth});
     for (const auto* list : {&obj.warnings, &clean.warnings}) {
       for (const std::string& warning : *list) warnings.push_back(who + warning);
+    }
+    if (uv != nullptr && !obj.uv.empty()) {
+      for (const int t : clean.source_triangle) uv->push_back(obj.uv[t]);
     }
     return clean;
   } catch (const InputError& error) {

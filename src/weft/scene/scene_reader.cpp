@@ -1,5 +1,7 @@
 #include "weft/scene/scene_reader.h"
 
+#include <algorithm>
+#include <climits>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -59,9 +61,34 @@ std::vector<WindKey> read_wind_keys(TomlTable& table) {
   return keys;
 }
 
+void read_air(TomlTable& wind, WindDesc& desc) {
+  TomlTable air = wind.table("air");
+  desc.air.density = 1.2;
+  air.read("density", desc.air.density, above_zero("kg/m³"));
+  air.read("drag", desc.air.drag, above_zero());
+  desc.air.lift = std::min(desc.air.lift, desc.air.drag);
+  if (air.read("lift", desc.air.lift, not_negative()) && desc.air.lift > desc.air.drag)
+    air.get("lift").mistake("must not be above drag: the air would push");
+}
+
+void read_gusts(TomlTable& wind, WindDesc& desc) {
+  TomlTable gusts = wind.table("gusts");
+  gusts.require({"strength"}, "a number not below 0 in m/s");
+  gusts.read("strength", desc.gusts.strength, not_negative("m/s"));
+  gusts.read("length", desc.gusts.length, above_zero("m"));
+  gusts.read("time", desc.gusts.time, above_zero("s"));
+  int seed = 1;
+  gusts.read("seed", seed, IntegerRule{0, INT_MAX});
+  desc.gusts.seed = static_cast<std::uint64_t>(seed);
+}
+
 WindDesc read_wind(TomlTable table) {
   WindDesc wind;
-  table.require({"drag"}, "a number not below 0 in N·s/m³");
+  if (!table.has("air")) table.require({"drag"}, "a number not below 0 in N·s/m³");
+  if (table.has("air")) read_air(table, wind);
+  if (table.has("gusts") && !table.has("air"))
+    table.get("gusts").mistake("only air feels them: add air = {}");
+  if (table.has("gusts")) read_gusts(table, wind);
   table.require({"velocity", "keys"},
                 "velocity = [1, 0, 0] in m/s, or keys = [{ time = 0, velocity = [1, 0, 0] }, …]");
   table.read("drag", wind.drag, not_negative("N·s/m³"));
@@ -82,6 +109,9 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 }
 
 void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
+  if (scene.wind.air.density > 0 && !feels_air(scene.solver.integrator))
+    solver.get("integrator")
+        .mistake("does not feel wind.air; use \"newton\" or \"implicit_euler\", or wind.drag alone");
   if (moves_elements(scene.solver.integrator)) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;

@@ -16,12 +16,13 @@ namespace {
 struct LoadedCloth {
   std::shared_ptr<const ClothTopology> topology;
   std::vector<int> particle_of_vertex;
+  std::vector<CornerUv> uv;  // of the mesh file; may be empty
 };
 
 /// The axis of a grid that warp goes along, if it is one.
-std::optional<GridWarp> grid_warp(const Vec3& warp) {
+std::optional<GridWarp> grid_warp(const FabricDesc& fabric) {
   constexpr double kAlong = 0.999999;  // least cosine of the angle between them
-  const Vec3 direction = warp.normalized();
+  const Vec3 direction = fabric.warp.value_or(Vec3::UnitX()).normalized();
   if (std::abs(direction.x()) > kAlong) return GridWarp::first_axis;
   if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
   return {};
@@ -30,13 +31,14 @@ std::optional<GridWarp> grid_warp(const Vec3& warp) {
 /// A grid whose warp is along neither axis is a mesh like any other.
 LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings) {
   if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
-    if (desc.fabric && !grid_warp(desc.fabric->warp))
-      return {build_mesh_topology(build_grid_mesh(*grid, diagonals_of(desc.model))), {}};
-    return {build_grid_topology(*grid, desc.model), {}};
+    if (desc.fabric && !grid_warp(*desc.fabric))
+      return {build_mesh_topology(build_grid_mesh(*grid, diagonals_of(desc.model))), {}, {}};
+    return {build_grid_topology(*grid, desc.model), {}, {}};
   }
+  std::vector<CornerUv> uv;
   CleanMesh clean =
-      load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings);
-  return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source)};
+      load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings, &uv);
+  return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source), std::move(uv)};
 }
 
 CellDiagonals cell_diagonals(SpringModel model) {
@@ -58,7 +60,7 @@ struct Stuff {
 
 Stuff make_springs(const ClothSceneDesc& desc, const Grid& grid, std::vector<std::string>& warnings) {
   const FabricDesc& fabric = *desc.fabric;
-  const std::optional<GridWarp> warp = grid_warp(fabric.warp);
+  const std::optional<GridWarp> warp = grid_warp(fabric);
   if (!warp)
     throw InputError("cloth \"" + desc.name +
                      "\": springs can only have warp along one of the grid's axes, " +
@@ -75,21 +77,36 @@ Stuff make_springs(const ClothSceneDesc& desc, const Grid& grid, std::vector<std
   return {material, build_grid_bending_elements(grid, *warp, fabric.numbers)};
 }
 
-Stuff make_stuff(const ClothSceneDesc& desc, const ClothTopology& topology,
-                 std::vector<std::string>& warnings) {
+/// Along the direction that is given, or as the mesh's texture coordinates say.
+WarpField find_warp(const ClothSceneDesc& desc, const LoadedCloth& loaded,
+                    std::vector<std::string>& warnings) {
+  const std::string who = "cloth \"" + desc.name + "\": ";
+  const TriangleMesh& mesh = loaded.topology->mesh;
+  const bool is_given = desc.fabric->warp.has_value();
+  if (!is_given && loaded.uv.empty())
+    throw InputError(
+        who +
+        "its mesh has no texture coordinates, which would say where warp goes; unwrap it, or give "
+        "a direction as warp = [1, 0, 0]");
+  WarpField warp = is_given ? warp_from_direction(mesh, *desc.fabric->warp) : warp_from_uv(mesh, loaded.uv);
+  if (warp.num_guessed == 0) return warp;
+  warnings.push_back(
+      who + (is_given ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
+      std::to_string(warp.num_guessed) + (warp.num_guessed == 1 ? " triangle" : " triangles") +
+      ", which got another axis");
+  return warp;
+}
+
+Stuff make_stuff(const ClothSceneDesc& desc, const LoadedCloth& loaded, std::vector<std::string>& warnings) {
+  const ClothTopology& topology = *loaded.topology;
   if (!desc.fabric) return {desc.material, nullptr};
   const FabricDesc& fabric = *desc.fabric;
   const Grid* grid = std::get_if<Grid>(&desc.shape);
   if (grid && fabric.membrane == Membrane::springs) return make_springs(desc, *grid, warnings);
   if (topology.grid)
-    return {desc.material,
-            build_grid_elements(*grid, topology.mesh, *grid_warp(fabric.warp), fabric.numbers)};
-  const WarpField warp = warp_from_direction(topology.mesh, fabric.warp);
-  if (warp.num_guessed > 0)
-    warnings.push_back("cloth \"" + desc.name + "\": warp is perpendicular to " +
-                       std::to_string(warp.num_guessed) +
-                       (warp.num_guessed == 1 ? " triangle" : " triangles") + ", which got another axis");
-  return {desc.material, build_mesh_elements(topology.mesh, warp, fabric.numbers)};
+    return {desc.material, build_grid_elements(*grid, topology.mesh, *grid_warp(fabric), fabric.numbers)};
+  return {desc.material,
+          build_mesh_elements(topology.mesh, find_warp(desc, loaded, warnings), fabric.numbers)};
 }
 
 std::vector<Vec3> place(const std::vector<Vec3>& rest, const ClothSceneDesc& desc) {
@@ -198,15 +215,15 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   World& world = result.world;
   world.set_jobs(std::move(jobs));
   world.set_gravity(scene.gravity);
-  world.set_wind(wind_at(scene.wind, 0));
   world.set_integrator(scene.solver);
+  world.set_wind(wind_at(scene.wind, 0));
   world.set_contact(scene.contact);
   for (const ColliderSceneDesc& desc : scene.colliders)
     world.add_collider(make_collider(desc, result.warnings));
   for (const ClothSceneDesc& desc : scene.cloths) {
     const LoadedCloth loaded = load(desc, result.warnings);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
-    const Stuff stuff = make_stuff(desc, *loaded.topology, result.warnings);
+    const Stuff stuff = make_stuff(desc, loaded, result.warnings);
     const ClothId id = world.add_cloth({.name = desc.name,
                                         .topology = loaded.topology,
                                         .material = stuff.material,
@@ -221,14 +238,16 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
 }
 
 Wind wind_at(const WindDesc& wind, double time) {
-  if (wind.keys.empty()) return {Vec3::Zero(), wind.drag};
+  Wind now{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
+  if (wind.keys.empty()) return now;
   std::size_t next = 0;
   while (next < wind.keys.size() && wind.keys[next].time <= time) ++next;
   const WindKey& a = wind.keys[next == 0 ? 0 : next - 1];
   const WindKey& b = wind.keys[next == wind.keys.size() ? next - 1 : next];
   const double span = b.time - a.time;
   const double s = span > 0 ? (time - a.time) / span : 0.0;
-  return {a.velocity + s * (b.velocity - a.velocity), wind.drag};
+  now.velocity = a.velocity + s * (b.velocity - a.velocity);
+  return now;
 }
 
 }  // namespace weft

@@ -89,6 +89,17 @@ Strain compute_strain(const ClothModel& model, const ClothState& state) {
   return strain;
 }
 
+std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state) {
+  if (!model.elements || model.elements->membranes.empty()) return {};
+  Stretches all{std::numeric_limits<double>::infinity(), 0};
+  for (const auto& [v, rest] : model.elements->membranes) {
+    const auto [least, most] =
+        principal_stretches(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
+    all = {std::min(all.min, least), std::max(all.max, most)};
+  }
+  return all;
+}
+
 double compute_lowest_y(const ClothState& state) {
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < state.x.size(); ++i) lowest = std::min(lowest, state.position(i).y());

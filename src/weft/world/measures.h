@@ -2,6 +2,8 @@
 /// What can be measured on a cloth: energies, momentum, strain. In double precision, whatever the cloth
 /// computes with.
 
+#include <optional>
+
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
@@ -27,6 +29,13 @@ struct Strain {
   double min = 0, max = 0, mean = 0;
 };
 Strain compute_strain(const ClothModel& model, const ClothState& state);
+
+/// Smallest and largest length of any direction in any triangle of a membrane over that at rest; empty where
+/// springs alone stretch [1].
+struct Stretches {
+  double min = 0, max = 0;
+};
+std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state);
 
 double compute_lowest_y(const ClothState& state);  // [m]
 

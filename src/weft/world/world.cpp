@@ -35,6 +35,15 @@ void require_elements_move(const std::string& integrator, const std::string& clo
                                           "spring_bend instead of the fabric");
 }
 
+void require_air(const Wind& wind, const std::string& integrator) {
+  if (wind.air.density == 0) return;
+  require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
+          "the air's density and drag must be above 0, and its lift from 0 to its drag");
+  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts need a length and a time above 0");
+  require(feels_air(integrator), integrator + " does not feel the air's drag and lift; use newton or " +
+                                     "implicit_euler, or the wind's drag alone");
+}
+
 /// A sum of products with zero: 0 if all values are finite, else not a number.
 float finite_check(const float* values, std::size_t count) {
   constexpr std::size_t kLanes = 16;
@@ -147,11 +156,17 @@ void World::set_material(ClothId id, const ClothMaterial& material) {
   cloth.model = build_cloth_model(cloth.model->topology, material, cloth.model->elements);
 }
 
+void World::set_wind(const Wind& wind) {
+  require_air(wind, integrator_settings_.integrator);
+  environment_.wind = wind;
+}
+
 void World::set_integrator(const IntegratorSettings& settings) {
   make_integrator(settings);  // throws before anything has changed
   for (const Cloth& cloth : cloths_) {
     if (cloth.model->elements) require_elements_move(settings.integrator, cloth.name);
   }
+  require_air(environment_.wind, settings.integrator);
   integrator_settings_ = settings;
   for (Cloth& cloth : cloths_) {
     cloth.integrator = make_integrator(settings);
@@ -212,6 +227,7 @@ void World::advance(double time, double dt, StepReport& report) {
     Cloth& cloth = cloths_[c];
     // What is in the cloth's way.
     environment_.pins = cloth.targets;
+    environment_.time = time;
     environment_.contacts.clear();
     environment_.tells_contact_forces = tracks_contacts_;
     if (contact_ && cloth.integrator->resolves_contacts()) {

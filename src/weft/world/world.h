@@ -83,7 +83,8 @@ class World {
   }
   void set_material(ClothId cloth, const ClothMaterial& material);
   void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
-  void set_wind(const Wind& wind) { environment_.wind = wind; }
+  /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
+  void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
   void track_contacts(bool enabled) {
     tracks_contacts_ = enabled;
