@@ -62,6 +62,8 @@ const std::vector<Study>& all_studies() {
       {"fabric_drape", "fabric", "drape coefficient over the resolution of the mesh, and of several fabrics",
        study_fabric_drape},
       {"fabric_meshes", "fabric", "one fabric on five meshes: drape, sag and swing", study_fabric_meshes},
+      {"fabric_strain_limit", "fabric", "how far cloth with a strain limit stretches, over its resolution",
+       study_fabric_strain_limit},
       {"fabric_steps", "fabric", "one fabric at 60, 120 and 240 steps per second", study_fabric_steps},
   };
   return studies;
