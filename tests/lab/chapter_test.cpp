@@ -9,6 +9,7 @@
 
 #include "weft/core/error.h"
 #include "weft/lab/plot.h"
+#include "weft/lab/study.h"
 
 namespace weft {
 namespace {
@@ -33,6 +34,12 @@ Chapter example() {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+TEST(Figure, IsAsExpectedWithinItsTolerance) {
+  EXPECT_TRUE((Figure{"a", 1.5, "%", 0, 2}.is_as_expected()));
+  EXPECT_FALSE((Figure{"a", -2.5, "%", 0, 2}.is_as_expected()));
+  EXPECT_TRUE((Figure{"a", 7, "%"}.is_as_expected())) << "nothing is expected";
 }
 
 TEST(Chapter, ComesBackFromJsonAsItWas) {
@@ -77,6 +84,20 @@ TEST(Chapter, IsOnePageWithNothingOutsideIt) {
   EXPECT_TRUE(contains(page, "<svg xmlns"));
   EXPECT_FALSE(contains(page, "src=\"http"));
   EXPECT_FALSE(contains(page, "<script"));
+}
+
+TEST(Plot, DrawsEveryPointAndSafeText) {
+  const Plot plot{
+      .x_title = "x", .y_title = "y", .panels = {{"a < b", {{"one", {{1, 1}, {2, 3}}}, {"two", {{1, 2}}}}}}};
+  const std::string svg = to_svg(plot);
+  std::size_t dots = 0;
+  for (std::size_t at = 0; (at = svg.find("r=\"3.5\"", at)) != std::string::npos; ++at) ++dots;
+  EXPECT_EQ(dots, 3u);
+  EXPECT_TRUE(contains(svg, "a &lt; b"));
+  EXPECT_FALSE(contains(svg, "nan"));
+  const std::string empty = to_svg({.x_title = "x", .y_title = "y", .panels = {{"nothing", {}}}});
+  EXPECT_TRUE(contains(empty, "<svg"));
+  EXPECT_FALSE(contains(empty, "nan") || contains(empty, "inf")) << "without a point";
 }
 
 TEST(Plot, PutsNumbersAtRoundPlacesOfLinearAxes) {

@@ -15,7 +15,8 @@ constexpr int kRings = 30;
 constexpr double kPi = 3.141592653589793;
 constexpr double kCrease = 2e-4;       // of the specimens at the start [m]
 constexpr double kCrookedness = 0.25;  // of random meshes, as a share of the rings' distance [1]
-constexpr double kFps = 60, kMostSeconds = 8;
+constexpr double kFps = 480,
+                 kMostSeconds = 8;   // so many steps, for how folds form decides where they come to rest
 constexpr double kAirRate = 10;      // at which air brakes the fabric: about half of critical [1/s]
 constexpr double kRestSpeed = 1e-3;  // [m/s]
 constexpr double kPixel = 5e-4;      // of the shadow [m]

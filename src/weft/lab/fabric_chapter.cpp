@@ -19,6 +19,7 @@ constexpr FabricStudy kStudies[] = {
     {"The drape coefficient converges with the mesh", study_fabric_drape},
     {"One fabric is the same cloth on five meshes", study_fabric_meshes},
     {"One fabric is the same cloth at every step", study_fabric_steps},
+    {"A strain limit holds at any resolution", study_fabric_strain_limit},
 };
 
 std::string words_for(const Figure& figure) {

@@ -18,6 +18,10 @@ StudyResult study_fabric_drape(const StudySettings& settings);
 /// Drape, sag and time of swing of one fabric on grids of 33², 65² and 129² particles and on random meshes.
 StudyResult study_fabric_meshes(const StudySettings& settings);
 
+/// The largest principal stretch of two fabrics with a strain limit of 1 %, while a sheet swings from two
+/// corners, over its resolution.
+StudyResult study_fabric_strain_limit(const StudySettings& settings);
+
 /// The shape at rest at 60, 120 and 240 steps per second, and how fast a swing dies away.
 StudyResult study_fabric_steps(const StudySettings& settings);
 

@@ -82,15 +82,15 @@ double measure_swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh, 
   const auto jobs = make_serial_jobs();
   const double step = 1.0 / steps_per_second;
   double before = edge_x(specimen, grid), first = 0;
-  bool has_crossed = false;
+  int crossings = 0;  // a whole swing, not half of one: the middle may be a little off
   for (double time = 0; time < 3; time += step) {
     integrator->advance(*specimen.model, specimen.environment, step, *jobs, specimen.state);
     const double now = edge_x(specimen, grid);
     if (before * now < 0) {
       const double crossing = time + step * before / (before - now);
-      if (has_crossed) return 2 * (crossing - first);
-      first = crossing;
-      has_crossed = true;
+      ++crossings;
+      if (crossings == 1) first = crossing;
+      if (crossings == 3) return crossing - first;
     }
     before = now;
   }
