@@ -137,6 +137,21 @@ TEST_P(ContactPoints, AreNoneInFreeFall) {
   }
 }
 
+TEST_P(ContactPoints, DoNotChangeTheMotionByBeingTracked) {
+  std::uint64_t hashes[2];
+  for (const bool is_tracked : {false, true}) {
+    World world = make_world();
+    world.track_contacts(is_tracked);
+    world.add_collider({"ball", Sphere{Vec3::Zero(), 0.2}, 0.5, {}});
+    add_sheet(world, "below", 0.3, 8, Mat3::Identity(), 0.2 + kSoft.thickness);
+    add_sheet(world, "above", 0.25, 6, rotation_from_angles_deg({0, 20, 0}), 0.2 + 3 * kSoft.thickness);
+    for (int s = 0; s < 20; ++s) ASSERT_TRUE(world.step(1.0 / GetParam().steps_per_second).ok);
+    EXPECT_EQ(world.contact_points().empty(), !is_tracked);
+    hashes[is_tracked] = world.state_hash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, ContactPoints,
                          testing::Values(ContactCase{"newton", 60}, ContactCase{"implicit_euler", 60},
                                          ContactCase{"explicit", 300}, ContactCase{"paper_fixed", 300}),

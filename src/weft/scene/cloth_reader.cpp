@@ -172,6 +172,9 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   const std::optional<Shape> shape = read_shape(table, cloth.model, folder);
   if (shape) cloth.shape = *shape;
   cloth.fabric = read_fabric(table, cloth.material, folder);
+  const TomlValue fabric = table.get("fabric");
+  cloth.has_own_thickness =
+      cloth.fabric || (fabric && fabric.is_table() && fabric.node().as_table()->contains("thickness"));
   finish_fabric(table, cloth);
   table.read("position", cloth.position, any_number("m"));
   table.read("rotation", cloth.rotation_deg, any_number("degrees"), "[0, 90, 0]");

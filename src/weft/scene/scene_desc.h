@@ -81,6 +81,7 @@ struct ClothSceneDesc {
   std::variant<Grid, MeshFile> shape;
   SpringModel model = SpringModel::simplified;  // of a fabric on a grid: alternating
   ClothMaterial material;                       // with a fabric: its density, thickness and friction alone
+  bool has_own_thickness = false;               // else the material's, but no more than half of a mean edge
   std::optional<FabricDesc> fabric;             // empty: `material` has the stiffness of springs
   Vec3 position = Vec3::Zero();                 // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]

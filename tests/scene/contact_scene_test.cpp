@@ -1,4 +1,4 @@
-/// Colliders that deform, from files.
+/// What scenes say of contact: thickness, colliders that deform.
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,40 @@
 
 namespace weft {
 namespace {
+
+std::string sheet_with(const std::string& cells, const std::string& fabric) {
+  return "[scene]\nformat = 1\n[[cloth]]\nname = \"sheet\"\ngrid = { size = [1, 1], cells = " + cells +
+         " }\nfabric = " + fabric + "\n";
+}
+
+TEST(Thickness, AboveTheShortestEdgeIsAnErrorThatNamesIt) {
+  const auto build = [](const std::string& text) {
+    return build_world(parse_scene(text, "scene.toml"), make_serial_jobs());
+  };
+  try {
+    build(sheet_with("[64, 16]", "{ spring_structural = 10, thickness = 0.02 }"));
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find("cloth \"sheet\": its thickness of 0.02 m is more than the length of its shortest "
+                           "edge, 0.0156 m between particles 0 and 1"),
+              0u)
+        << message;
+  }
+  EXPECT_NO_THROW(build(sheet_with("[64, 16]", "{ spring_structural = 10, thickness = 0.015 }")));
+  EXPECT_NO_THROW(build(sheet_with("[64, 16]", "{ spring_structural = 10, thickness = 0.02 }") +
+                        "[solver]\ncontact = false"));
+}
+
+TEST(Thickness, NotGivenFollowsFromTheMesh) {
+  const auto thickness = [](const std::string& cells) {
+    const SceneWorld built = build_world(
+        parse_scene(sheet_with(cells, "{ spring_structural = 10 }"), "scene.toml"), make_serial_jobs());
+    return built.world.model({0}).material.thickness;
+  };
+  EXPECT_EQ(thickness("[50, 10]"), 1e-3);
+  EXPECT_NEAR(thickness("[1000, 1000]"), 0.57e-3, 0.01e-3) << "half of (2 + √2)/3 mm";
+}
 
 class DeformingMesh : public testing::Test {
  protected:
