@@ -87,20 +87,6 @@ void print_comparisons(const HungCloth& cloth, const Reference& reference,
   fmt::print("\n");
 }
 
-PlotPanel make_panel(const HungCloth& cloth, const std::vector<ContestResult>& results) {
-  PlotPanel panel{cloth.name, {}};
-  for (const ContestResult& r : results) {
-    if (!r.ok) continue;
-    if (panel.series.empty() || panel.series.back().name != r.method) panel.series.push_back({r.method, {}});
-    panel.series.back().points.push_back({r.cpu_ms, r.error, r.method + ", " + r.setting});
-  }
-  for (PlotSeries& series : panel.series) {
-    std::sort(series.points.begin(), series.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-  }
-  return panel;
-}
-
 std::string csv_rows(const HungCloth& cloth, const std::vector<ContestResult>& results) {
   std::string rows;
   for (const ContestResult& r : results) {
@@ -150,7 +136,7 @@ void bench_frontier(const FrontierOptions& options) {
     }
     print_comparisons(cloth, reference, results);
     csv += csv_rows(cloth, results);
-    plot.panels.push_back(make_panel(cloth, results));
+    plot.panels.push_back(make_panel(cloth.name, results));
   }
   if (options.out.empty()) return;
   write_text(csv, options.out / "frontier.csv");

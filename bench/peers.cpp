@@ -23,10 +23,6 @@ namespace {
 
 constexpr int kFrames = 60;
 
-void say(const ChapterOptions& options, const std::string& words) {
-  if (options.say) options.say(words);
-}
-
 std::vector<std::string> row_of(const std::string& engine, const ContestResult& r,
                                 const std::string& settings) {
   if (!r.ok) return {engine, r.setting, settings, "flies apart", "", ""};
@@ -67,7 +63,7 @@ Claim springs_in_bullet(const ChapterOptions& options) {
   std::vector<ContestResult> results;
   const auto add = [&](const ContestantSettings& entry, const std::string& engine, const std::string& how,
                        const auto& make) {
-    say(options, engine + ", " + entry.setting);
+    options.tell(engine + ", " + entry.setting);
     results.push_back(measure_contestant([&] { return make(entry, cloth); }, entry, cloth, reference));
     claim.tables[0].rows.push_back(row_of(engine, results.back(), how));
   };
@@ -205,7 +201,7 @@ Claim membrane_in_mujoco(const ChapterOptions& options) {
   Claim claim{.title = "The hanging membrane: MuJoCo's flex", .source = "Weft"};
   const int side = 33;
   const HungCloth cloth = make_hung_membrane(side);
-  say(options, "membrane: reference");
+  options.tell("membrane: reference");
   const Reference reference = make_membrane_reference(cloth);
   claim.text = {
       fmt::format("{0}×{0} particles of 0.2 kg/m², an isotropic membrane of triangles (Young's modulus times "
@@ -233,7 +229,7 @@ Claim membrane_in_mujoco(const ChapterOptions& options) {
                     : std::vector<Setting>{{"discrete", 1}, {"discrete", 4}, {"Euler", 100}};
   for (const auto& [integrator, steps] : settings) {
     const std::string words = fmt::format("{}, {} step{}", integrator, steps, steps == 1 ? "" : "s");
-    say(options, "MuJoCo, " + words);
+    options.tell("MuJoCo, " + words);
     const auto run = run_peer("mujoco_sheet.py", fmt::format("{} {} {} {}", side, steps, integrator, kFrames),
                               side * side);
     if (!run) {

@@ -20,10 +20,6 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60, kGravity = 9.81, kPi = 3.141592653589793;
 
-void say(const ChapterOptions& options, const std::string& words) {
-  if (options.say) options.say(words);
-}
-
 std::filesystem::path cache_of(const ChapterOptions& options) {
   return options.cache.empty() ? default_cache_folder() : options.cache;
 }
@@ -39,20 +35,6 @@ std::vector<ContestResult> hold_contest(const HungCloth& cloth, const Reference&
                                          cloth, reference));
   }
   return results;
-}
-
-PlotPanel panel_of(const std::string& title, const std::vector<ContestResult>& results) {
-  PlotPanel panel{title, {}};
-  for (const ContestResult& r : results) {
-    if (!r.ok) continue;
-    if (panel.series.empty() || panel.series.back().name != r.method) panel.series.push_back({r.method, {}});
-    panel.series.back().points.push_back({r.cpu_ms, r.error, r.method + ", " + r.setting});
-  }
-  for (PlotSeries& series : panel.series) {
-    std::sort(series.points.begin(), series.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-  }
-  return panel;
 }
 
 std::string cell_of(const std::optional<double>& ms) { return ms ? fmt::format("{:.2f}", *ms) : "–"; }
@@ -71,10 +53,10 @@ Claim error_against_time(const ChapterOptions& options) {
   Plot plot{.x_title = "CPU ms per frame", .y_title = "error, m", .mark_y = kEqualError};
   double at_33 = 0, least = 1e9, most = 0;
   for (const HungCloth& cloth : cloths) {
-    say(options, cloth.name);
+    options.tell(cloth.name);
     const Reference reference = find_reference(cloth, 60, cache_of(options), options.say);
     const std::vector<ContestResult> results = hold_contest(cloth, reference, options.quick);
-    plot.panels.push_back(panel_of(cloth.name, results));
+    plot.panels.push_back(make_panel(cloth.name, results));
     claim.tables[0].head.push_back(cloth.name);
     claim.tables[1].rows.push_back({cloth.name, fmt::format("{}", cloth.model->num_particles()),
                                     fmt::format("{:.4f}", reference.error),
@@ -147,7 +129,7 @@ double distance_between(const Frame& a, const Frame& b) {
 }
 
 Claim convergence_in_step(const ChapterOptions& options) {
-  say(options, "convergence in step");
+  options.tell("convergence in step");
   Claim claim{.title = "`newton` is of second order, its kin of first", .source = "Weft"};
   const Frame truth = swing_strip_exactly();
   const std::vector<int> counts = {60, 120, 240, 480, 960};
@@ -192,7 +174,7 @@ Claim convergence_in_step(const ChapterOptions& options) {
 // ---- energy
 
 Claim energy_over_time(const ChapterOptions& options) {
-  say(options, "energy over time");
+  options.tell("energy over time");
   Claim claim{.title = "No integrator but the printed ones makes energy", .source = "Weft"};
   const int side = 17, frames = options.quick ? 120 : 300;
   claim.text = {
@@ -286,7 +268,7 @@ double chain_frequency(double bessel_zero, double step, NewtonQuality quality) {
 }
 
 Claim frequencies(const ChapterOptions& options) {
-  say(options, "frequencies");
+  options.tell("frequencies");
   Claim claim{.title = "Cloth swings at the frequencies of theory", .source = "Weft"};
   claim.text = {
       "A chain of a metre with 100 links of 10⁵ N/m hangs from one end and swings by 2 mm in one of its "
@@ -325,7 +307,7 @@ Claim frequencies(const ChapterOptions& options) {
 // ---- convergence in mesh
 
 Claim convergence_in_mesh(const ChapterOptions& options) {
-  say(options, "convergence in mesh");
+  options.tell("convergence in mesh");
   Claim claim{.title = "A finer mesh is the same cloth", .source = "Weft"};
   const std::vector<int> sides =
       options.quick ? std::vector<int>{9, 17, 33} : std::vector<int>{9, 17, 33, 65, 129};
@@ -388,7 +370,7 @@ Claim drape_on_ball(const ChapterOptions& options) {
   int crossings = 0;
   for (const Run& run : {Run{"newton", 1}, {"newton", 2}, {"implicit_euler", 1}, {"xpbd", 1}}) {
     if (options.quick && run.name == "implicit_euler") continue;
-    say(options, "drape_sphere by " + run.name);
+    options.tell("drape_sphere by " + run.name);
     const SceneDesc scene =
         read_scene(find_scene("drape_sphere"),
                    {"solver.integrator=" + run.name, fmt::format("solver.steps_per_frame={}", run.steps)});

@@ -20,6 +20,10 @@ struct ChapterOptions {
   std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames,
                      std::shared_ptr<const ClothTopology> springs)>
       paint;
+
+  void tell(const std::string& what) const {
+    if (say) say(what);
+  }
 };
 
 /// What the paper claims, and what it does not say.

@@ -16,10 +16,6 @@
 namespace weft {
 namespace {
 
-void say(const ChapterOptions& options, const std::string& words) {
-  if (options.say) options.say(words);
-}
-
 Claim nothing_crosses(const ChapterOptions& options) {
   Claim claim{.title = "Nothing crosses, whatever happens", .source = "the paper, section 5, and Weft"};
   const int most_frames = options.quick ? 8 : 90;
@@ -38,7 +34,7 @@ Claim nothing_crosses(const ChapterOptions& options) {
   double deepest = 0;
   for (const ShippedScene& shipped : list_scenes()) {
     if (!shipped.name.starts_with("contact/")) continue;
-    say(options, shipped.name);
+    options.tell(shipped.name);
     const SceneDesc scene = read_scene(shipped.file);
     const RunReport r = run_scene(scene, {.frames = std::min(most_frames, scene.num_frames()),
                                           .threads = options.threads,
@@ -66,7 +62,7 @@ Claim nothing_crosses(const ChapterOptions& options) {
 }
 
 Claim friction_is_coulombs(const ChapterOptions& options) {
-  say(options, "friction");
+  options.tell("friction");
   Claim claim{.title = "Friction is Coulomb's", .source = "Weft"};
   const ContactExperiment setup;
   claim.text = {fmt::format(
@@ -103,7 +99,7 @@ Claim friction_is_coulombs(const ChapterOptions& options) {
 }
 
 Claim ball_takes_cloth_along(const ChapterOptions& options) {
-  say(options, "a ball that turns");
+  options.tell("a ball that turns");
   Claim claim{.title = "A ball takes cloth along as far as friction says", .source = "Weft"};
   claim.text = {
       "A sheet on a ball that is spun up to half a turn per second within a second: how far both have turned "
@@ -137,7 +133,7 @@ Claim cloth_comes_to_rest(const ChapterOptions& options) {
   double energy = 0, drift = 0, force = 0;
   for (const auto& [name, support] :
        {std::pair("a floor", Support::floor), std::pair("a ball", Support::ball)}) {
-    say(options, std::string("rest on ") + name);
+    options.tell(std::string("rest on ") + name);
     const RestingSheet rest = rest_on({}, support, seconds);
     energy = std::max(energy, rest.kinetic);
     drift = std::max(drift, 1000 * rest.drift);
@@ -154,7 +150,7 @@ Claim cloth_comes_to_rest(const ChapterOptions& options) {
 }
 
 Claim momentum_is_kept(const ChapterOptions& options) {
-  say(options, "momentum");
+  options.tell("momentum");
   Claim claim{.title = "Contact keeps momentum", .source = "Weft"};
   const FoldedFall fall = drop_fold({}, 0.5);
   const Collision collision = collide_sheets({}, 0.5);

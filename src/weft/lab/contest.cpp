@@ -73,4 +73,18 @@ std::optional<double> find_time(const std::string& method, const std::vector<Con
   return std::nullopt;
 }
 
+PlotPanel make_panel(const std::string& title, const std::vector<ContestResult>& results) {
+  PlotPanel panel{title, {}};
+  for (const ContestResult& r : results) {
+    if (!r.ok) continue;
+    if (panel.series.empty() || panel.series.back().name != r.method) panel.series.push_back({r.method, {}});
+    panel.series.back().points.push_back({r.cpu_ms, r.error, r.method + ", " + r.setting});
+  }
+  for (PlotSeries& series : panel.series) {
+    std::sort(series.points.begin(), series.points.end(),
+              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  }
+  return panel;
+}
+
 }  // namespace weft

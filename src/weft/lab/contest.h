@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "weft/lab/contestant.h"
+#include "weft/lab/plot.h"
 #include "weft/lab/reference.h"
 
 namespace weft {
@@ -33,5 +34,8 @@ using Misfit = std::function<double(const ContestResult&)>;
 /// on logarithmic axes; that of its cheapest setting if even this is better; empty if none is as good [ms].
 std::optional<double> find_time(const std::string& method, const std::vector<ContestResult>& results,
                                 const Misfit& misfit);
+
+/// Error against time, a series per method; what flew apart is left out.
+PlotPanel make_panel(const std::string& title, const std::vector<ContestResult>& results);
 
 }  // namespace weft

@@ -35,10 +35,6 @@ double rms_distance(const Frame& a, const Frame& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-void say(const ChapterOptions& options, const std::string& words) {
-  if (options.say) options.say(words);
-}
-
 // ---- one shear spring
 
 constexpr int kShearSide = 33;  // particles
@@ -164,7 +160,7 @@ std::string time_cell(const std::optional<double>& ms) {
 }  // namespace
 
 Claim one_shear_spring(const ChapterOptions& options) {
-  say(options, "one shear spring");
+  options.tell("one shear spring");
   const ShearModel basic{"basic, two diagonals", "basic"},
       models[] = {{"simplified, as given", "simplified"},
                   {"simplified, doubled", "simplified", 2},
@@ -225,7 +221,7 @@ Claim one_shear_spring(const ChapterOptions& options) {
 }
 
 Claim large_steps(const ChapterOptions& options) {
-  say(options, "largest stable steps");
+  options.tell("largest stable steps");
   Claim claim{.title = "Large steps are stable", .source = "the paper, sections 1 and 4"};
   const int side = 17;
   const std::vector<double> stiffnesses =
@@ -269,7 +265,7 @@ Claim large_steps(const ChapterOptions& options) {
 }
 
 Claim faster_than_implicit(const ChapterOptions& options) {
-  say(options, "speed at equal step and at equal error");
+  options.tell("speed at equal step and at equal error");
   Claim claim{.title = "Eq. 16 is faster than general implicit integration",
               .source = "the paper, section 4"};
   const int side = options.quick ? 17 : 64;
@@ -326,7 +322,7 @@ Claim faster_than_implicit(const ChapterOptions& options) {
 }
 
 Claim linear_cost(const ChapterOptions& options) {
-  say(options, "cost against size");
+  options.tell("cost against size");
   Claim claim{.title = "Cost is linear in the number of springs", .source = "the paper, section 4"};
   const std::vector<int> sides =
       options.quick ? std::vector<int>{32, 64, 128} : std::vector<int>{32, 64, 128, 256, 512};
@@ -376,7 +372,7 @@ Claim real_time(const ChapterOptions& options) {
   double slowest = 1e9;
   for (const ShippedScene& shipped : list_scenes()) {
     if (!shipped.name.starts_with("paper/")) continue;
-    say(options, shipped.name);
+    options.tell(shipped.name);
     RunOptions run{.record_animation = false};
     if (options.quick) run.frames = 15;
     const RunReport report = run_scene(read_scene(shipped.file), run).report;
@@ -453,7 +449,7 @@ Claim figures_remade(const ChapterOptions& options) {
     claim.pictures.push_back({file, "The " + model + " model.", ""});
   }
   for (const std::string name : {"fig3_horizontal", "fig4_vertical", "fig5_falling", "fig6_ball"}) {
-    say(options, "painting " + name);
+    options.tell("painting " + name);
     RunOptions run;
     run.frames = options.quick ? 30 : 90;
     const RunResult result = run_scene(read_scene(find_scene("paper/" + name)), run);
