@@ -12,10 +12,8 @@
 
 #include "bench/bullet.h"
 #include "weft/core/error.h"
-#include "weft/core/version.h"
 #include "weft/lab/contest.h"
 #include "weft/lab/specimen.h"
-#include "weft/run/stopwatch.h"
 #include "weft/world/measures.h"
 
 namespace weft::bench {
@@ -152,15 +150,6 @@ HungCloth make_hung_membrane(int side) {
   return cloth;
 }
 
-/// Offsets from the cloth's origin, as references hold them.
-std::vector<float> frame_of(const ClothState& state) {
-  std::vector<float> frame;
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    for (const double c : state.x.get(i)) frame.push_back(static_cast<float>(c));
-  }
-  return frame;
-}
-
 /// By newton in short steps: of second order, so that half as many show four thirds of its error.
 Reference make_membrane_reference(const HungCloth& cloth) {
   constexpr int kSteps = 64;
@@ -265,13 +254,8 @@ Chapter study_peers(const ChapterOptions& options) {
                   .title = "Other engines, the same cloth",
                   .introduction =
                       "Each engine gets the same cloth or the nearest it knows, with the settings that its "
-                      "authors would use for it; they stand in the tables.",
-                  .version = kVersion,
-                  .is_quick = options.quick};
-  Stopwatch watch;
-  watch.start();
+                      "authors would use for it; they stand in the tables."};
   chapter.claims = {springs_in_bullet(options), membrane_in_mujoco(options), what_was_not_measured()};
-  chapter.seconds = watch.stop();
   return chapter;
 }
 

@@ -8,6 +8,7 @@
 #include "bench/machine.h"
 #include "weft/core/simd.h"
 #include "weft/lab/hung_cloth.h"
+#include "weft/lab/plot.h"
 #include "weft/lab/reference.h"
 
 namespace weft::bench {
@@ -52,20 +53,6 @@ Cost measure(int size, const ScalingBenchOptions& options) {
   return cost;
 }
 
-/// The slope of the straight line nearest to the points (log x, log y).
-double fit_exponent(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto n = static_cast<double>(x.size());
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double a = std::log(x[i]), b = std::log(y[i]);
-    sx += a;
-    sy += b;
-    sxx += a * a;
-    sxy += a * b;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 }  // namespace
 
 void bench_scaling(const ScalingBenchOptions& options) {
@@ -78,24 +65,22 @@ void bench_scaling(const ScalingBenchOptions& options) {
   fmt::print(" memory MB | bytes per particle |\n|--:|");
   for (std::size_t t = 0; t < options.threads.size(); ++t) fmt::print("--:|--:|");
   fmt::print("--:|--:|\n");
-  std::vector<double> particles;
-  std::vector<std::vector<double>> ms(options.threads.size());
+  std::vector<std::vector<PlotPoint>> ms(options.threads.size());  // over particles
   for (const int size : options.sizes) {
     const Cost cost = measure(size, options);
     fmt::print("| {:.0f} |", cost.particles);
     for (std::size_t t = 0; t < ms.size(); ++t) {
       fmt::print(" {:.2f} | {:.0f} |", cost.ms[t], 1e6 * cost.ms[t] / cost.particles);
-      ms[t].push_back(cost.ms[t]);
+      ms[t].push_back({cost.particles, cost.ms[t], ""});
     }
     fmt::print(" {:.1f} | {:.0f} |\n", 1e-6 * cost.bytes, cost.bytes / cost.particles);
     std::fflush(stdout);
-    particles.push_back(cost.particles);
   }
   fmt::print("\n");
-  if (particles.size() < 2) return;
+  if (options.sizes.size() < 2) return;
   for (std::size_t t = 0; t < ms.size(); ++t) {
     fmt::print("{} thread{}: time grows like n^{:.2f}\n", options.threads[t],
-               options.threads[t] > 1 ? "s" : "", fit_exponent(particles, ms[t]));
+               options.threads[t] > 1 ? "s" : "", fit_exponent(ms[t]));
   }
 }
 

@@ -51,12 +51,6 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
-}
-
 void paint(const fs::path& file, const Animation& animation, const std::vector<int>& frames,
            const std::shared_ptr<const ClothTopology>& springs) {
   PaintSettings settings{.size = {480, 360}};
@@ -90,6 +84,16 @@ StudyReport make_report(std::vector<Chapter> chapters) {
   return {.version = kVersion, .machine = describe_machine(), .chapters = std::move(chapters)};
 }
 
+Chapter run_study(const ChapterCommand& command, const ReportOptions& options) {
+  Stopwatch watch;
+  watch.start();
+  Chapter chapter = command.study(chapter_options(options));
+  chapter.version = kVersion;
+  chapter.is_quick = options.quick;
+  chapter.seconds = watch.stop();
+  return chapter;
+}
+
 void write_plots(const fs::path& folder, const Chapter& chapter) {
   for (const Claim& claim : chapter.claims) {
     for (const Figure2d& picture : claim.pictures) {
@@ -98,7 +102,7 @@ void write_plots(const fs::path& folder, const Chapter& chapter) {
   }
 }
 
-/// A chapter's own folder of files: NAME.json, its pictures, and NAME.md.
+/// NAME.json, and its plots.
 void write_chapter(const fs::path& folder, const Chapter& chapter) {
   write_plots(folder, chapter);
   write_text(folder / (chapter.name + ".json"), to_json(chapter));
@@ -112,7 +116,7 @@ void write_report(const fs::path& folder, const StudyReport& report) {
 /// With --json one object on standard output, and nothing else.
 void run_chapter(const ChapterCommand& command, const ReportOptions& options) {
   if (!options.out.empty()) make_folder(options.out);
-  const Chapter chapter = command.study(chapter_options(options));
+  const Chapter chapter = run_study(command, options);
   const StudyReport report = make_report({chapter});
   if (!options.out.empty()) {
     write_chapter(options.out, chapter);
@@ -157,7 +161,7 @@ void run_all(const ReportOptions& options) {
     } else {
       fmt::print(stderr, "{}: chapter {} of {}, about {:.0f} s left\n", command.name, chapters.size() + 1,
                  commands.size(), pace * left);
-      chapters.push_back(command.study(chapter_options(options)));
+      chapters.push_back(run_study(command, options));
       write_chapter(options.out, chapters.back());
       usual += usual_seconds(command, options.quick);
       spent += chapters.back().seconds;

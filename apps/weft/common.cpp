@@ -30,6 +30,12 @@ void make_folder(const fs::path& folder) {
   if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
 }
 
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
+}
+
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 void add_set_option(CLI::App& command, Overrides& overrides) {

@@ -17,6 +17,9 @@ void require_writable(const std::filesystem::path& file);
 /// The folder is there, or InputError.
 void make_folder(const std::filesystem::path& folder);
 
+/// Replaces the file's text; throws InputError if it cannot be written.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
 /// Processors of this machine, at least 1.
 int num_processors();
 

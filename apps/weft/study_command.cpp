@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -45,12 +44,6 @@ void add_figures(const StudyResult& result, Json& json) {
 }
 
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  if (!stream.flush()) throw InputError(file.string() + ": cannot be written");
-}
 
 void write_shape(const fs::path& file, const AnimatedMesh& mesh) {
   TriangleMesh shape{.positions = {}, .triangles = mesh.triangles};

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/forces/sheets.h"
+#include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
 #include "weft/core/hash.h"
 #include "weft/core/simd.h"
@@ -15,30 +15,10 @@
 namespace weft {
 namespace {
 
-using test::SheetKind;
+using test::hung_by;
+using test::on_grid;
+using test::on_mesh;
 using test::square;
-
-std::shared_ptr<const ClothModel> on_grid(const Grid& grid, const Fabric& fabric) {
-  const auto topology = build_grid_topology(grid, SpringModel::alternating);
-  return build_cloth_model(topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
-                           build_grid_elements(grid, topology->mesh, GridWarp::first_axis, fabric));
-}
-
-std::shared_ptr<const ClothModel> on_mesh(const Grid& grid, const Fabric& fabric) {
-  const auto topology = build_mesh_topology(make_sheet(SheetKind::random, grid));
-  return build_cloth_model(
-      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
-      build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, Vec3::UnitX()), fabric));
-}
-
-Environment hung_by(const ClothModel& model, const std::vector<int>& pins) {
-  Environment environment;
-  for (const int i : pins) {
-    environment.pins.particle.push_back(i);
-    environment.pins.position.push_back(model.topology->mesh.positions[i]);
-  }
-  return environment;
-}
 
 double rms_distance(const std::vector<Vec3>& a, const ClothState& b) {
   double sum = 0;

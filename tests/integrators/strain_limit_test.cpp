@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/forces/sheets.h"
+#include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
 #include "weft/fabric/presets.h"
 #include "weft/forces/membrane.h"
@@ -14,7 +14,9 @@
 namespace weft {
 namespace {
 
-using test::SheetKind;
+using test::hung_by;
+using test::on_grid;
+using test::on_mesh;
 using test::square;
 
 /// A soft jersey: without a limit it stretches by a third under its own weight.
@@ -22,28 +24,6 @@ Fabric soft(double strain_limit) {
   Fabric fabric = find_fabric("gray_interlock").fabric;
   fabric.strain_limit = strain_limit;
   return fabric;
-}
-
-std::shared_ptr<const ClothModel> on_grid(const Grid& grid, const Fabric& fabric) {
-  const auto topology = build_grid_topology(grid, SpringModel::alternating);
-  return build_cloth_model(topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
-                           build_grid_elements(grid, topology->mesh, GridWarp::first_axis, fabric));
-}
-
-std::shared_ptr<const ClothModel> on_mesh(const Grid& grid, const Fabric& fabric) {
-  const auto topology = build_mesh_topology(make_sheet(SheetKind::random, grid));
-  return build_cloth_model(
-      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
-      build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, Vec3::UnitX()), fabric));
-}
-
-Environment hung_by(const ClothModel& model, const std::vector<int>& pins) {
-  Environment environment;
-  for (const int i : pins) {
-    environment.pins.particle.push_back(i);
-    environment.pins.position.push_back(model.topology->mesh.positions[i]);
-  }
-  return environment;
 }
 
 /// The largest principal stretch less one.

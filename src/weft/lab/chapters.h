@@ -1,5 +1,6 @@
 #pragma once
-/// The chapters of the study: each tests the claims of one subject and tells what came out.
+/// The chapters of the study: each tests the claims of one subject and tells what came out. Whoever runs them
+/// fills in version, is_quick and seconds.
 
 #include <functional>
 #include <memory>

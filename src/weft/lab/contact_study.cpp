@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "weft/core/version.h"
 #include "weft/lab/chapters.h"
 #include "weft/lab/contact_experiments.h"
 #include "weft/run/runner.h"
-#include "weft/run/stopwatch.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 
@@ -174,14 +172,9 @@ Chapter study_contact(const ChapterOptions& options) {
                   .title = "Contact",
                   .introduction =
                       "\"It is not allowed that cloth is embedded in itself or in the objects in the "
-                      "scene\": what Weft makes of it.",
-                  .version = kVersion,
-                  .is_quick = options.quick};
-  Stopwatch watch;
-  watch.start();
+                      "scene\": what Weft makes of it."};
   chapter.claims = {nothing_crosses(options), friction_is_coulombs(options), ball_takes_cloth_along(options),
                     cloth_comes_to_rest(options), momentum_is_kept(options)};
-  chapter.seconds = watch.stop();
   return chapter;
 }
 

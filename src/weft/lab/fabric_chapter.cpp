@@ -1,9 +1,7 @@
 /// The studies of fabrics as a chapter: each is a claim, which holds if its figures are as expected.
 
-#include "weft/core/version.h"
 #include "weft/lab/chapters.h"
 #include "weft/lab/fabric_studies.h"
-#include "weft/run/stopwatch.h"
 
 namespace weft {
 namespace {
@@ -62,16 +60,11 @@ Chapter study_fabric(const ChapterOptions& options) {
                   .introduction =
                       "What is one fabric in SI units on many meshes and at many steps, by a laboratory's "
                       "own tests (`weft study "
-                      "cantilever`, `tensile`, `shear`, `drape`, `buckling` run one test on any fabric).",
-                  .version = kVersion,
-                  .is_quick = options.quick};
-  Stopwatch watch;
-  watch.start();
+                      "cantilever`, `tensile`, `shear`, `drape`, `buckling` run one test on any fabric)."};
   StudySettings settings{.quick = options.quick, .threads = options.threads};
   if (options.say) settings.say = options.say;
   for (const FabricStudy& study : kStudies)
     chapter.claims.push_back(make_claim(study, study.run(settings), options));
-  chapter.seconds = watch.stop();
   return chapter;
 }
 

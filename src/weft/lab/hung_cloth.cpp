@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "weft/core/angle.h"
@@ -90,6 +91,18 @@ HungCloth make_hung_disc(int num_rings, const ClothMaterial& material) {
   const auto topology = build_mesh_topology(make_disc_mesh(num_rings, 0.5));
   const int first = on_ring(num_rings, 0), quarter = on_ring(num_rings, 6 * num_rings / 4);
   return hang("disc of " + std::to_string(topology->num_particles()), topology, material, {first, quarter});
+}
+
+std::vector<Vec3> positions_of(const ClothState& state) {
+  std::vector<Vec3> positions(state.x.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = state.position(i);
+  return positions;
+}
+
+double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
 }  // namespace weft

@@ -31,4 +31,10 @@ HungCloth make_hung_disc(int num_rings, const ClothMaterial& material);
 /// the given rest length [m] and stiffness [N/m]; nothing holds it.
 HungCloth make_chain(const std::vector<Vec3>& places, double mass, double rest_length, double stiffness);
 
+/// Where the particles are (num_particles) [m].
+std::vector<Vec3> positions_of(const ClothState& state);
+
+/// Root mean square distance of as many places [m].
+double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
 }  // namespace weft

@@ -23,18 +23,6 @@ constexpr double kFrame = 1.0 / 60;  // [s]
 
 using Frame = std::vector<Vec3>;  // (num_particles) [m]
 
-Frame positions_of(const ClothState& state) {
-  Frame frame(state.x.size());
-  for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = state.position(i);
-  return frame;
-}
-
-double rms_distance(const Frame& a, const Frame& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
 // ---- one shear spring
 
 constexpr int kShearSide = 33;  // particles
@@ -140,17 +128,6 @@ double step_ms(const IntegratorSettings& settings, int side, double step) {
   constexpr int kTimes = 12;
   return least_ms(kTimes,
                   [&] { integrator->advance(*cloth.model, cloth.environment, step, *jobs, cloth.state); });
-}
-
-/// The slope of the straight line nearest to the points (log x, log y).
-double fit_exponent(const std::vector<PlotPoint>& points) {
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = static_cast<double>(points.size());
-  for (const PlotPoint& p : points) {
-    const double a = std::log(p.x), b = std::log(p.y);
-    sx += a, sy += b, sxx += a * a, sxy += a * b;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 std::string time_cell(const std::optional<double>& ms) {
@@ -401,7 +378,7 @@ Claim parameters_change_freely() {
       const auto integrator = make_integrator({.integrator = name});
       const auto jobs = make_serial_jobs();
       int count = 0;
-      double sum = 0, least = 1e300;
+      double least = 1e300;
       for (int s = 0; s < 12; ++s) {
         const double factor = changes ? (++count % 2 == 0 ? 1.1 : 0.9) : 1;
         const auto model =
@@ -412,7 +389,6 @@ Claim parameters_change_freely() {
         integrator->advance(changes ? *model : *cloth.model, cloth.environment, kFrame * factor, *jobs,
                             cloth.state);
         watch.stop();
-        sum += watch.cpu_total();
         if (s > 1) least = std::min(least, watch.cpu_total());
       }
       return 1000 * least;

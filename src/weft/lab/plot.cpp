@@ -212,4 +212,14 @@ void write_svg(const Plot& plot, const std::filesystem::path& file) {
   if (!out) throw InputError("cannot write " + file.string());
 }
 
+double fit_exponent(const std::vector<PlotPoint>& points) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(points.size());
+  for (const PlotPoint& p : points) {
+    const double a = std::log(p.x), b = std::log(p.y);
+    sx += a, sy += b, sxx += a * a, sxy += a * b;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
 }  // namespace weft

@@ -44,4 +44,7 @@ std::string to_svg(const Plot& plot);
 /// Throws InputError if the file cannot be written.
 void write_svg(const Plot& plot, const std::filesystem::path& file);
 
+/// The slope of the straight line nearest to the points (log x, log y).
+double fit_exponent(const std::vector<PlotPoint>& points);
+
 }  // namespace weft

@@ -34,15 +34,6 @@ std::uint64_t hash_of(const HungCloth& cloth, int num_frames, int substeps) {
   return hash.value();
 }
 
-std::vector<float> frame_of(const ClothState& state) {
-  std::vector<float> frame;
-  frame.reserve(3 * state.x.size());
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    for (const double c : state.x.get(i)) frame.push_back(static_cast<float>(c));
-  }
-  return frame;
-}
-
 template <class OnFrame>
 void simulate(HungCloth cloth, int num_frames, int substeps, const OnFrame& on_frame) {
   const auto integrator = make_integrator({.integrator = "explicit"});
@@ -95,6 +86,15 @@ void write(const Reference& reference, const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+std::vector<float> frame_of(const ClothState& state) {
+  std::vector<float> frame;
+  frame.reserve(3 * state.x.size());
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    for (const double c : state.x.get(i)) frame.push_back(static_cast<float>(c));
+  }
+  return frame;
+}
 
 Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder,
                          const std::function<void(const std::string&)>& say) {

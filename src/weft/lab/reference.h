@@ -24,6 +24,9 @@ struct Reference {
 Reference find_reference(const HungCloth& cloth, int num_frames, const std::filesystem::path& folder,
                          const std::function<void(const std::string&)>& say = {});
 
+/// Offsets from the cloth's origin, as a reference holds them (3 num_particles) [m].
+std::vector<float> frame_of(const ClothState& state);
+
 /// Root mean square distance of a cloth from a frame of its reference [m].
 double distance_from(const std::vector<float>& frame, const ClothState& state);
 

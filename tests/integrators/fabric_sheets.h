@@ -1,0 +1,35 @@
+#pragma once
+/// Sheets of fabric for tests of integrators: membranes and bending on grids and meshes, and what holds them.
+
+#include <memory>
+#include <vector>
+
+#include "tests/forces/sheets.h"
+#include "weft/integrators/integrator.h"
+
+namespace weft::test {
+
+inline std::shared_ptr<const ClothModel> on_grid(const Grid& grid, const Fabric& fabric) {
+  const auto topology = build_grid_topology(grid, SpringModel::alternating);
+  return build_cloth_model(topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
+                           build_grid_elements(grid, topology->mesh, GridWarp::first_axis, fabric));
+}
+
+inline std::shared_ptr<const ClothModel> on_mesh(const Grid& grid, const Fabric& fabric) {
+  const auto topology = build_mesh_topology(make_sheet(SheetKind::random, grid));
+  return build_cloth_model(
+      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
+      build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, Vec3::UnitX()), fabric));
+}
+
+/// Held where the given particles are at rest.
+inline Environment hung_by(const ClothModel& model, const std::vector<int>& pins) {
+  Environment environment;
+  for (const int i : pins) {
+    environment.pins.particle.push_back(i);
+    environment.pins.position.push_back(model.topology->mesh.positions[i]);
+  }
+  return environment;
+}
+
+}  // namespace weft::test
