@@ -8,12 +8,11 @@ of all particles by turns as 32-bit floats (frame by frame, y up, the row of pin
 JSON: {"engine": "MuJoCo 4.0.0", "cpu_ms_per_frame": 10.4}.
 """
 
-import json
 import sys
-import time
 
 import mujoco
 import numpy
+from measure import measure
 
 DENSITY = 0.2  # kg/m²
 STIFFNESS = 8000 / 3  # Young's modulus times thickness, N/m: C11 = 3000, C12 = G = 1000
@@ -39,23 +38,27 @@ def build_model(side, steps, integrator):
 </mujoco>""")
 
 
+class Sheet:
+    def __init__(self, model, side, steps):
+        self.model, self.side, self.steps = model, side, steps
+        self.data = mujoco.MjData(model)
+
+    def advance_frame(self):
+        for _ in range(self.steps):
+            mujoco.mj_step(self.model, self.data)
+
+    def positions(self):
+        """Columns become rows, the sheet's corner the origin, z up y up."""
+        mujoco.mj_forward(self.model, self.data)  # else they are those before the last step
+        x = self.data.flexvert_xpos.reshape(self.side, self.side, 3).transpose(1, 0, 2)
+        return numpy.stack([x[..., 0] + 0.5, x[..., 2], x[..., 1] + 0.5], axis=-1).astype("<f4")
+
+
 def main():
     side, steps, integrator, frames = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], int(sys.argv[4])
+    mujoco.set_mju_user_warning(lambda words: print(words, file=sys.stderr))  # not into a file where it was started
     model = build_model(side, steps, integrator)
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    seconds = 0.0
-    with open(sys.argv[5], "wb") as out:
-        for _ in range(frames):
-            begin = time.process_time()
-            for _ in range(steps):
-                mujoco.mj_step(model, data)
-            seconds += time.process_time() - begin
-            # Columns become rows, the sheet's corner the origin, z up y up.
-            x = data.flexvert_xpos.reshape(side, side, 3).transpose(1, 0, 2)
-            here = numpy.stack([x[..., 0] + 0.5, x[..., 2], x[..., 1] + 0.5], axis=-1)
-            out.write(here.astype("<f4").tobytes())
-    print(json.dumps({"engine": "MuJoCo " + mujoco.__version__, "cpu_ms_per_frame": 1000 * seconds / frames}))
+    measure("MuJoCo " + mujoco.__version__, lambda: Sheet(model, side, steps), frames, sys.argv[5])
 
 
 main()
