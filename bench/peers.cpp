@@ -3,39 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 
 #include "bench/bullet.h"
+#include "bench/comparison.h"
 #include "weft/core/error.h"
-#include "weft/lab/contest.h"
 #include "weft/lab/specimen.h"
 #include "weft/world/measures.h"
 
 namespace weft::bench {
 namespace {
 
-constexpr int kFrames = 60;
-
-std::vector<std::string> row_of(const std::string& engine, const ContestResult& r,
-                                const std::string& settings) {
-  if (!r.ok) return {engine, r.setting, settings, "flies apart", "", ""};
-  return {engine,
-          r.setting,
-          settings,
-          fmt::format("{:.2f}", r.cpu_ms),
-          fmt::format("{:.4f}", r.error),
-          fmt::format("{:.1f}", 100 * r.strain)};
-}
-
-const std::vector<std::string> kHead = {"engine",           "setting",  "how the cloth is given",
-                                        "CPU ms per frame", "error, m", "worst strain, %"};
-
-// ---- the same springs: Bullet
+constexpr int kQuickSide = 33;
 
 ContestantSettings with_setting(const std::string& name, const std::string& setting) {
   for (ContestantSettings& entry : list_integrator_entries()) {
@@ -44,92 +22,102 @@ ContestantSettings with_setting(const std::string& name, const std::string& sett
   throw InputError("no setting " + setting + " of " + name);
 }
 
-Claim springs_in_bullet(const ChapterOptions& options) {
-  Claim claim{.title = "The hanging sheet of springs: Bullet's soft body", .source = "Weft"};
-  const int side = options.quick ? 33 : 64;
-  const HungCloth cloth = make_hung_sheet(side, "simplified", {});
-  const Reference reference = find_reference(
-      cloth, kFrames, options.cache.empty() ? default_cache_folder() : options.cache, options.say);
-  claim.text = {
-      fmt::format("{0}×{0} particles of 0.2 kg/m², springs of 2000, 1000 and 20 N/m, hung by two corners, no "
-                  "contact, no damping, one thread; a second. "
-                  "Error: mean RMS distance from `explicit` at a quarter of its limit, known to {1:.4f} m; "
-                  "its worst strain is {2:.1f} %. The fastest of up to three "
-                  "runs.",
-                  side, reference.error, 100 * reference.strain)};
-  claim.tables = {{kHead, {}}};
-  std::vector<ContestResult> results;
-  const auto add = [&](const ContestantSettings& entry, const std::string& engine, const std::string& how,
-                       const auto& make) {
-    options.tell(engine + ", " + entry.setting);
-    results.push_back(measure_contestant([&] { return make(entry, cloth); }, entry, cloth, reference));
-    claim.tables[0].rows.push_back(row_of(engine, results.back(), how));
-  };
+void add_newton(Comparison& comparison, const std::string& how) {
   for (const char* setting : {"default", "default, 2 steps"})
-    add(with_setting("newton", setting), "Weft, `newton`", "springs", make_integrator_contestant);
+    comparison.add(with_setting("newton", setting), "Weft, `newton`", how, make_integrator_contestant);
+}
+
+Reference find_explicit_reference(const HungCloth& cloth, const ChapterOptions& options) {
+  return find_reference(cloth, kComparedFrames,
+                        options.cache.empty() ? default_cache_folder() : options.cache, options.say);
+}
+
+// ---- the engine Newton: several solvers, one script
+
+struct NewtonSolver {
+  const char* name;
+  const char *argument, *cloth;  // as newton_sheet.py calls them
+  const char* how;
+};
+
+constexpr NewtonSolver kNewtonXpbd = {"XPBD", "xpbd", "springs",
+                                      "springs, compliance 1/k, all at once; it has no triangles"};
+constexpr NewtonSolver kNewtonVbd = {"VBD", "vbd", "springs", "springs, particles in three colours"};
+constexpr NewtonSolver kNewtonExplicit = {"semi-implicit", "semi_implicit", "springs",
+                                          "springs, symplectic Euler"};
+constexpr NewtonSolver kNewtonVbdMembrane = {
+    "VBD", "vbd", "membrane",
+    "stable neo-Hookean triangles, tri_ke = tri_ka = 1000 N/m: the same where strain is small"};
+constexpr NewtonSolver kNewtonStyle3d = {
+    "Style3D", "style3d", "membrane",
+    "triangles, ku = kv = 2667, ks = 1000 N/m: it has no springs and no Poisson's ratio, and takes 0.2 % of "
+    "every velocity in each substep"};
+
+struct NewtonSetting {
+  NewtonSolver solver;
+  int substeps;
+  int iterations = 0;  // per substep; 0: the solver has none
+};
+
+Peer describe_newton(int side, const std::vector<NewtonSetting>& settings) {
+  Peer peer{.engine = "Newton", .script = "newton_sheet.py", .install = "`pip install newton`, $WEFT_PYTHON"};
+  for (const auto& [solver, substeps, iterations] : settings) {
+    std::string words = fmt::format("{} substeps", substeps);
+    if (iterations > 0) words += fmt::format(" of {} iteration{}", iterations, iterations == 1 ? "" : "s");
+    peer.settings.push_back(
+        {solver.name, words,
+         fmt::format("{} {} {} {} {}", side, solver.cloth, solver.argument, substeps, iterations),
+         solver.how});
+  }
+  return peer;
+}
+
+// ---- the same springs
+
+Claim compare_springs(const ChapterOptions& options) {
+  Claim claim{.title = "The hanging sheet of springs: Bullet's soft body, Newton", .source = "Weft"};
+  const int side = options.quick ? kQuickSide : 64;
+  const HungCloth cloth = make_hung_sheet(side, "simplified", {});
+  const Reference reference = find_explicit_reference(cloth, options);
+  claim.text = {fmt::format(
+      "{0}×{0} particles of 0.2 kg/m², springs of 2000, 1000 and 20 N/m, hung by two corners, no "
+      "contact, no damping, one thread; a second. "
+      "Error: mean RMS distance from `explicit` at a quarter of its limit, known to {1:.4f} m; "
+      "its worst strain is {2:.1f} %. The fastest of up to three runs. Newton is the engine of "
+      "that name, on Warp, here without the graphics card that it is made for; its first setting of "
+      "each solver, here and below, is that of its own example of hanging cloth.",
+      side, reference.error, 100 * reference.strain)};
+  Comparison comparison(options, cloth, reference);
+  add_newton(comparison, "springs");
   for (const char* setting : {"50 substeps", "100 substeps", "200 substeps"})
-    add(with_setting("xpbd", setting), "Weft, `xpbd`", "springs, compliance 1/k", make_integrator_contestant);
+    comparison.add(with_setting("xpbd", setting), "Weft, `xpbd`", "springs, compliance 1/k",
+                   make_integrator_contestant);
   for (const ContestantSettings& entry : list_bullet_entries())
-    add(entry, "Bullet 3",
+    comparison.add(
+        entry, "Bullet 3",
         "links; stiffness C/(W + 1/(h²k)), which is XPBD's; one position iteration per substep, no drag",
         make_bullet_contestant);
-  const auto by_error = [](const ContestResult& r) { return r.error / kEqualError; };
-  const auto newton = find_time("newton", results, by_error), bullet = find_time("Bullet", results, by_error);
   if (list_bullet_entries().empty())
-    claim.tables[0].rows.push_back(
-        {"Bullet", "", "not there when this Weft was built (libbullet-dev)", "", "", ""});
-  if (newton && bullet) {
-    claim.figures = {{"bullet_over_newton", *bullet / *newton, "1", "> 1", 0}};
-    claim.text.push_back(fmt::format("At an error of {} m Bullet takes {:.0f} times as long as `newton`.",
-                                     kEqualError, *bullet / *newton));
-  }
+    comparison.add_absence("Bullet", "not there when this Weft was built (libbullet-dev)");
+  std::vector<NewtonSetting> settings = {{kNewtonXpbd, 10, 10}, {kNewtonXpbd, 100, 1},
+                                         {kNewtonVbd, 10, 10},  {kNewtonVbd, 40, 5},
+                                         {kNewtonExplicit, 32}, {kNewtonExplicit, 200}};
+  if (!options.quick)
+    settings = {{kNewtonXpbd, 10, 10}, {kNewtonXpbd, 100, 1},  {kNewtonXpbd, 200, 1}, {kNewtonXpbd, 400, 1},
+                {kNewtonVbd, 10, 10},  {kNewtonVbd, 40, 5},    {kNewtonVbd, 40, 10},  {kNewtonVbd, 20, 40},
+                {kNewtonExplicit, 32}, {kNewtonExplicit, 200}, {kNewtonExplicit, 400}};
+  comparison.add(describe_newton(side, settings));
+  comparison.tell({{"Bullet", "bullet_over_newton"},
+                   {"Newton's XPBD", "warp_xpbd_over_newton"},
+                   {"Newton's VBD", "warp_vbd_over_newton"},
+                   {"Newton's semi-implicit", "warp_semi_implicit_over_newton"}},
+                  claim);
   return claim;
 }
 
-// ---- the same membrane: MuJoCo
+// ---- the same membrane
 
-struct PeerRun {
-  std::string engine;
-  double cpu_ms = 0;
-  std::vector<std::vector<float>> frames;
-};
-
-std::string shell_quote(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
-/// Runs one of tools/peers, which prints a line of JSON and leaves frames in a file; nothing if it cannot.
-std::optional<PeerRun> run_peer(const std::string& script, const std::string& arguments, int particles) {
-  const char* chosen = std::getenv("WEFT_PYTHON");
-  const std::string python = chosen && *chosen ? chosen : "python3";
-  const auto file = std::filesystem::temp_directory_path() /
-                    fmt::format("weft-peer-{:x}.f32", reinterpret_cast<std::uintptr_t>(&python));
-  const std::string command = shell_quote(python) + " " +
-                              shell_quote(std::string(WEFT_PEERS) + "/" + script) + " " + arguments + " " +
-                              shell_quote(file.string()) + " 2>/dev/null";
-  std::string printed;
-  if (FILE* pipe = popen(command.c_str(), "r")) {
-    char buffer[256];
-    while (std::fgets(buffer, sizeof buffer, pipe)) printed += buffer;
-    if (pclose(pipe) != 0) return std::nullopt;
-  }
-  const auto json = nlohmann::json::parse(printed, nullptr, false);
-  if (!json.is_object()) return std::nullopt;
-  PeerRun run{json.at("engine"), json.at("cpu_ms_per_frame"), {}};
-  std::ifstream in(file, std::ios::binary);
-  run.frames.assign(kFrames, std::vector<float>(3 * static_cast<std::size_t>(particles)));
-  for (auto& frame : run.frames)
-    in.read(reinterpret_cast<char*>(frame.data()),
-            static_cast<std::streamsize>(frame.size() * sizeof(float)));
-  const bool is_whole = in.good();
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  return is_whole ? std::optional(run) : std::nullopt;
-}
-
-/// A membrane without bending: Young's modulus times thickness 8000/3 N/m, Poisson's ratio 1/3.
+/// Without bending: Young's modulus times thickness 8000/3 N/m, Poisson's ratio 1/3.
 HungCloth make_hung_membrane(int side) {
   const Fabric fabric{.density = 0.2,
                       .c11 = 3000,
@@ -158,92 +146,108 @@ Reference make_membrane_reference(const HungCloth& cloth) {
     ContestantSettings entry{.method = "newton", .steps_per_frame = steps};
     entry.settings.newton.quality = NewtonQuality::high;
     const auto contestant = make_integrator_contestant(entry, cloth);
-    for (int f = 0; f < kFrames; ++f) {
+    for (int f = 0; f < kComparedFrames; ++f) {
       contestant->advance_frame();
       if (steps == kSteps) {
         reference.frames.push_back(frame_of(contestant->state()));
         reference.strain = std::max(reference.strain, compute_strain(*cloth.model, contestant->state()).max);
       } else {
-        reference.error += distance_from(reference.frames[f], contestant->state()) / kFrames;
+        reference.error += distance_from(reference.frames[f], contestant->state()) / kComparedFrames;
       }
     }
   }
   return reference;
 }
 
-ContestResult judge(const PeerRun& run, const std::string& setting, const HungCloth& cloth,
-                    const Reference& reference) {
-  ContestResult result{.method = run.engine, .setting = setting, .cpu_ms = run.cpu_ms};
-  ClothState state = cloth.state;
-  for (int f = 0; f < kFrames; ++f) {
-    const std::vector<float>& x = run.frames[f];
-    for (std::size_t i = 0; i < state.x.size(); ++i)
-      state.set_position(i, {x[3 * i], x[3 * i + 1], x[3 * i + 2]});
-    result.error += distance_from(reference.frames[f], state) / kFrames;
-    result.strain = std::max(result.strain, compute_strain(*cloth.model, state).max);
-  }
-  result.ok = result.error < 10;
-  return result;
+Peer describe_mujoco(int side, bool quick) {
+  Peer peer{.engine = "MuJoCo", .script = "mujoco_sheet.py", .install = "`pip install mujoco`, $WEFT_PYTHON"};
+  const auto add = [&](const std::string& integrator, int steps) {
+    peer.settings.push_back({"", fmt::format("{}, {} step{}", integrator, steps, steps == 1 ? "" : "s"),
+                             fmt::format("{} {} {}", side, steps, integrator),
+                             "flex, dim 2, elastic2d stretch; Python's own time is in the frame"});
+  };
+  for (const int steps : {1, 4, 16}) add("discrete", steps);
+  if (!quick) add("Euler", 100);
+  return peer;
 }
 
-Claim membrane_in_mujoco(const ChapterOptions& options) {
-  Claim claim{.title = "The hanging membrane: MuJoCo's flex", .source = "Weft"};
-  const int side = 33;
-  const HungCloth cloth = make_hung_membrane(side);
+Claim compare_membranes(const ChapterOptions& options) {
+  Claim claim{.title = "The hanging membrane: MuJoCo's flex, Newton", .source = "Weft"};
+  const HungCloth cloth = make_hung_membrane(kQuickSide);
   options.tell("membrane: reference");
   const Reference reference = make_membrane_reference(cloth);
-  claim.text = {
-      fmt::format("{0}×{0} particles of 0.2 kg/m², an isotropic membrane of triangles (Young's modulus times "
-                  "thickness 2667 N/m, Poisson's ratio 1/3, no bending), hung by two corners, no "
-                  "contact, no damping, one thread; a second. Error: mean RMS distance from `newton` at "
-                  "`high` with 64 steps per frame; half as many differ from it by {1:.4f} m. "
-                  "MuJoCo's grid has all diagonals parallel, ours alternate, and its particles weigh the "
-                  "same at borders: some millimetres of its error are that.",
-                  side, reference.error)};
-  claim.tables = {{kHead, {}}};
-  std::optional<double> newton, mujoco;
-  for (const auto& [setting, steps] : {std::pair{"default", 1}, {"default, 2 steps", 2}}) {
-    const ContestantSettings entry{.method = "newton", .setting = setting, .steps_per_frame = steps};
-    const ContestResult r =
-        measure_contestant([&] { return make_integrator_contestant(entry, cloth); }, entry, cloth, reference);
-    claim.tables[0].rows.push_back(row_of("Weft, `newton`", r, "triangles"));
-    if (steps == 2) newton = r.cpu_ms;
-  }
-  struct Setting {
-    const char* integrator;
-    int steps;
-  };
-  const std::vector<Setting> settings =
-      options.quick ? std::vector<Setting>{{"discrete", 1}}
-                    : std::vector<Setting>{{"discrete", 1}, {"discrete", 4}, {"Euler", 100}};
-  for (const auto& [integrator, steps] : settings) {
-    const std::string words = fmt::format("{}, {} step{}", integrator, steps, steps == 1 ? "" : "s");
-    options.tell("MuJoCo, " + words);
-    const auto run = run_peer("mujoco_sheet.py", fmt::format("{} {} {} {}", side, steps, integrator, kFrames),
-                              side * side);
-    if (!run) {
-      claim.tables[0].rows.push_back(
-          {"MuJoCo", words, "not installed here (`pip install mujoco`, $WEFT_PYTHON)", "", "", ""});
-      continue;
-    }
-    const ContestResult r = judge(*run, words, cloth, reference);
-    claim.tables[0].rows.push_back(
-        row_of(run->engine, r, "flex, dim 2, elastic2d stretch; Python's own time is in the frame"));
-    if (steps == 1) mujoco = r.cpu_ms;
-  }
-  if (newton && mujoco)
-    claim.figures = {{"mujoco_discrete_over_newton_2_steps", *mujoco / *newton, "1", "> 1", 0}};
+  claim.text = {fmt::format(
+      "{0}×{0} particles of 0.2 kg/m², an isotropic membrane of triangles (Young's modulus times "
+      "thickness 2667 N/m, Poisson's ratio 1/3, no bending), hung by two corners, no "
+      "contact, no damping, one thread; a second. Error: mean RMS distance from `newton` at "
+      "`high` with 64 steps per frame; half as many differ from it by {1:.4f} m. "
+      "MuJoCo's grid has all diagonals parallel, ours alternate, and its particles weigh the "
+      "same at borders: some millimetres of its error are that. Newton's mesh and weights are ours.",
+      kQuickSide, reference.error)};
+  Comparison comparison(options, cloth, reference);
+  add_newton(comparison, "triangles");
+  comparison.add(describe_mujoco(kQuickSide, options.quick));
+  std::vector<NewtonSetting> settings = {{kNewtonVbdMembrane, 10, 10}, {kNewtonStyle3d, 2, 10}};
+  if (!options.quick)
+    settings = {{kNewtonVbdMembrane, 10, 10}, {kNewtonVbdMembrane, 40, 10}, {kNewtonVbdMembrane, 20, 40},
+                {kNewtonStyle3d, 2, 10},      {kNewtonStyle3d, 10, 4},      {kNewtonStyle3d, 4, 100}};
+  comparison.add(describe_newton(kQuickSide, settings));
+  comparison.tell({{"MuJoCo", "mujoco_over_newton"},
+                   {"Newton's VBD", "warp_vbd_membrane_over_newton"},
+                   {"Newton's Style3D", "warp_style3d_over_newton"}},
+                  claim);
+  return claim;
+}
+
+// ---- springs that are all the same
+
+/// Every particle weighs the same, and every edge, also a diagonal, is a spring of 2000 N/m.
+HungCloth make_even_sheet(int side) {
+  HungCloth cloth = make_hung_sheet(side, "simplified", {});
+  ClothTopology topology = *cloth.model->topology;
+  topology.area.assign(topology.area.size(), 1.0 / static_cast<double>(topology.area.size()));
+  cloth.model = build_cloth_model(std::make_shared<ClothTopology>(topology), {.shear = 2000, .bend = 0});
+  cloth.name += ", even";
+  return cloth;
+}
+
+Peer describe_blender(int side, bool quick) {
+  Peer peer{.engine = "Blender",
+            .interpreter = Interpreter::blender,
+            .script = "blender_sheet.py",
+            .install = "blender, $WEFT_BLENDER"};
+  for (const int steps : quick ? std::vector{5, 20} : std::vector{5, 20, 80})
+    peer.settings.push_back(
+        {"", fmt::format("quality {}", steps), fmt::format("{} {}", side, steps),
+         "edges; tension and compression k times their mean length, angular bending of 0; conjugate "
+         "gradients to 1 %; all of a change of frame is timed"});
+  return peer;
+}
+
+Claim compare_even_springs(const ChapterOptions& options) {
+  Claim claim{.title = "The hanging sheet of even springs: Blender's cloth", .source = "Weft"};
+  const HungCloth cloth = make_even_sheet(kQuickSide);
+  const Reference reference = find_explicit_reference(cloth, options);
+  claim.text = {fmt::format(
+      "Blender's cloth has one stiffness for all edges, its shear springs resist no compression, "
+      "and its particles weigh the same. So here all springs, along edges and one diagonal of each "
+      "cell, have 2000 N/m, nothing resists bending, and all {0}×{0} particles weigh the same, "
+      "0.2 kg together: the springs are those of Blender one by one. Its clock counts frames: "
+      "gravity and stiffness are given per frame², for 60 frames a second; quality is its number "
+      "of steps per frame, 5 by default. The rest as above; the reference is known to {1:.4f} m, "
+      "and its worst strain is {2:.1f} %.",
+      kQuickSide, reference.error, 100 * reference.strain)};
+  Comparison comparison(options, cloth, reference);
+  add_newton(comparison, "springs");
+  comparison.add(describe_blender(kQuickSide, options.quick));
+  comparison.tell({{"Blender", "blender_over_newton"}}, claim);
   return claim;
 }
 
 Claim what_was_not_measured() {
   Claim claim{.title = "What was not measured", .source = "Weft"};
-  claim.tables = {{{"engine", "why"},
-                   {{"Blender's cloth",
-                     "its springs take no stiffness in N/m, and it has no way to run without its own frame "
-                     "clock: no driver is written"},
-                    {"Newton (Python, Warp)", "no driver is written"},
-                    {"NvCloth, Jolt, PositionBasedDynamics", "no packages for Debian or PyPI"}}}};
+  claim.tables = {
+      {{"engine", "why"}, {{"NvCloth, Jolt, PositionBasedDynamics", "no packages for Debian or PyPI"}}}};
   return claim;
 }
 
@@ -255,7 +259,8 @@ Chapter study_peers(const ChapterOptions& options) {
                   .introduction =
                       "Each engine gets the same cloth or the nearest it knows, with the settings that its "
                       "authors would use for it; they stand in the tables."};
-  chapter.claims = {springs_in_bullet(options), membrane_in_mujoco(options), what_was_not_measured()};
+  chapter.claims = {compare_springs(options), compare_membranes(options), compare_even_springs(options),
+                    what_was_not_measured()};
   return chapter;
 }
 

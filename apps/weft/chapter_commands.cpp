@@ -35,7 +35,7 @@ const std::vector<ChapterCommand>& chapter_commands() {
       {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
       {"contact", "What contact holds, and at what cost", study_contact, 900, 60},
       {"fabric", "One fabric on many meshes and at many steps", study_fabric, 600, 40},
-      {"peers", "The same cloth in other engines", bench::study_peers, 120, 20},
+      {"peers", "The same cloth in other engines", bench::study_peers, 300, 90},
   };
   return commands;
 }

@@ -9,9 +9,8 @@
 namespace weft {
 namespace {
 
-constexpr double kLargeError = 10;  // of cloth that has flown apart [m]
-constexpr int kMostRuns = 3;        // of which the fastest counts: others may be using the machine …
-constexpr double kEnough = 3;       // … but none after so much time [s]
+constexpr int kMostRuns = 3;   // of which the fastest counts: others may be using the machine …
+constexpr double kEnough = 3;  // … but none after so much time [s]
 
 /// One run of all frames.
 ContestResult run_once(const MakeContestant& make, const ContestantSettings& entry, const HungCloth& cloth,

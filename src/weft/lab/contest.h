@@ -13,6 +13,9 @@ namespace weft {
 /// At which methods are compared: 4 cm in a swing of a metre is hard to see [m].
 inline constexpr double kEqualError = 0.045;
 
+/// From the reference in any frame: the cloth has flown apart [m].
+inline constexpr double kLargeError = 10;
+
 struct ContestResult {
   std::string method, setting;
   double cpu_ms = 0;  // per frame
