@@ -11,7 +11,7 @@ namespace weft {
 /// n · Σ w_i x_i >= target, where x_i are vertices of cloths and mesh colliders. Weights of one feature are
 /// positive, of the other negative (see geometry/distance.h); against a plain shape there is only the first.
 struct Constraint {
-  int num_vertices = 1;  // 1 to 4
+  int num_vertices = 1;  // 1 to 4; of a plain shape's constraints 2 are the ends of an edge
   std::array<int, 4> vertex = {0, 0, 0, 0};
   std::array<double, 4> weight = {1, 0, 0, 0};  // [1]
   Vec3 normal = Vec3::UnitY();                  // unit length

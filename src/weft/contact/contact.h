@@ -2,6 +2,7 @@
 /// One close pair, as an integrator that solves for positions sees it.
 
 #include <array>
+#include <cmath>
 
 #include "weft/core/vec.h"
 
@@ -25,9 +26,17 @@ struct Contact {
   std::array<double, 4> weight = {1, 0, 0, 0};  // [1]
   Vec3 normal = Vec3::UnitY();                  // unit length
   double offset = 0;                            // [m]
+  double depth_before = 0;                      // at the start of the step, if it tells [m]
   double stiffness = 0;                         // [N/m]
   double friction = 0;                          // Coulomb's coefficient [1]
   Vec3 grip = Vec3::Zero();                     // where Σ w_i x_i would be if it stuck [m]
+
+  /// Whether the cloth pushes itself alone: Σ w_i = 0, else ±1.
+  bool is_within_cloth() const {
+    double sum = 0;
+    for (int k = 0; k < num_particles; ++k) sum += weight[k];
+    return std::abs(sum) < 0.5;
+  }
 
   /// Σ w_i x_i.
   template <class Positions>

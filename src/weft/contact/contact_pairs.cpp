@@ -174,10 +174,11 @@ bool ContactSystem::finish_crossing(const FeaturePair& pair, Constraint& c) cons
   return finish_pair(std::max(c.normal.dot(c.sum(motion_.start)), kTouching), gap_of(pair, c), c);
 }
 
-/// The pair's thickness, or what neighbours on the mesh may have of it.
+/// The pair's thickness, or what neighbours on the mesh may have of it. Cloth pressed into cloth is set apart
+/// little by little; its depth tells nothing, and none is left to it.
 double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const {
   const double thickness = motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
-  return std::min(thickness, double{pair.max_gap});
+  return (is_on_body(c) ? 1 - pressed_in_ : 1) * std::min(thickness, double{pair.max_gap});
 }
 
 /// By how much the pair's distance can change during the step, at most [m].
@@ -195,7 +196,7 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   const int first = c.vertex[0], last = c.vertex[3];
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
   if (c.inverse_mass == 0) return false;
-  const bool is_body = std::max(first, last) >= first_vertex_.back();
+  const bool is_body = is_on_body(c);
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
   c.friction = is_body ? shapes_[body_of(std::max(first, last)).collider].collider->friction
                        : std::sqrt(friction_of(first) * friction_of(last));
@@ -217,6 +218,11 @@ double ContactSystem::friction_of(int vertex) const {
 
 const ContactSystem::Body& ContactSystem::body_of(int vertex) const {
   return *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return vertex < b.end_vertex; });
+}
+
+/// Whether one side of the pair is a collider's mesh.
+bool ContactSystem::is_on_body(const Constraint& c) const {
+  return std::max(c.vertex[0], c.vertex[3]) >= first_vertex_.back();
 }
 
 bool ContactSystem::is_on_closed_body(int vertex) const {

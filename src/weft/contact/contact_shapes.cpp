@@ -9,8 +9,15 @@
 namespace weft {
 namespace {
 
-/// A triangle counts beside its corners where it comes this much nearer to a shape than they do [m].
+/// An edge or a triangle counts beside its corners where it comes this much nearer to a shape than they do
+/// [m] …
 constexpr double kNearerThanCorners = 1e-6;
+/// … and for the solve by this share of half the thickness: what keeps edges and triangles out of the shape.
+constexpr double kMuchNearer = 0.6;
+
+/// Particles keep half the thickness from a shape. What is between them keeps this share of it, so that cloth
+/// rests on its particles alone unless cells are coarse: others would bear some of the same weight.
+constexpr double kBetweenKeeps = 0.2;
 
 /// A ball around the shape; planes have none.
 struct Bound {
@@ -23,6 +30,10 @@ Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).
 Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
 Bound bound_of(const MeshShape&) { return {}; }
 
+bool is_round(const ColliderShape& shape) {
+  return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
+}
+
 }  // namespace
 
 void ContactSystem::collect_shapes(double share_of_travel) {
@@ -32,7 +43,9 @@ void ContactSystem::collect_shapes(double share_of_travel) {
 }
 
 /// Particles nearer than their gap and as much again, and `share_of_travel` of their way in this step; and
-/// triangles that are nearer than their corners.
+/// what is nearer than its corners: triangles, but for the solve on round shapes the middles of edges. A
+/// triangle's nearest point runs to and fro over it as it tilts, and a solve that holds it for a step by a
+/// point from before trembles.
 void ContactSystem::collect_shape(int shape, double share_of_travel) {
   const MovingShape& moving = shapes_[shape];
   const Bound bound = std::visit([](const auto& s) { return bound_of(s); }, moving.after);
@@ -41,8 +54,7 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
   shape_distance_.resize(num_vertices);
   bool is_any_near = false;
   for (int v = 0; v < num_vertices; ++v) {
-    const double reach =
-        2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
+    const double reach = shape_reach(v, share_of_travel);
     const Vec3& p = motion_.end[v];
     shape_distance_[v] = std::numeric_limits<double>::infinity();
     const double farthest = bound.radius + reach + triangle_reach;
@@ -52,18 +64,45 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
     if (shape_distance_[v] < reach && inverse_mass_[v] > 0) add_shape_constraint(shape, 1, {v, v, v});
   }
   if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
-  const std::vector<Triangle>& triangles = proximity_.surface().triangles;
-  for (const Triangle& t : triangles) {
-    if (t[0] >= num_vertices) break;
+  const bool is_for_solve = share_of_travel > 0;
+  if (is_for_solve && is_round(moving.after)) {
+    collect_edges(shape, share_of_travel);
+  } else {
+    collect_triangles(shape, share_of_travel);
+  }
+}
+
+/// How near a vertex must be to count [m].
+double ContactSystem::shape_reach(int v, double share_of_travel) const {
+  return 2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
+}
+
+void ContactSystem::collect_edges(int shape, double share_of_travel) {
+  const double edge_reach = proximity_.longest_edge() / 2;
+  for (const auto& [a, b] : proximity_.surface().edges) {
+    if (a >= first_vertex_.back()) break;
+    const double nearest = std::min(shape_distance_[a], shape_distance_[b]);
+    const double reach = shape_reach(a, share_of_travel);
+    if (nearest > reach + edge_reach) continue;
+    const Vec3 middle = 0.5 * (motion_.end[a] + motion_.end[b]);
+    const double distance = signed_distance(shapes_[shape].after, middle).distance;
+    if (distance < std::min(reach, nearest - kMuchNearer * motion_.half_thickness[a]))
+      add_shape_constraint(shape, 2, {a, b, b});
+  }
+}
+
+void ContactSystem::collect_triangles(int shape, double share_of_travel) {
+  const double triangle_reach = proximity_.longest_edge() / std::sqrt(3.0);
+  const std::vector<Vec3>& x = motion_.end;
+  for (const Triangle& t : proximity_.surface().triangles) {
+    if (t[0] >= first_vertex_.back()) break;
     const double nearest = std::min({shape_distance_[t[0]], shape_distance_[t[1]], shape_distance_[t[2]]});
-    const double travel = share_of_travel * (motion_.end[t[0]] - motion_.start[t[0]]).norm();
-    const double reach = 2 * motion_.half_thickness[t[0]] + travel;
+    const double reach = shape_reach(t[0], share_of_travel);
     if (nearest > reach + triangle_reach) continue;
-    const std::vector<Vec3>& x = motion_.end;
-    const double distance = signed_distance(moving.after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
-    if (distance < reach &&
-        distance < nearest - std::max(kNearerThanCorners, share_of_travel * motion_.half_thickness[t[0]]))
-      add_shape_constraint(shape, 3, t);
+    const double distance = signed_distance(shapes_[shape].after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
+    const double nearer =
+        std::max(kNearerThanCorners, share_of_travel * kMuchNearer * motion_.half_thickness[t[0]]);
+    if (distance < std::min(reach, nearest - nearer)) add_shape_constraint(shape, 3, t);
   }
 }
 
@@ -79,12 +118,14 @@ void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Tria
 
 ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, const Constraint& c,
                                                    const std::vector<Vec3>& x) {
-  const Vec3& a = x[c.vertex[0]];
-  if (c.num_vertices == 1) {
-    const SignedDistance d = signed_distance(shape, a);
-    return {d.distance, d.normal, a - d.distance * d.normal, {1, 0, 0, 0}};
+  const Vec3 &a = x[c.vertex[0]], &b = x[c.vertex[1]], &e = x[c.vertex[2]];
+  if (c.num_vertices < 3) {
+    const bool is_edge = c.num_vertices == 2;
+    const Vec3 p = is_edge ? Vec3(0.5 * (a + b)) : a;
+    const SignedDistance d = signed_distance(shape, p);
+    return {d.distance, d.normal, p - d.distance * d.normal,
+            is_edge ? std::array<double, 4>{0.5, 0.5, 0, 0} : std::array<double, 4>{1, 0, 0, 0}};
   }
-  const Vec3 &b = x[c.vertex[1]], &e = x[c.vertex[2]];
   const TriangleSignedDistance d = signed_distance(shape, a, b, e);
   return {d.distance,
           d.normal,
@@ -92,8 +133,8 @@ ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, c
           {d.weights[0], d.weights[1], d.weights[2], 0}};
 }
 
-/// The plane that touches the shape where the particle or triangle is nearest at the end of the step; unless
-/// that lies beyond the shape's middle: then where it was nearest at the start.
+/// The plane that touches the shape where the particle, edge or triangle is nearest at the end of the step;
+/// unless that lies beyond the shape's middle: then where it was nearest at the start.
 void ContactSystem::take_plane(Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
   Nearest nearest = find_nearest(moving.after, c, motion_.end);
@@ -109,9 +150,15 @@ void ContactSystem::take_plane(Constraint& c) const {
   }
   c.normal = nearest.normal;
   c.weight = nearest.weight;
-  c.target = c.normal.dot(nearest.foot) + motion_.half_thickness[c.vertex[0]];
+  c.target = c.normal.dot(nearest.foot) + clearance_of(c);
   c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
+}
+
+/// From a plain shape [m].
+double ContactSystem::clearance_of(const Constraint& c) const {
+  const double share = c.num_vertices == 1 ? 1 - pressed_in_ : kBetweenKeeps;
+  return share * motion_.half_thickness[c.vertex[0]];
 }
 
 }  // namespace weft

@@ -14,6 +14,10 @@ namespace {
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
+/// What the solve has left pressed into a collider by less than this share of the thickness stays so: a
+/// contact's depth is its force, and the next step's friction starts from it.
+constexpr double kPressedIn = 0.2;
+
 constexpr int kRounds = 8;            // planes of round shapes are taken anew this often
 constexpr int kPasses = 8;            // over all constraints between
 constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of contacts: little is left to do
@@ -42,6 +46,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
   is_predicted_ = false;
+  pressed_in_ = 0;
   touches_.clear();
   shapes_.clear();
   const double start = step.time - step.step;
@@ -180,6 +185,7 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
     contact.num_particles = 0;
     contact.normal = c.normal;
     contact.offset = c.target;
+    contact.depth_before = depth_at_start(c);
     contact.grip = h * c.surface_velocity;
     contact.friction = c.friction;
     contact.stiffness = (c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h);
@@ -200,11 +206,18 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
   }
 }
 
+/// In a collider, 0 in cloth. Of a plain shape from where it was: the plane's own motion is a straight line.
+double ContactSystem::depth_at_start(const Constraint& c) const {
+  if (c.shape < 0) return is_on_body(c) ? c.target - c.normal.dot(c.sum(motion_.start)) : 0;
+  return clearance_of(c) - find_nearest(shapes_[c.shape].before, c, motion_.start).distance;
+}
+
 int ContactSystem::wild_cloth() const {
   return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
 void ContactSystem::hold_off(JobSystem& jobs) {
+  pressed_in_ = is_predicted_ ? kPressedIn : 0;
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;

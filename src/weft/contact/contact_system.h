@@ -99,7 +99,7 @@ class ContactSystem {
     bool is_closed = false;
   };
 
-  /// Where a particle or triangle is nearest to a plain shape.
+  /// Where a particle, the middle of an edge or a triangle is nearest to a plain shape.
   struct Nearest {
     double distance;
     Vec3 normal, foot;  // outwards; on the surface
@@ -133,11 +133,17 @@ class ContactSystem {
   bool finish_pair(double distance, double gap, Constraint& c) const;
   double friction_of(int vertex) const;
   const Body& body_of(int vertex) const;
+  bool is_on_body(const Constraint& c) const;
   bool is_on_closed_body(int vertex) const;
   void collect_shapes(double share_of_travel);
   void collect_shape(int shape, double share_of_travel);
+  double shape_reach(int v, double share_of_travel) const;
+  void collect_edges(int shape, double share_of_travel);
+  void collect_triangles(int shape, double share_of_travel);
   void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
   void take_plane(Constraint& c) const;
+  double clearance_of(const Constraint& c) const;
+  double depth_at_start(const Constraint& c) const;
   bool is_of_this_world() const;
   void settle_positions();
   void project(JobSystem& jobs);
@@ -159,6 +165,7 @@ class ContactSystem {
   std::vector<MovingShape> shapes_;
   ContactStep step_;
   bool is_predicted_ = false;  // the solve knows of contacts
+  double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;

@@ -326,6 +326,7 @@ void LastLine::join_zones(JobSystem& jobs, LastLineReport& report) {
   wanted_.assign(motion_->end.begin(), motion_->end.begin() + num_cloth_vertices());
   parent_.assign(num_cloth_vertices(), -1);
   share_.assign(num_cloth_vertices(), 1.0);
+  is_carried_.assign(num_cloth_vertices(), 0);
   guides_.clear();
   for (int round = 0; round < kZoneRounds && !hits_.empty(); ++round) {
     has_grown_ = false;
@@ -366,6 +367,7 @@ void LastLine::add_to_zones(const Hit& hit) {
     parent_[other] = root;
     share_[root] = std::min(share_[root], share_[other]);
     is_halved_[root] |= is_halved_[other];
+    is_carried_[root] |= is_carried_[other];
     has_grown_ = true;
   }
   for (int k = 0; k < c.num_vertices; ++k) {
@@ -374,9 +376,10 @@ void LastLine::add_to_zones(const Hit& hit) {
     guides_.push_back({root, motion_->start[v], motion_->end[v]});
   }
   if (c.shape >= 0) guides_.push_back({root, hit.foot_start, hit.foot_end});
-  if (is_halved_[root] || share_[root] == 0) return;
+  if (is_halved_[root] || is_carried_[root]) return;
   is_halved_[root] = 1;
   has_grown_ = true;
+  is_carried_[root] = share_[root] == 0;
   share_[root] = share_[root] > kLeastShare ? share_[root] / 2 : 0;
 }
 
@@ -395,15 +398,19 @@ void LastLine::gather_zones() {
   for (const Guide& guide : guides_) zones_[zone_of[find_root(guide.vertex)]].guides.push_back(&guide);
 }
 
-/// Guides count so much more than the zone's own motion that this only decides what they leave open.
+/// Guides count so much more than the zone's own motion that this only decides what they leave open; of a
+/// zone that is carried not even that, so that nothing can turn it into what guides it.
 void LastLine::scale_zone(const Zone& zone) {
   constexpr double kGuideWeight = 1e6;
+  const bool is_carried = is_carried_[zone.root] && !zone.guides.empty();
+  Vec3 carried = Vec3::Zero();
+  for (const Guide* guide : zone.guides) carried += (guide->end - guide->start) / zone.guides.size();
   RigidFit fit;
   double mass = 0;
   for (const int v : zone.vertices) {
     const double m = 1 / (*step_.inverse_mass)[v];
     mass += m;
-    fit.add(m, motion_->start[v], wanted_[v]);
+    fit.add(m, motion_->start[v], is_carried ? Vec3(motion_->start[v] + carried) : wanted_[v]);
   }
   for (const Guide* guide : zone.guides) fit.add(kGuideWeight * mass, guide->start, guide->end);
   fit.solve();

@@ -109,11 +109,12 @@ class LastLine {
   std::vector<Vec3> pushed_;        // (num_vertices) ends with impulses, before rounding
 
   // Zones.
-  std::vector<Vec3> wanted_;     // (cloth vertices) where impulses have left them
-  std::vector<int> parent_;      // (cloth vertices) of a union-find forest, -1: in no zone
-  std::vector<double> share_;    // (cloth vertices) of a root: how much of the rest its zone keeps
-  std::vector<char> is_halved_;  // (cloth vertices) of a root: share_ has been lowered in this round
-  bool has_grown_ = false;       // this round has changed a zone
+  std::vector<Vec3> wanted_;      // (cloth vertices) where impulses have left them
+  std::vector<int> parent_;       // (cloth vertices) of a union-find forest, -1: in no zone
+  std::vector<double> share_;     // (cloth vertices) of a root: how much of the rest its zone keeps
+  std::vector<char> is_halved_;   // (cloth vertices) of a root: share_ has been lowered in this round
+  std::vector<char> is_carried_;  // (cloth vertices) of a root: its zone goes where its guides take it
+  bool has_grown_ = false;        // this round has changed a zone
   std::vector<Guide> guides_;
   std::vector<Zone> zones_;
 

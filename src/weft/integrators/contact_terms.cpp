@@ -7,6 +7,8 @@ namespace weft {
 namespace {
 
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
+constexpr int kGuesses = 2;           // linearisations for which friction goes by guessed forces
+constexpr double kMostOfGuess = 1.5;  // … and then by no more than so many times as much
 
 }  // namespace
 
@@ -36,17 +38,16 @@ void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel&
                          const PinTargets& pins, double step, const Vec3& driven) {
   sticking_ = kStickSpeed * step;
   driven_ = driven;
-  is_first_ = true;
+  num_linearised_ = 0;
   terms_.clear();
+  if (contacts.empty()) return;
+  mass_per_step_.clear();
+  for (const double m : model.mass) mass_per_step_.push_back(m / (step * step));
+  for (const int p : pins.particle) mass_per_step_[p] = 0;
   for (const Contact& c : contacts) {
-    double inverse_mass = 0;
-    for (int k = 0; k < c.num_particles; ++k) {
-      const bool is_pinned = std::binary_search(pins.particle.begin(), pins.particle.end(), c.particle[k]);
-      if (!is_pinned) inverse_mass += c.weight[k] * c.weight[k] / model.mass[c.particle[k]];
-    }
-    Term term;
-    term.contact = &c;
-    if (inverse_mass > 0) term.inertia = 1 / (step * step * inverse_mass);
+    Term term{.contact = &c};
+    for (int k = 0; k < c.num_particles; ++k)
+      term.can_move |= c.weight[k] != 0 && mass_per_step_[c.particle[k]] > 0;
     terms_.push_back(term);
   }
 }
@@ -55,26 +56,49 @@ bool ContactTerms::any_active(const OffsetPositions& x) const {
   return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.contact->depth(x) > 0; });
 }
 
-/// µ N over the slide that is expected after the solve: the present one. At first, where inertia alone has
-/// taken the particles, N is the force that stops a lone stencil, and the slide is what friction leaves of
-/// it, but not less than if the velocity at the start went on: many contacts carry a sheet, some more of it,
-/// some less, and those with more must not hold it fast.
+/// From where inertia alone has taken the particles: the larger of what stops them, where many contacts bear
+/// the same particle each its share, which is right where weight presses, and of what pressed at the depth so
+/// far, carried along by the surface, which is right where tension does.
+void ContactTerms::guess_forces(const OffsetPositions& x) {
+  borne_.assign(mass_per_step_.size(), 0.0);
+  for (const Term& t : terms_) {
+    const Contact& c = *t.contact;
+    if (c.depth(x) == 0) continue;
+    for (int k = 0; k < c.num_particles; ++k) borne_[c.particle[k]] += c.weight[k] * c.weight[k];
+  }
+  for (Term& t : terms_) {
+    const Contact& c = *t.contact;
+    for (int k = 0; k < c.num_particles; ++k) {
+      const int p = c.particle[k];
+      if (borne_[p] > 0) t.inertia += c.weight[k] * c.weight[k] / borne_[p] * mass_per_step_[p];
+    }
+    t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * c.depth(x), c.depth_before);
+  }
+}
+
+/// µ N over the slide that is expected after the solve: the present one. At first the slide is what friction
+/// leaves of inertia's, but not less than if the velocity at the start went on: of the contacts that carry a
+/// sheet those that bear more must not hold it fast.
 double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3& slide) const {
   const Contact& c = *t.contact;
-  const double length = slide.norm();
-  if (!is_first_) return c.friction * c.stiffness * depth / std::max(length, sticking_);
-  const double most = c.friction * t.inertia / (t.inertia + c.stiffness) * c.stiffness * depth;
-  const Vec3 driven = driven_ - driven_.dot(c.normal) * c.normal;
-  const double expected = std::max(length - most / t.inertia, (slide - driven).norm());
+  const double push =
+      num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, kMostOfGuess * t.guess);
+  const double most = c.friction * push;
+  double expected = slide.norm();
+  if (num_linearised_ == 0) {
+    const Vec3 driven = driven_ - driven_.dot(c.normal) * c.normal;
+    expected = std::max(expected - most / t.inertia, (slide - driven).norm());
+  }
   return most / std::max(expected, sticking_);
 }
 
 double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
+  if (num_linearised_ == 0) guess_forces(x);
   double energy = 0;
   for (Term& t : terms_) {
     const Contact& c = *t.contact;
     const double depth = c.depth(x);
-    t.is_active = depth > 0 && t.inertia > 0;
+    t.is_active = depth > 0 && t.can_move;
     if (!t.is_active) t.friction = 0;
     if (!t.is_active) continue;
     const Vec3 slide = c.slide(x);
@@ -86,7 +110,7 @@ double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
     }
     energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
   }
-  is_first_ = false;
+  ++num_linearised_;
   return energy;
 }
 
@@ -108,7 +132,7 @@ void ContactTerms::compute_forces(const OffsetPositions& x, const Vec3Array& oth
   for (const Term& t : terms_) {
     const Contact& c = *t.contact;
     Vec3 force = Vec3::Zero();
-    if (t.inertia > 0) force = c.stiffness * c.depth(x) * c.normal;
+    if (t.can_move) force = c.stiffness * c.depth(x) * c.normal;
     if (t.is_active) force -= t.friction * c.slide(x);
     forces.push_back(force);
     contacts.push_back(&c);
@@ -141,13 +165,18 @@ double ContactTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec
   return dot;
 }
 
-void ContactTerms::add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const {
+void ContactTerms::add_to_preconditioners(const PaddedRows& rows, std::vector<float>& stiff,
+                                          std::vector<float>& along, ContactFilter& filter) const {
   for (const Term& t : terms_) {
     if (!t.is_active) continue;
-    for (int k = 0; k < t.contact->num_particles; ++k) {
-      const double w = t.contact->weight[k];
-      diagonal[rows.index(t.contact->particle[k])] +=
-          static_cast<float>(w * w * std::max(t.contact->stiffness, t.friction));
+    const Contact& c = *t.contact;
+    for (int k = 0; k < c.num_particles; ++k) {
+      const double share = c.weight[k] * c.weight[k];
+      if (share == 0) continue;
+      const int at = rows.index(c.particle[k]);
+      stiff[at] += static_cast<float>(share * std::max(c.stiffness, t.friction));
+      along[at] += static_cast<float>(share * t.friction);
+      filter.hold(rows, c.particle[k], c.normal);
     }
   }
 }

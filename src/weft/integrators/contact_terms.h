@@ -7,6 +7,7 @@
 #include "weft/contact/contact.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
+#include "weft/integrators/contact_filter.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft {
@@ -31,7 +32,9 @@ void give_rest_to_contacts(std::span<const Contact* const> contacts, const std::
 
 /// Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision, contact by contact. κ is chosen anew
 /// at each linearise(), such that κ |slide| becomes Coulomb's force µ N at the slide that is expected after
-/// the solve; slides slower than 1 mm/s count as sticking.
+/// the solve; slides slower than 1 mm/s count as sticking. N is guessed before the solve, and never taken as
+/// more than half as much again: a solve that is not finished holds what should come off, and leaves forces
+/// behind that are many times too large; friction that has stuck by them would not let go.
 class ContactTerms {
  public:
   /// Forgets the contacts before. `driven`: displacement in the step by gravity and wind alone [m].
@@ -55,31 +58,37 @@ class ContactTerms {
   /// q += H p, and p·Hp [J].
   double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;
 
-  /// Adds the Hessian's largest stiffness at each particle, whatever its direction [N/m].
-  void add_stiffness(const PaddedRows& rows, std::vector<float>& diagonal) const;
+  /// Adds what preconditioners must know of the Hessian: to `stiff` its largest stiffness, whatever the
+  /// direction, to `along` that along surfaces alone [N/m], and the normals to the filter.
+  void add_to_preconditioners(const PaddedRows& rows, std::vector<float>& stiff, std::vector<float>& along,
+                              ContactFilter& filter) const;
 
-  /// Calls body(particle) for the particles of contacts that pushed at the last linearise().
+  /// Calls body(contact) for those that pushed at the last linearise().
   template <class Body>
-  void for_pushed(const Body& body) const {
+  void for_active(const Body& body) const {
     for (const Term& t : terms_) {
-      if (!t.is_active) continue;
-      for (int k = 0; k < t.contact->num_particles; ++k) body(t.contact->particle[k]);
+      if (t.is_active) body(*t.contact);
     }
   }
 
  private:
   struct Term {
     const Contact* contact = nullptr;
-    double inertia = 0;  // of a lone stencil, against displacements in a step [N/m]
+    bool can_move = false;
     bool is_active = false;
+    double inertia = 0;   // against displacements in a step, its share where many contacts bear [N/m]
+    double guess = 0;     // of its force [N]
     double friction = 0;  // κ [N/m]
   };
 
+  void guess_forces(const OffsetPositions& x);
   double friction_stiffness(const Term& term, double depth, const Vec3& slide) const;
 
   double sticking_ = 0;  // slide of a step that still sticks [m]
   Vec3 driven_ = Vec3::Zero();
-  bool is_first_ = true;
+  int num_linearised_ = 0;             // in this step
+  std::vector<double> mass_per_step_;  // (num_particles) m/h², 0 of pinned particles [N/m]
+  std::vector<double> borne_;          // (num_particles) Σ w² of the contacts that push
   std::vector<Term> terms_;
 };
 

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
 constexpr double kFallingShare = 0.5;  // of the energy that is left: likewise if the last step took off more
-constexpr int kNewtonStepsInContact = 2;   // the first one knows neither what touches nor how hard
+constexpr int kNewtonStepsInContact = 3;   // the first one knows neither what touches nor how hard
 constexpr int kTimesCoasting = 2;          // as many iterations from x + h v: all of gravity is left to them
 constexpr double kNoise = 1e-9;            // of the decrease: below, iterations in floats only stir rounding
 constexpr int kMostStepsBeyondLimit = 24;  // as long as a stretch is further beyond it than allowed
@@ -162,10 +162,13 @@ class NewtonIntegrator final : public Integrator {
     set_weights(model, wind, 1 / scheme.step);
     least_weight_ = potential_.weight;
     has_limit_couplings_ = false;
-    if (!same_springs) preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
+    if (!same_springs) {
+      preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
+      has_stiff_springs_ = false;
+    }
     set_weights(model, wind, rate);
     preconditioner_.set_diagonal(potential_.weight, jobs);
-    has_contact_diagonal_ = false;
+    is_in_contact_ = false;
   }
 
   /// D for β/h = `rate` [N/m].
@@ -233,7 +236,7 @@ class NewtonIntegrator final : public Integrator {
     int more = 1;  // times as many iterations, where the guard asks for another Newton step
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(jobs);
-      if (has_contact_diagonal_) asked = std::max(asked, kNewtonStepsInContact);
+      if (is_in_contact_) asked = std::max(asked, kNewtonStepsInContact);
       const CgReport linear = solve(effort, more, jobs);
       *report.linear_iterations += linear.iterations;
       double share = 1, after = try_step(share, jobs);
@@ -247,7 +250,7 @@ class NewtonIntegrator final : public Integrator {
       const double predicted = share * (2 - share) * linear.decrease;
       const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
       // The first step's decrease tells nothing: most of it is what the prediction had ignored.
-      const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !has_contact_diagonal_ &&
+      const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !is_in_contact_ &&
                               before - after > kFallingShare * after + noise_;
       const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * after + noise_;
       const int most = is_beyond ? kMostStepsBeyondLimit : effort.most_newton_steps;
@@ -266,7 +269,7 @@ class NewtonIntegrator final : public Integrator {
     energy += contacts_.linearise(positions(correction_), force_);
     energy += air_.linearise(rows_, correction_, force_);
     update_limit_couplings(jobs);
-    update_contact_diagonal(jobs);
+    update_for_contacts(jobs);
     set_at_pins(Vec3::Zero(), force_);
     return energy;
   }
@@ -281,6 +284,7 @@ class NewtonIntegrator final : public Integrator {
     preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_, limit_couplings_);
     preconditioner_.set_diagonal(potential_.weight, jobs);
     has_limit_couplings_ = any;
+    has_stiff_springs_ = false;
   }
 
   /// Whether some coupling is several times as stiff as the preconditioner's, or the other way round.
@@ -298,22 +302,31 @@ class NewtonIntegrator final : public Integrator {
            potential_.elements().peak_strain() > model_->elements->limit.allowed();
   }
 
-  void update_contact_diagonal(JobSystem& jobs) {
-    bool any = false;
+  /// What the preconditioners know of contacts.
+  void update_for_contacts(JobSystem& jobs) {
+    const bool was_in_contact = is_in_contact_;
+    is_in_contact_ = false;
     free_pieces_.release();
-    contacts_.for_pushed([&](int particle) {
-      any = true;
-      free_pieces_.hold(particle);
+    filter_.clear();
+    contacts_.for_active([&](const Contact& contact) {
+      is_in_contact_ = true;
+      if (contact.is_within_cloth()) return;
+      for (int k = 0; k < contact.num_particles; ++k) free_pieces_.hold(contact.particle[k]);
     });
-    if (!any && !has_contact_diagonal_) return;
-    diagonal_ = potential_.weight;
-    contacts_.add_stiffness(rows_, diagonal_);
+    if (!is_in_contact_ && !was_in_contact) return;
+    diagonal_ = stiff_diagonal_ = potential_.weight;
+    contacts_.add_to_preconditioners(rows_, stiff_diagonal_, diagonal_, filter_);
     preconditioner_.set_diagonal(diagonal_, jobs);
-    has_contact_diagonal_ = any;
+    if (!is_in_contact_) return;
+    if (!has_stiff_springs_)
+      stiff_preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_,
+                                        has_limit_couplings_ ? built_limit_ : std::vector<double>());
+    has_stiff_springs_ = true;
+    stiff_preconditioner_.set_diagonal(stiff_diagonal_, jobs);
   }
 
   CgReport solve(const Effort& effort, int more, JobSystem& jobs) {
-    CgSettings settings = has_contact_diagonal_ ? effort.in_contact : effort.free;
+    CgSettings settings = is_in_contact_ ? effort.in_contact : effort.free;
     if (coasts_ && settings_.iterations == 0) {
       settings.iterations *= kTimesCoasting;
       settings.least *= kTimesCoasting;
@@ -328,8 +341,12 @@ class NewtonIntegrator final : public Integrator {
       set_at_pins(Vec3::Zero(), q);
       return dot;
     };
+    const auto free = [&](const Vec3Array& r, Vec3Array& z) { return preconditioner_.apply(r, jobs, z); };
+    const auto stiff = [&](const Vec3Array& r, Vec3Array& z) {
+      return stiff_preconditioner_.apply(r, jobs, z);
+    };
     const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
-      return preconditioner_.apply(r, jobs, z);
+      return filter_.apply(stiff, free, r, z);
     };
     return gradients_.solve(multiply, precondition, force_, settings, jobs, direction_);
   }
@@ -373,14 +390,16 @@ class NewtonIntegrator final : public Integrator {
   double reach_rate_ = 0;
   Key key_;
   IncrementalPotential potential_;
-  ScalarPreconditioner preconditioner_;
+  ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // without contacts, with them
+  bool has_stiff_springs_ = false;                              // the latter, as they are now
+  ContactFilter filter_;                                        // between them
   ConjugateGradients gradients_;
   ContactTerms contacts_;
   std::vector<Vec3> contact_forces_;
   AirTerms air_;
-  bool coasts_ = false;                                // the step started from x + h v
-  bool has_contact_diagonal_ = false;                  // of the preconditioner
-  std::vector<float> diagonal_;                        // D and contacts [N/m]
+  bool coasts_ = false;  // the step started from x + h v
+  bool is_in_contact_ = false;
+  std::vector<float> diagonal_, stiff_diagonal_;       // of the preconditioners [N/m]
   const ClothModel* model_ = nullptr;                  // of the step being taken
   std::vector<float> least_weight_;                    // D for the longest memory [N/m]
   std::vector<double> limit_couplings_, built_limit_;  // as they should be, as the preconditioner has them

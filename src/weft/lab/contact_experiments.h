@@ -41,9 +41,11 @@ struct RestingSheet {
 enum class Support { ball, floor };
 RestingSheet rest_on(const ContactExperiment& setup, Support support, double seconds);
 
-/// A sheet on a ball that is spun up to half a turn per second within a second.
+/// A sheet on a ball that is spun up to half a turn per second within a second. Not longer: on a smooth ball
+/// no sheet stays.
 struct Spin {
-  double turned_ball = 0, turned_sheet = 0;  // after two seconds [rad]
+  double turned_ball = 0, turned_sheet = 0;  // after that second [rad]
+  double expected = 0;  // of a rigid flat sheet: µ g ⟨r⟩/(2⟨r²⟩), or the ball's [rad]
 };
 Spin spin_ball(const ContactExperiment& setup, double friction);
 

@@ -1,0 +1,48 @@
+#include "weft/integrators/contact_filter.h"
+
+namespace weft {
+namespace {
+
+/// Normals that differ by less than this from those a particle has already are none of their own [1].
+constexpr double kNewDirection = 0.3;
+
+}  // namespace
+
+void ContactFilter::clear() {
+  for (const Held& h : held_) index_[h.at] = -1;
+  held_.clear();
+}
+
+void ContactFilter::hold(const PaddedRows& rows, int particle, const Vec3& normal) {
+  if (index_.size() != rows.size()) index_.assign(rows.size(), -1);
+  const int at = rows.index(particle);
+  if (index_[at] < 0) {
+    index_[at] = static_cast<int>(held_.size());
+    held_.push_back({.at = at});
+  }
+  Held& h = held_[index_[at]];
+  Vec3 rest = normal;
+  for (int n = 0; n < h.num_normals; ++n) rest -= rest.dot(h.normal[n]) * h.normal[n];
+  const double length = rest.norm();
+  if (h.num_normals == 3 || length < kNewDirection) return;
+  h.normal[h.num_normals++] = rest / length;
+}
+
+void ContactFilter::take_normals(Vec3Array& field) const {
+  for (const Held& h : held_) {
+    Vec3 left = field.get(h.at);
+    for (int n = 0; n < h.num_normals; ++n) left -= h.normal[n].dot(left) * h.normal[n];
+    field.set(h.at, left);
+  }
+}
+
+void ContactFilter::add_slid(Vec3Array& z) const {
+  const auto add = [&](float* sum, const float* more) {
+    for (std::size_t i = 0; i < z.size(); ++i) sum[i] += more[i];
+  };
+  add(z.x(), slid_.x());
+  add(z.y(), slid_.y());
+  add(z.z(), slid_.z());
+}
+
+}  // namespace weft

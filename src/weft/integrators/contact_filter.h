@@ -1,0 +1,56 @@
+#pragma once
+/// Private to integrators/: what a preconditioner that is the same for x, y and z does about contacts.
+
+#include <array>
+#include <vector>
+
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+
+namespace weft {
+
+/// Contacts are a thousand times stiffer than inertia, but along their normals alone. A scalar matrix stiff
+/// enough for them holds cloth fast along the surface too, where it slides. So there are two,
+///
+///     P⁻¹ = V_stiff + S V_free S,     S = I − Σ n nᵀ
+///
+/// with contacts in the diagonal of the first and their friction alone in that of the second, which is for
+/// what moves along the surface: n are, of each particle, up to three orthonormal directions in which
+/// contacts hold it. Symmetric and positive definite if the first is.
+class ContactFilter {
+ public:
+  void clear();
+
+  /// A contact that holds the particle along this unit vector.
+  void hold(const PaddedRows& rows, int particle, const Vec3& normal);
+
+  /// z = P⁻¹ r; stiff(r, z) and free(r, z) compute V r and return r·V r. Returns r·z.
+  template <class Stiff, class Free>
+  double apply(const Stiff& stiff, const Free& free, const Vec3Array& r, Vec3Array& z) {
+    if (held_.empty()) return free(r, z);
+    const double dot = stiff(r, z);
+    along_surface_ = r;
+    take_normals(along_surface_);
+    if (slid_.size() != r.size()) slid_ = Vec3Array(r.size());
+    const double rest = free(along_surface_, slid_);
+    take_normals(slid_);
+    add_slid(z);
+    return dot + rest;
+  }
+
+ private:
+  struct Held {
+    int at = 0;  // index by the rows
+    int num_normals = 0;
+    std::array<Vec3, 3> normal;
+  };
+
+  void take_normals(Vec3Array& field) const;
+  void add_slid(Vec3Array& z) const;
+
+  std::vector<Held> held_;
+  std::vector<int> index_;          // (rows) in held_, -1: none
+  Vec3Array along_surface_, slid_;  // S r, S V_free S r
+};
+
+}  // namespace weft
