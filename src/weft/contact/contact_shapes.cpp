@@ -15,6 +15,9 @@ constexpr double kNearerThanCorners = 1e-6;
 /// … and for the solve by this share of half the thickness: what keeps edges and triangles out of the shape.
 constexpr double kMuchNearer = 0.6;
 
+/// A shape is round whose radius is so many times the longest edge.
+constexpr double kRound = 2;
+
 /// Particles keep half the thickness from a shape. What is between them keeps this share of it, so that cloth
 /// rests on its particles alone unless cells are coarse: others would bear some of the same weight.
 constexpr double kBetweenKeeps = 0.2;
@@ -30,8 +33,11 @@ Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).
 Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
 Bound bound_of(const MeshShape&) { return {}; }
 
-bool is_round(const ColliderShape& shape) {
-  return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
+/// Of balls and capsules; others are sharp.
+double radius_of(const ColliderShape& shape) {
+  if (const Sphere* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
+  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+  return 0;
 }
 
 }  // namespace
@@ -65,7 +71,8 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
   }
   if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
   const bool is_for_solve = share_of_travel > 0;
-  if (is_for_solve && is_round(moving.after)) {
+  const bool is_round = radius_of(moving.after) > kRound * proximity_.longest_edge();
+  if (is_for_solve && is_round) {
     collect_edges(shape, share_of_travel);
   } else {
     collect_triangles(shape, share_of_travel);
