@@ -14,7 +14,7 @@ namespace {
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
-/// What the solve has left pressed into a collider by less than this share of the thickness stays so: a
+/// What the solve has left pressed into a collider by less than this share of the gap stays so: a
 /// contact's depth is its force, and the next step's friction starts from it.
 constexpr double kPressedIn = 0.2;
 

@@ -390,7 +390,7 @@ class NewtonIntegrator final : public Integrator {
   double reach_rate_ = 0;
   Key key_;
   IncrementalPotential potential_;
-  ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // without contacts, with them
+  ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // with contacts' friction, with all of them
   bool has_stiff_springs_ = false;                              // the latter, as they are now
   ContactFilter filter_;                                        // between them
   ConjugateGradients gradients_;
