@@ -39,6 +39,14 @@ TEST(ContactExperiments, AFoldInFreeFallGainsWhatGravityGives) {
   EXPECT_NEAR(drop_fold({.cells = 12}, 0.3).worst_gain, 1, 1e-4);
 }
 
+TEST(ContactExperiments, SheetsThatFlyIntoEachOtherKeepTheirCommonMomentum) {
+  for (const char* name : {"newton", "implicit_euler"}) {
+    const Collision collision = collide_sheets({.integrator = name, .cells = 10}, 0.5);
+    EXPECT_LT(collision.momentum_change, 1e-6) << name << "; solved one after the other it was 0.3";
+    EXPECT_GT(collision.contacts, 100) << name;
+  }
+}
+
 TEST(ContactExperiments, ASheetComesToRestOnABall) {
   const RestingSheet rest = rest_on({.cells = 24}, Support::ball, 10);
   EXPECT_LT(rest.kinetic, 5e-5) << "10 mm/s; with triangles' nearest points in the solve it was 40 mm/s";

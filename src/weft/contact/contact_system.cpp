@@ -64,6 +64,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
     }
   }
   place_bodies();
+  begin_momentum();
 }
 
 void ContactSystem::renumber(const std::vector<Collider>& colliders) {
@@ -112,6 +113,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
   }
   surface.build_fans();
+  find_pieces(surface);
   const int n = surface.num_vertices;
   motion_.start.assign(n, Vec3::Zero());
   motion_.end.assign(n, Vec3::Zero());
@@ -140,10 +142,11 @@ void ContactSystem::place_bodies() {
   }
 }
 
-void ContactSystem::end_of(int cloth) {
+void ContactSystem::end_of(int cloth, std::span<const char> pushing) {
   for (int v = first_vertex_[cloth]; v < first_vertex_[cloth + 1]; ++v) {
     motion_.end[v] = cloths_[cloth].state->position(v - first_vertex_[cloth]);
   }
+  note_pushes(cloth, pushing);
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {

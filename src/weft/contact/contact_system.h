@@ -24,6 +24,7 @@ struct ContactCloth {
   const ClothModel* model = nullptr;
   ClothState* state = nullptr;
   const std::vector<char>* is_pinned = nullptr;  // (num_particles)
+  bool is_free = false;                          // gravity and contact alone act on it from outside
 };
 
 struct ContactStep {
@@ -38,6 +39,7 @@ struct ContactStep {
 ///     predict           for integrators that resolve contacts: what will probably meet
 ///     find_contacts     … as planes in one cloth's way
 ///     end_of            a cloth has been moved
+///     keep_momentum     what cloths have given each other one after the other is made to sum to nothing
 ///     hold_off          what has come too close all the same is set apart
 ///     stop_crossings    and whatever would still go through anything is stopped (see last_line.h)
 ///
@@ -60,8 +62,14 @@ class ContactSystem {
   /// The forces that the cloth's integrator gave the contacts it was told of last (contacts) [N].
   void add_solved(int cloth, std::span<const Vec3> forces);
 
-  /// The cloth's state now is that of the end of the step.
-  void end_of(int cloth);
+  /// The cloth's state now is that of the end of the step; `pushing` (contacts): whether each contact that it
+  /// was told of last has pushed, nothing if it was told of none.
+  void end_of(int cloth, std::span<const char> pushing = {});
+
+  /// Cloths are solved for one after the other, and each has its own idea of the forces between them. Free
+  /// cloths that touch each other alone, and nothing else, are moved together so that their common momentum
+  /// has changed by gravity alone.
+  void keep_momentum(const Vec3& gravity);
 
   /// Sets apart what is too close, takes from velocities what approaches, and slows what slides (see
   /// constraint.h). To be called when every cloth is at its end.
@@ -119,6 +127,13 @@ class ContactSystem {
 
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
+  void find_pieces(const Surface& surface);
+  void begin_momentum();
+  void note_pushes(int cloth, std::span<const char> pushing);
+  Vec3 momentum_of(int cloth) const;
+  void change_velocity(int cloth, const Vec3& change);
+  int group_of(int cloth) const;
+
   void renumber(const std::vector<Collider>& colliders);
   void place_bodies();
   void collect_pairs(JobSystem& jobs);
@@ -157,7 +172,8 @@ class ContactSystem {
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
-  std::vector<char> is_solid_;  // (num_vertices) on a closed mesh
+  std::vector<char> is_solid_;      // (num_vertices) on a closed mesh
+  std::vector<char> is_one_piece_;  // (cloths)
   Proximity proximity_;
 
   // The step.
@@ -169,8 +185,11 @@ class ContactSystem {
   SurfaceMotion motion_;
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;
-  std::vector<int> found_;      // of these, those that find_contacts told of last
-  std::vector<Touch> touches_;  // in this step
+  std::vector<int> found_;             // of these, those that find_contacts told of last
+  std::vector<Touch> touches_;         // in this step
+  std::vector<Vec3> momentum_before_;  // (cloths) [kg m/s]
+  std::vector<int> touching_;          // (cloths) each has pushed itself or another one: the roots are groups
+  std::vector<char> is_held_;          // (cloths) something else than free cloth has pushed it
 
   // Work space.
   std::vector<std::vector<Constraint>> chunks_;

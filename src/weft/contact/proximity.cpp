@@ -20,6 +20,9 @@ constexpr double kSharp = 0.87;
 constexpr int kFewTriangles = 500;
 constexpr double kFarthest = 100;
 
+/// If more than this share of the vertices have moved, all pairs are looked for anew.
+constexpr double kManyMoved = 0.4;
+
 /// No vertex may move farther against the rest than this many times the cloth's size [1].
 constexpr double kMostOfSize = 10;
 
@@ -48,58 +51,73 @@ void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_ver
 }
 
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
-  if (still_holds(motion)) return;
-  rebuild(motion, jobs);
-}
-
-/// Whatever two features do in straight lines, each corner stays within the slack of where it was in the
-/// motion that the lists were made for, at every time.
-bool Proximity::still_holds(const SurfaceMotion& motion) const {
   if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness)
-    return false;
-  return is_within_slack(motion.start, made_for_.start) && is_within_slack(motion.end, made_for_.end);
+    return rebuild(motion, jobs);
+  find_moved(motion);
+  if (moved_.empty()) return;
+  const bool are_many =
+      static_cast<double>(moved_.size()) > kManyMoved * static_cast<double>(motion.end.size());
+  if (are_many || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
 }
 
-/// But for what all cloth has moved in common.
-bool Proximity::is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const {
-  Vec3 mean = Vec3::Zero();
-  for (int v = 0; v < num_cloth_vertices_; ++v) mean += x[v] - reference[v];
-  mean /= std::max(1, num_cloth_vertices_);
-  double farthest_sq = 0;
-  for (std::size_t v = 0; v < x.size(); ++v)
-    farthest_sq = std::max(farthest_sq, (x[v] - reference[v] - mean).squaredNorm());
-  return farthest_sq <= made_with_ * made_with_;
-}
-
-void Proximity::box_vertices(const SurfaceMotion& motion) {
-  constexpr double kRounding = 1e-6;  // of sums of floats, relative to the size of what is looked at
-  const std::size_t n = motion.start.size();
-  vertex_box_.resize(n);
-  const Vec3 origin = motion.start[0];
-  for (std::size_t v = 0; v < n; ++v) {
-    const Vec3 at = motion.start[v] - origin, way = motion.end[v] - motion.start[v];
-    const double margin = motion.half_thickness[v] + slack_ + kRounding * (at.norm() + way.norm());
-    vertex_box_[v] = {make_aabb(at, at, margin), make_aabb(way, way)};
+/// What two features do in straight lines keeps their pair, as long as each corner stays within the slack of
+/// where it was, at every time.
+void Proximity::find_moved(const SurfaceMotion& motion) {
+  moved_.clear();
+  drift_at_start_ = find_drift(motion.start, made_for_.start);
+  drift_at_end_ = find_drift(motion.end, made_for_.end);
+  const double most_sq = made_with_ * made_with_;
+  for (int v = 0; v < surface_.num_vertices; ++v) {
+    const Vec3 at_start = motion.start[v] - made_for_.start[v] - drift_at_start_,
+               at_end = motion.end[v] - made_for_.end[v] - drift_at_end_;
+    if (!(at_start.squaredNorm() <= most_sq && at_end.squaredNorm() <= most_sq)) moved_.push_back(v);
   }
 }
 
-MovingAabb Proximity::box_of_triangle(int triangle) const {
-  const Triangle& t = surface_.triangles[triangle];
-  MovingAabb box = vertex_box_[t[0]];
-  box.merge(vertex_box_[t[1]]);
-  box.merge(vertex_box_[t[2]]);
-  return box;
+/// What all cloth has moved in common.
+Vec3 Proximity::find_drift(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const {
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < num_cloth_vertices_; ++v) sum += x[v] - reference[v];
+  return sum / std::max(1, num_cloth_vertices_);
+}
+
+/// Of the vertices in is_moved_ and the triangles in is_renewed_.
+void Proximity::make_boxes(JobSystem& jobs) {
+  constexpr int kGrain = 4096;
+  vertex_box_.resize(surface_.num_vertices);
+  triangle_box_.resize(surface_.triangles.size());
+  parallel_for(jobs, surface_.num_vertices, kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      if (is_moved_[v]) vertex_box_[v] = box_of_vertex(v);
+    }
+  });
+  parallel_for(jobs, static_cast<int>(surface_.triangles.size()), kGrain, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      if (!is_renewed_[t]) continue;
+      const auto [i, j, k] = surface_.triangles[t];
+      triangle_box_[t] = vertex_box_[i];
+      triangle_box_[t].merge(vertex_box_[j]);
+      triangle_box_[t].merge(vertex_box_[k]);
+    }
+  });
+}
+
+MovingAabb Proximity::box_of_vertex(int v) const {
+  constexpr double kRounding = 1e-6;  // of sums of floats, relative to the size of what is looked at
+  const Vec3 at = made_for_.start[v] - origin_, way = made_for_.end[v] - made_for_.start[v];
+  const double margin = made_for_.half_thickness[v] + made_with_ + kRounding * (at.norm() + way.norm());
+  return {make_aabb(at, at, margin), make_aabb(way, way)};
 }
 
 /// Over the triangles [begin, end).
 void Proximity::fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
-  const auto box_of = [&](int item) { return box_of_triangle(begin + item); };
+  const auto box_of = [&](int item) { return triangle_box_[begin + item]; };
   if (tree.num_items() == end - begin) {
     tree.refit(box_of, jobs);
     if (tree.looseness() < kLoosest) return;
   }
   std::vector<Aabb> boxes;
-  for (int t = begin; t < end; ++t) boxes.push_back(box_of_triangle(t).box);
+  for (int t = begin; t < end; ++t) boxes.push_back(triangle_box_[t].box);
   tree.build(boxes, {surface_.triangles.begin() + begin, surface_.triangles.begin() + end}, jobs);
   tree.refit(box_of, jobs);
 }
@@ -131,24 +149,77 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   edge_edge_.clear();
   wildest_ = find_wildest(motion);
   if (wildest_ >= 0) return made_for_.end.clear();
-  box_vertices(motion);
+  made_for_ = motion;
+  made_with_ = slack_;
+  origin_ = motion.start[0];
   const int num_triangles = static_cast<int>(surface_.triangles.size());
+  is_moved_.assign(surface_.num_vertices, 1);
+  is_near_.assign(surface_.num_vertices, 1);
+  is_renewed_.assign(num_triangles, 1);
+  make_boxes(jobs);
   fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
-  cloth_tree_.find_self_pairs(jobs, search_);
-  add_pairs(motion, search_.pairs, 0, false, jobs);
-  find_fans(motion);
-  add_pairs(motion, fans_, 0, true, jobs);
-  if (num_triangles > num_cloth_triangles_) {
-    fit_tree(body_tree_, num_cloth_triangles_, num_triangles, jobs);
-    cloth_tree_.find_pairs(body_tree_, jobs, search_);
-    add_pairs(motion, search_.pairs, num_cloth_triangles_, false, jobs);
+  if (num_triangles > num_cloth_triangles_) fit_tree(body_tree_, num_cloth_triangles_, num_triangles, jobs);
+  find_pairs(AabbTree::Extent::all, jobs);
+}
+
+/// The pairs of moved_ alone. False if the tree has become loose: all is to be looked for anew.
+bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
+  if (find_wildest(motion) >= 0) return false;
+  mark_moved(motion);
+  make_boxes(jobs);
+  const int num_triangles = static_cast<int>(surface_.triangles.size());
+  const auto fit = [&](AabbTree& tree, int begin, int end) {
+    tree.mark(std::span(is_renewed_).subspan(begin, end - begin));
+    tree.refit([&](int item) { return triangle_box_[begin + item]; }, jobs, AabbTree::Extent::marked);
+    return tree.looseness() < kLoosest;
+  };
+  if (!fit(cloth_tree_, 0, num_cloth_triangles_)) return false;
+  if (num_triangles > num_cloth_triangles_ && !fit(body_tree_, num_cloth_triangles_, num_triangles))
+    return false;
+  drop_pairs_of_moved();
+  find_pairs(AabbTree::Extent::marked, jobs);
+  return true;
+}
+
+/// … and where the lists now have them: where they would be had they not moved in common.
+void Proximity::mark_moved(const SurfaceMotion& motion) {
+  is_moved_.assign(surface_.num_vertices, 0);
+  is_near_.assign(surface_.num_vertices, 0);
+  is_renewed_.assign(surface_.triangles.size(), 0);
+  for (const int v : moved_) {
+    made_for_.start[v] = motion.start[v] - drift_at_start_;
+    made_for_.end[v] = motion.end[v] - drift_at_end_;
+    is_moved_[v] = 1;
+    for (const int t : surface_.triangles_at(v)) {
+      is_renewed_[t] = 1;
+      for (const int w : surface_.triangles[t]) is_near_[w] = 1;
+    }
+  }
+}
+
+void Proximity::drop_pairs_of_moved() {
+  const auto has_moved = [&](int edge) {
+    const auto [i, j] = surface_.edges[edge];
+    return is_moved_[i] || is_moved_[j];
+  };
+  std::erase_if(vertex_triangle_, [&](const FeaturePair& p) { return is_moved_[p.a] || is_renewed_[p.b]; });
+  std::erase_if(edge_edge_, [&](const FeaturePair& p) { return has_moved(p.a) || has_moved(p.b); });
+}
+
+/// Of triangles of which one is in is_renewed_.
+void Proximity::find_pairs(AabbTree::Extent extent, JobSystem& jobs) {
+  cloth_tree_.find_self_pairs(jobs, search_, extent);
+  add_pairs(search_.pairs, 0, false, jobs);
+  find_fans(jobs);
+  add_pairs(fans_, 0, true, jobs);
+  if (static_cast<int>(surface_.triangles.size()) > num_cloth_triangles_) {
+    cloth_tree_.find_pairs(body_tree_, jobs, search_, extent);
+    add_pairs(search_.pairs, num_cloth_triangles_, false, jobs);
   }
   // The tree's shape, and with it the order, depends on what came before; contact must not.
   put_in_order(surface_.num_vertices, vertex_triangle_);
   put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
-  measure_edges(motion);
-  made_for_ = motion;
-  made_with_ = slack_;
+  measure_edges();
   choose_slack();
 }
 
@@ -161,18 +232,17 @@ void Proximity::choose_slack() {
 }
 
 /// Each end may move by the slack before this is done again.
-void Proximity::measure_edges(const SurfaceMotion& motion) {
+void Proximity::measure_edges() {
   double longest_sq = 0;
   for (const auto& [i, j] : surface_.edges) {
     if (i < num_cloth_vertices_)
-      longest_sq = std::max(longest_sq, (motion.end[j] - motion.end[i]).squaredNorm());
+      longest_sq = std::max(longest_sq, (made_for_.end[j] - made_for_.end[i]).squaredNorm());
   }
-  longest_edge_ = std::sqrt(longest_sq) + 2 * slack_;
+  longest_edge_ = std::sqrt(longest_sq) + 2 * made_with_;
 }
 
 /// Of all these pairs of triangles, the second one counted from `first`.
-void Proximity::add_pairs(const SurfaceMotion& motion, const std::vector<ItemPair>& triangles, int first,
-                          bool is_fan, JobSystem& jobs) {
+void Proximity::add_pairs(const std::vector<ItemPair>& triangles, int first, bool is_fan, JobSystem& jobs) {
   constexpr int kGrain = 2048;
   const auto append = [](const std::vector<FeaturePair>& from, std::vector<FeaturePair>& to) {
     to.insert(to.end(), from.begin(), from.end());
@@ -180,7 +250,8 @@ void Proximity::add_pairs(const SurfaceMotion& motion, const std::vector<ItemPai
   collect_in_order(
       jobs, static_cast<int>(triangles.size()), kGrain, chunks_,
       [&](int p, PairChunk& chunk) {
-        add_pairs_of_triangles(motion, {triangles[p].a, triangles[p].b + first}, is_fan, chunk);
+        const ItemPair pair{triangles[p].a, triangles[p].b + first};
+        if (is_renewed_[pair.a] || is_renewed_[pair.b]) add_pairs_of_triangles(pair, is_fan, chunk);
       },
       [&](const PairChunk& chunk) {
         append(chunk.vertex_triangle, vertex_triangle_);
@@ -207,19 +278,18 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
   }
 }
 
-void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan,
-                                       PairChunk& chunk) const {
+void Proximity::add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairChunk& chunk) const {
   const Surface::OwnedFeatures &a = surface_.owned[pair.a], &b = surface_.owned[pair.b];
   const Triangle &ta = surface_.triangles[pair.a], &tb = surface_.triangles[pair.b];
   for (const int v : a.vertex) {
-    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(motion, v, pair.b, is_fan, chunk);
+    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(v, pair.b, is_fan, chunk);
   }
   for (const int v : b.vertex) {
-    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(motion, v, pair.a, is_fan, chunk);
+    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(v, pair.a, is_fan, chunk);
   }
   for (const int e : a.edge) {
     for (const int f : b.edge) {
-      if (e >= 0 && f >= 0) add_edge_edge(motion, std::min(e, f), std::max(e, f), is_fan, chunk);
+      if (e >= 0 && f >= 0) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
     }
   }
 }
@@ -227,40 +297,37 @@ void Proximity::add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPa
 /// How near two features must be at the start to become close during the step: a and b are their corners.
 /// However far both move, only what they move against each other brings them nearer.
 template <std::size_t kA, std::size_t kB>
-double Proximity::reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
-                                const std::array<int, kB>& b) const {
+double Proximity::reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const {
+  const SurfaceMotion& motion = made_for_;
   double travel_sq = 0;
   for (const int v : a) {
     const Vec3 way = motion.end[v] - motion.start[v];
     for (const int w : b)
       travel_sq = std::max(travel_sq, (way - (motion.end[w] - motion.start[w])).squaredNorm());
   }
-  return motion.half_thickness[a[0]] + motion.half_thickness[b[0]] + 2 * slack_ + std::sqrt(travel_sq);
+  return motion.half_thickness[a[0]] + motion.half_thickness[b[0]] + 2 * made_with_ + std::sqrt(travel_sq);
 }
 
 /// distance(x) is that of the two features where vertices are at x. Neighbours on the mesh, in one fan, may
 /// always come nearer than at rest.
 template <class Distance>
-void Proximity::add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
-                         const Distance& distance, std::vector<FeaturePair>& pairs) const {
-  if (distance(motion.start).distance_sq > reach * reach) return;
+void Proximity::add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
+                         std::vector<FeaturePair>& pairs) const {
+  if (distance(made_for_.start).distance_sq > reach * reach) return;
   if (is_fan) pair.max_gap = kShareOfRest * static_cast<float>(distance(rest_).distance());
   pairs.push_back(pair);
 }
 
-void Proximity::add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan,
-                                    PairChunk& chunk) const {
-  if (!vertex_box_[vertex].may_meet(box_of_triangle(triangle))) return;
+void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const {
+  if (!vertex_box_[vertex].may_meet(triangle_box_[triangle])) return;
   const Triangle& t = surface_.triangles[triangle];
   const auto distance = [&](const std::vector<Vec3>& x) {
     return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
   };
-  const double reach = reach_between(motion, std::array{vertex}, t);
-  add_pair(motion, {vertex, triangle}, reach, is_fan, distance, chunk.vertex_triangle);
+  add_pair({vertex, triangle}, reach_between(std::array{vertex}, t), is_fan, distance, chunk.vertex_triangle);
 }
 
-void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan,
-                              PairChunk& chunk) const {
+void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
   MovingAabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
@@ -270,40 +337,52 @@ void Proximity::add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is
   const auto distance = [&](const std::vector<Vec3>& x) {
     return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
   };
-  add_pair(motion, {a, b}, reach_between(motion, e, f), is_fan, distance, chunk.edge_edge);
+  add_pair({a, b}, reach_between(e, f), is_fan, distance, chunk.edge_edge);
 }
 
-/// Marks the vertices at which the cloth makes a point, where it is at x.
-void Proximity::mark_sharp(const std::vector<Vec3>& x) {
-  fan_shape_.resize(num_cloth_triangles_);
-  for (int t = 0; t < num_cloth_triangles_; ++t) {
-    const auto [i, j, k] = surface_.triangles[t];
-    const Vec3 area = (x[j] - x[i]).cross(x[k] - x[i]);
-    const double longest_sq =
-        std::max({(x[j] - x[i]).squaredNorm(), (x[k] - x[j]).squaredNorm(), (x[i] - x[k]).squaredNorm()});
-    fan_shape_[t] = {area.stableNormalized(), longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0};
-  }
-  for (int v = 0; v < num_cloth_vertices_; ++v) {
-    Vec3 sum = Vec3::Zero();
-    for (const int t : surface_.triangles_at(v)) sum += fan_shape_[t].normal;
-    const double length = sum.norm();
-    for (const int t : surface_.triangles_at(v)) {
-      const FanShape& shape = fan_shape_[t];
-      const double facing = shape.normal.dot(sum);
-      if (!(facing >= kSharp * length && facing * shape.height > 2 * slack_ * length)) is_sharp_[v] = 1;
+/// Of the triangles in is_renewed_, where vertices are at x.
+void Proximity::find_fan_shapes(const std::vector<Vec3>& x, std::vector<FanShape>& shapes, JobSystem& jobs) {
+  constexpr int kGrain = 2048;
+  shapes.resize(num_cloth_triangles_);
+  parallel_for(jobs, num_cloth_triangles_, kGrain, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      if (!is_renewed_[t]) continue;
+      const auto [i, j, k] = surface_.triangles[t];
+      const Vec3 area = (x[j] - x[i]).cross(x[k] - x[i]);
+      const double longest_sq =
+          std::max({(x[j] - x[i]).squaredNorm(), (x[k] - x[j]).squaredNorm(), (x[i] - x[k]).squaredNorm()});
+      shapes[t] = {area.stableNormalized(), longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0};
     }
+  });
+}
+
+/// Whether the cloth makes a point there.
+bool Proximity::is_sharp(int vertex, const std::vector<FanShape>& shapes) const {
+  Vec3 sum = Vec3::Zero();
+  for (const int t : surface_.triangles_at(vertex)) sum += shapes[t].normal;
+  const double length = sum.norm();
+  for (const int t : surface_.triangles_at(vertex)) {
+    const double facing = shapes[t].normal.dot(sum);
+    if (!(facing >= kSharp * length && facing * shapes[t].height > 2 * made_with_ * length)) return true;
   }
+  return false;
 }
 
 /// Triangles that share a vertex or an edge are not reported by the tree. They matter only where the cloth
 /// makes a point or a fold. Two that share an edge are found at both of its ends.
-void Proximity::find_fans(const SurfaceMotion& motion) {
+void Proximity::find_fans(JobSystem& jobs) {
+  constexpr int kGrain = 2048;
+  find_fan_shapes(made_for_.start, shape_at_start_, jobs);
+  find_fan_shapes(made_for_.end, shape_at_end_, jobs);
+  is_sharp_.resize(num_cloth_vertices_);
+  parallel_for(jobs, num_cloth_vertices_, kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      if (is_near_[v]) is_sharp_[v] = is_sharp(v, shape_at_start_) || is_sharp(v, shape_at_end_);
+    }
+  });
   fans_.clear();
-  is_sharp_.assign(num_cloth_vertices_, 0);
-  mark_sharp(motion.start);
-  mark_sharp(motion.end);
   for (int v = 0; v < num_cloth_vertices_; ++v) {
-    if (!is_sharp_[v]) continue;
+    if (!is_near_[v] || !is_sharp_[v]) continue;
     const std::span<const int> fan = surface_.triangles_at(v);
     for (std::size_t f = 0; f < fan.size(); ++f) {
       for (std::size_t g = f + 1; g < fan.size(); ++g) fans_.push_back({fan[f], fan[g]});

@@ -23,9 +23,9 @@ struct FeaturePair {
 };
 
 /// Finds close pairs with an AABB tree of moving boxes: what moves together does not meet, however fast it
-/// is. The lists are kept as long as all vertices move as they did then, to within `slack`, or so but for a
-/// motion that is common to all cloth: many steps only look whether that still holds. A list may hold pairs
-/// that are not close, never misses one that is, and is in a fixed order.
+/// is. A vertex' pairs are kept as long as it moves as it did then, to within `slack`, or so but for a
+/// motion that is common to all cloth; else they alone are looked for anew. A list may hold pairs that are
+/// not close, never misses one that is, and is in a fixed order.
 class Proximity {
  public:
   /// How far vertices may move before pairs are looked for anew: the most where few are near, the least where
@@ -69,31 +69,32 @@ class Proximity {
     double height;  // the least of three [m]
   };
 
-  bool still_holds(const SurfaceMotion& motion) const;
-  bool is_within_slack(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
+  void find_moved(const SurfaceMotion& motion);
+  Vec3 find_drift(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
   void choose_slack();
-  void measure_edges(const SurfaceMotion& motion);
+  void measure_edges();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
-  void box_vertices(const SurfaceMotion& motion);
+  bool renew(const SurfaceMotion& motion, JobSystem& jobs);
+  void mark_moved(const SurfaceMotion& motion);
+  void drop_pairs_of_moved();
+  void make_boxes(JobSystem& jobs);
+  MovingAabb box_of_vertex(int vertex) const;
   int find_wildest(const SurfaceMotion& motion) const;
   void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
-  void add_pairs(const SurfaceMotion& motion, const std::vector<ItemPair>& triangles, int first, bool is_fan,
-                 JobSystem& jobs);
+  void find_pairs(AabbTree::Extent extent, JobSystem& jobs);
+  void add_pairs(const std::vector<ItemPair>& triangles, int first, bool is_fan, JobSystem& jobs);
   void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
-  void add_pairs_of_triangles(const SurfaceMotion& motion, const ItemPair& pair, bool is_fan,
-                              PairChunk& chunk) const;
-  void add_vertex_triangle(const SurfaceMotion& motion, int vertex, int triangle, bool is_fan,
-                           PairChunk& chunk) const;
-  void add_edge_edge(const SurfaceMotion& motion, int a, int b, bool is_fan, PairChunk& chunk) const;
+  void add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairChunk& chunk) const;
+  void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
+  void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
   template <class Distance>
-  void add_pair(const SurfaceMotion& motion, FeaturePair pair, double reach, bool is_fan,
-                const Distance& distance, std::vector<FeaturePair>& pairs) const;
+  void add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
+                std::vector<FeaturePair>& pairs) const;
   template <std::size_t kA, std::size_t kB>
-  double reach_between(const SurfaceMotion& motion, const std::array<int, kA>& a,
-                       const std::array<int, kB>& b) const;
-  void mark_sharp(const std::vector<Vec3>& x);
-  void find_fans(const SurfaceMotion& motion);
-  MovingAabb box_of_triangle(int triangle) const;
+  double reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const;
+  void find_fan_shapes(const std::vector<Vec3>& x, std::vector<FanShape>& shapes, JobSystem& jobs);
+  bool is_sharp(int vertex, const std::vector<FanShape>& shapes) const;
+  void find_fans(JobSystem& jobs);
 
   Surface surface_;
   std::vector<Vec3> rest_;
@@ -103,20 +104,31 @@ class Proximity {
   double made_with_ = 0;  // for those at hand [m]
 
   AabbTree cloth_tree_, body_tree_;
-  SurfaceMotion made_for_;  // what the lists were made for; nothing in it if there are none
+  SurfaceMotion
+      made_for_;  // what the lists were made for, but for a motion in common; empty if there are none
+  Vec3 origin_ = Vec3::Zero();  // of boxes
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   double longest_edge_ = 0;  // [m]
   int wildest_ = -1;
 
-  // Work space of rebuild().
-  std::vector<MovingAabb> vertex_box_;
+  // Of what the lists were made for.
+  std::vector<MovingAabb> vertex_box_, triangle_box_;
+  std::vector<char> is_sharp_;                           // (num_cloth_vertices)
+  std::vector<FanShape> shape_at_start_, shape_at_end_;  // (num_cloth_triangles)
+
+  // What is to be looked for anew.
+  std::vector<int> moved_;  // vertices
+  Vec3 drift_at_start_ = Vec3::Zero(), drift_at_end_ = Vec3::Zero();
+  std::vector<char> is_moved_;    // (num_vertices)
+  std::vector<char> is_renewed_;  // (triangles) has one of them
+  std::vector<char> is_near_;     // (num_vertices) in one of these triangles
+
+  // Work space.
   PairSearch search_;
   std::vector<PairChunk> chunks_;
   std::vector<int> begin_of_a_;
   std::vector<FeaturePair> ordered_;
-  std::vector<ItemPair> fans_;       // triangles that share a vertex at which the cloth makes a point
-  std::vector<char> is_sharp_;       // (num_cloth_vertices)
-  std::vector<FanShape> fan_shape_;  // (num_cloth_triangles)
+  std::vector<ItemPair> fans_;  // triangles that share a vertex at which the cloth makes a point
 };
 
 }  // namespace weft

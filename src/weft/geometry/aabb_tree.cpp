@@ -323,9 +323,29 @@ void AabbTree::collect(const AabbTree& other, NodePair start, const MayMeet& may
   }
 }
 
-void AabbTree::find_leaf_pairs(const AabbTree& other, NodePair start, bool counts,
+void AabbTree::mark(std::span<const char> is_marked) {
+  is_marked_.assign(nodes_.size(), 0);
+  for (int n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
+    const Node& node = nodes_[n];
+    if (node.right != 0) {
+      is_marked_[n] = is_marked_[n + 1] | is_marked_[node.right];
+      continue;
+    }
+    for (int lane = 0; lane < num_items_in(node.leaf); ++lane)
+      is_marked_[n] |= is_marked[leaves_[node.leaf].item[lane]];
+  }
+}
+
+void AabbTree::find_leaf_pairs(const AabbTree& other, NodePair start, Extent extent, bool counts,
                                aabb_tree::Chunk& chunk) const {
-  if (moves_ && other.moves_) {
+  if (moves_ && other.moves_ && extent == Extent::marked) {
+    collect(
+        other, start,
+        [&](int n, int m) {
+          return (is_marked_[n] || other.is_marked_[m]) && moving(n).may_meet(other.moving(m));
+        },
+        chunk);
+  } else if (moves_ && other.moves_) {
     collect(
         other, start, [&](int n, int m) { return moving(n).may_meet(other.moving(m)); }, chunk);
   } else if (counts) {
@@ -383,13 +403,14 @@ void AabbTree::string_together(std::size_t num_chunks, JobSystem& jobs, PairSear
   });
 }
 
-void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
+void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search, Extent extent) const {
   // Each node's two halves are held against each other, and each leaf against itself.
   const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
     for (int n = begin; n < end; ++n) {
       const Node& node = nodes_[n];
+      if (extent == Extent::marked && !is_marked_[n]) continue;
       if (node.right != 0) {
-        find_leaf_pairs(*this, {n + 1, node.right}, search.counts_comparisons, chunk);
+        find_leaf_pairs(*this, {n + 1, node.right}, extent, search.counts_comparisons, chunk);
       } else {
         chunk.leaf_pairs.push_back({n, n});
       }
@@ -398,13 +419,13 @@ void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search) const {
   find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, find_below, *this, true, jobs, search);
 }
 
-void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const {
+void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search, Extent extent) const {
   search.pairs.clear();
   search.num_box_pairs = search.num_comparisons = 0;
   if (nodes_.empty() || other.nodes_.empty()) return;
   const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
     for (int s = begin; s < end; ++s)
-      find_leaf_pairs(other, {starts_[s], 0}, search.counts_comparisons, chunk);
+      find_leaf_pairs(other, {starts_[s], 0}, extent, search.counts_comparisons, chunk);
   };
   find_in_chunks(static_cast<int>(starts_.size()), 1, find_below, other, false, jobs, search);
 }

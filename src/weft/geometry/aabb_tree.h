@@ -8,6 +8,7 @@
 /// What a query reports does not depend on the tree's shape; the order in which it does, does.
 
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -77,14 +78,18 @@ class AabbTree {
   using Keys = std::array<int, 3>;
   static constexpr Keys kNoKeys = {-1, -1, -1};
 
+  /// What refit() and queries look at: everything, or what hangs on marked items alone.
+  enum class Extent { all, marked };
+
   /// Builds the tree over `boxes` (num_items), split at medians. `keys` is (num_items) or empty.
   void build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs);
 
   /// Fits the tree to boxes that have moved: box_of(item) gives an item's box, an Aabb or a MovingAabb.
   /// Pairs that are looked for in trees of which both were last fitted to moving boxes are those that may
   /// meet; in all others, those that overlap where they are.
+  /// Where only marked items are looked at, the others must be as they were at the last time.
   template <class BoxOf>
-  void refit(const BoxOf& box_of, JobSystem& jobs) {
+  void refit(const BoxOf& box_of, JobSystem& jobs, Extent extent = Extent::all) {
     moves_ = std::is_same_v<decltype(box_of(0)), MovingAabb>;
     if (moves_) {
       node_ways_.resize(nodes_.size());
@@ -92,11 +97,15 @@ class AabbTree {
     }
     parallel_for(jobs, static_cast<int>(starts_.size()), 1, [&](int s, int) {
       for (int n = start_ends_[s] - 1; n >= starts_[s]; --n) {
+        if (extent == Extent::marked && !is_marked_[n]) continue;
         nodes_[n].right != 0 ? refit_node(n) : refit_leaf(n, box_of);
       }
     });
     for (auto n = above_starts_.rbegin(); n != above_starts_.rend(); ++n) refit_node(*n);
   }
+
+  /// Marks items (num_items).
+  void mark(std::span<const char> is_marked);
 
   int num_items() const { return num_items_; }
 
@@ -104,12 +113,14 @@ class AabbTree {
   /// above, the more boxes a query has to look at. 2 is a good moment to build anew.
   double looseness() const;
 
-  /// All pairs of items whose boxes overlap and that share no key, each once with a < b.
-  void find_self_pairs(JobSystem& jobs, PairSearch& search) const;
+  /// All pairs of items whose boxes overlap and that share no key, each once with a < b. To the extent of
+  /// marked items: all pairs that have one, and perhaps others.
+  void find_self_pairs(JobSystem& jobs, PairSearch& search, Extent extent = Extent::all) const;
 
   /// All pairs of an item a of this tree and an item b of another one whose boxes overlap, whatever their
-  /// keys.
-  void find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search) const;
+  /// keys. To the extent of marked items, for which both trees must be marked, as above.
+  void find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search,
+                  Extent extent = Extent::all) const;
 
   /// Calls visit(item) for all items whose boxes overlap `box`.
   template <class Visit>
@@ -237,7 +248,8 @@ class AabbTree {
   float total_area() const;
   template <class MayMeet>
   void collect(const AabbTree& other, NodePair start, const MayMeet& may_meet, aabb_tree::Chunk& chunk) const;
-  void find_leaf_pairs(const AabbTree& other, NodePair start, bool counts, aabb_tree::Chunk& chunk) const;
+  void find_leaf_pairs(const AabbTree& other, NodePair start, Extent extent, bool counts,
+                       aabb_tree::Chunk& chunk) const;
   static void string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search);
   template <class FindBelow>
   void find_in_chunks(int num_starts, int grain, const FindBelow& find_below, const AabbTree& other,
@@ -250,6 +262,7 @@ class AabbTree {
   bool moves_ = false;  // fitted to moving boxes
   std::vector<aabb_tree::LeafWays> leaf_ways_;
   std::vector<Aabb> node_ways_;
+  std::vector<char> is_marked_;  // (nodes) whether a marked item is below
   std::vector<int> starts_;  // nodes side by side that hold everything: parts that can be dealt with at once
   std::vector<int> start_ends_;    // one past the last node below each
   std::vector<int> above_starts_;  // all nodes above them, ascending

@@ -40,6 +40,7 @@ void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel&
   driven_ = driven;
   num_linearised_ = 0;
   terms_.clear();
+  have_pushed_.assign(contacts.size(), 0);
   if (contacts.empty()) return;
   mass_per_step_.clear();
   for (const double m : model.mass) mass_per_step_.push_back(m / (step * step));
@@ -95,12 +96,14 @@ double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3&
 double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
   if (num_linearised_ == 0) guess_forces(x);
   double energy = 0;
-  for (Term& t : terms_) {
+  for (std::size_t n = 0; n < terms_.size(); ++n) {
+    Term& t = terms_[n];
     const Contact& c = *t.contact;
     const double depth = c.depth(x);
     t.is_active = depth > 0 && t.can_move;
     if (!t.is_active) t.friction = 0;
     if (!t.is_active) continue;
+    have_pushed_[n] = 1;
     const Vec3 slide = c.slide(x);
     t.friction = friction_stiffness(t, depth, slide);
     const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;

@@ -63,6 +63,9 @@ class ContactTerms {
   void add_to_preconditioners(const PaddedRows& rows, std::vector<float>& stiff, std::vector<float>& along,
                               ContactFilter& filter) const;
 
+  /// Whether each contact has pushed at any linearise() since begin() (contacts).
+  std::span<const char> have_pushed() const { return have_pushed_; }
+
   /// Calls body(contact) for those that pushed at the last linearise().
   template <class Body>
   void for_active(const Body& body) const {
@@ -90,6 +93,7 @@ class ContactTerms {
   std::vector<double> mass_per_step_;  // (num_particles) m/h², 0 of pinned particles [N/m]
   std::vector<double> borne_;          // (num_particles) Σ w² of the contacts that push
   std::vector<Term> terms_;
+  std::vector<char> have_pushed_;
 };
 
 }  // namespace weft

@@ -35,6 +35,7 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   bool resolves_contacts() const override { return true; }
   std::span<const Vec3> contact_forces() const override { return contact_forces_; }
+  std::span<const char> pushing_contacts() const override { return have_pushed_; }
 
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step, JobSystem&,
                            ClothState& state) override {
@@ -211,10 +212,12 @@ class ImplicitEulerIntegrator final : public Integrator {
   /// the first one x_ is still where inertia alone would take it; then the force that stops a lone particle.
   void update_normal_forces(bool first) {
     normal_force_.resize(environment_->contacts.size());
+    if (first) have_pushed_.assign(normal_force_.size(), 0);
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       const Contact& contact = environment_->contacts[c];
       const double share = first ? inertia_share(contact) : 1.0;
       normal_force_[c] = share * contact.stiffness * contact.depth(x_);
+      if (normal_force_[c] > 0) have_pushed_[c] = 1;
     }
   }
 
@@ -404,6 +407,7 @@ class ImplicitEulerIntegrator final : public Integrator {
   double step_ = 0;
   std::vector<char> is_pinned_;
   std::vector<double> normal_force_;  // of each contact [N]
+  std::vector<char> have_pushed_;     // of the contacts, since the step began
   std::vector<Vec3> contact_forces_;  // of each contact, at the end of the step [N]
   std::vector<Vec3> start_, inertial_, x_, trial_, gradient_, direction_;
 };

@@ -109,6 +109,10 @@ class Integrator {
   /// The force on each contact's Σ w_i x_i in the last advance(), friction included (contacts); empty for
   /// integrators that do not resolve them, and if the environment did not ask for them [N].
   virtual std::span<const Vec3> contact_forces() const { return {}; }
+
+  /// Whether each contact has pushed in the last advance() (contacts); empty for integrators that do not
+  /// resolve them.
+  virtual std::span<const char> pushing_contacts() const { return {}; }
 };
 
 /// Names that make_integrator knows, in the order of the list above.

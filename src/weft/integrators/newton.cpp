@@ -43,6 +43,7 @@ class NewtonIntegrator final : public Integrator {
 
   bool resolves_contacts() const override { return true; }
   std::span<const Vec3> contact_forces() const override { return contact_forces_; }
+  std::span<const char> pushing_contacts() const override { return contacts_.have_pushed(); }
 
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {

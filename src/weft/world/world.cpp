@@ -196,7 +196,12 @@ int World::num_substeps(double dt) const {
 
 void World::show_contact_cloths() {
   contact_cloths_.clear();
-  for (Cloth& cloth : cloths_) contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
+  const Wind& wind = environment_.wind;
+  const bool is_still = wind.drag == 0 && wind.air.density == 0;
+  for (Cloth& cloth : cloths_) {
+    const bool is_free = is_still && cloth.pinned.empty() && cloth.hands.are_empty();
+    contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned, is_free});
+  }
 }
 
 void World::begin_contact(double time, double dt) {
@@ -243,10 +248,11 @@ void World::advance(double time, double dt, StepReport& report) {
     if (!done.converged) has_converged_[c] = 0;
     if (!contact_) continue;
     if (tracks_contacts_) contact_system_.add_solved(c, cloth.integrator->contact_forces());
-    contact_system_.end_of(c);
+    contact_system_.end_of(c, cloth.integrator->pushing_contacts());
   }
-  // What has come too close all the same.
   if (!contact_) return;
+  contact_system_.keep_momentum(environment_.gravity);
+  // What has come too close all the same.
   contact_system_.hold_off(*jobs_);
   // What would still go through anything.
   stop_crossings(report);
