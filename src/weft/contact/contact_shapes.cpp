@@ -15,8 +15,8 @@ constexpr double kNearerThanCorners = 1e-6;
 /// … and for the solve by this share of half the thickness: what keeps edges and triangles out of the shape.
 constexpr double kMuchNearer = 0.6;
 
-/// A shape is round whose radius is so many times the longest edge.
-constexpr double kRound = 2;
+/// A shape is round whose radius is so many times the longest edge at rest.
+constexpr double kRound = 2.4;
 
 /// Particles keep half the thickness from a shape. What is between them keeps this share of it, so that cloth
 /// rests on its particles alone unless cells are coarse: others would bear some of the same weight.
@@ -55,7 +55,7 @@ void ContactSystem::collect_shapes(double share_of_travel) {
 void ContactSystem::collect_shape(int shape, double share_of_travel) {
   const MovingShape& moving = shapes_[shape];
   const Bound bound = std::visit([](const auto& s) { return bound_of(s); }, moving.after);
-  const double triangle_reach = proximity_.longest_edge() / std::sqrt(3.0);
+  const double triangle_reach = longest_edge_ / std::sqrt(3.0);
   const int num_vertices = first_vertex_.back();
   shape_distance_.resize(num_vertices);
   bool is_any_near = false;
@@ -71,7 +71,7 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
   }
   if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
   const bool is_for_solve = share_of_travel > 0;
-  const bool is_round = radius_of(moving.after) > kRound * proximity_.longest_edge();
+  const bool is_round = radius_of(moving.after) > kRound * longest_rest_edge_;
   if (is_for_solve && is_round) {
     collect_edges(shape, share_of_travel);
   } else {
@@ -85,7 +85,7 @@ double ContactSystem::shape_reach(int v, double share_of_travel) const {
 }
 
 void ContactSystem::collect_edges(int shape, double share_of_travel) {
-  const double edge_reach = proximity_.longest_edge() / 2;
+  const double edge_reach = longest_edge_ / 2;
   for (const auto& [a, b] : proximity_.surface().edges) {
     if (a >= first_vertex_.back()) break;
     const double nearest = std::min(shape_distance_[a], shape_distance_[b]);
@@ -99,7 +99,7 @@ void ContactSystem::collect_edges(int shape, double share_of_travel) {
 }
 
 void ContactSystem::collect_triangles(int shape, double share_of_travel) {
-  const double triangle_reach = proximity_.longest_edge() / std::sqrt(3.0);
+  const double triangle_reach = longest_edge_ / std::sqrt(3.0);
   const std::vector<Vec3>& x = motion_.end;
   for (const Triangle& t : proximity_.surface().triangles) {
     if (t[0] >= first_vertex_.back()) break;

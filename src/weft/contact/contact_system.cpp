@@ -39,6 +39,16 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
   return {std::max(thickness, kMostOfEdge * edge), std::max(thickness / 2, kLeastOfEdge * edge)};
 }
 
+/// How much of the acceleration the particle has given way to in the step before, from none, where it hung or
+/// lay, to all: what is held is not expected to fall.
+Vec3 felt_acceleration(const ClothState& state, int particle, const Vec3& acceleration) {
+  const MotionHistory& history = state.history;
+  const double size_sq = acceleration.squaredNorm();
+  if (history.step == 0 || size_sq == 0) return acceleration;
+  const Vec3 gained = (state.v.get(particle) - history.velocity.get(particle)) / history.step;
+  return std::clamp(gained.dot(acceleration) / size_sq, 0.0, 1.0) * acceleration;
+}
+
 }  // namespace
 
 void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
@@ -114,6 +124,10 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   }
   surface.build_fans();
   find_pieces(surface);
+  longest_rest_edge_ = 0;
+  for (const auto& [i, j] : surface.edges) {
+    if (i < num_cloth_vertices) longest_rest_edge_ = std::max(longest_rest_edge_, (rest[j] - rest[i]).norm());
+  }
   const int n = surface.num_vertices;
   motion_.start.assign(n, Vec3::Zero());
   motion_.end.assign(n, Vec3::Zero());
@@ -151,27 +165,40 @@ void ContactSystem::end_of(int cloth, std::span<const char> pushing) {
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
   is_predicted_ = true;
-  const double h = step_.step;
-  std::size_t pin = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
-      const int i = v - first_vertex_[c];
-      const bool is_pinned = (*cloths_[c].is_pinned)[i];
-      motion_.end[v] = is_pinned
-                           ? pin_targets[pin++]
-                           : Vec3(motion_.start[v] + h * cloths_[c].state->v.get(i) + h * h * acceleration);
-    }
-  }
+  expect_motion(acceleration, pin_targets);
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
+  // What lies on a shape falls into it, for the solve to lift it out again; on cloth it lies where it is.
+  std::swap(motion_.end, fallen_);
+  longest_edge_ = proximity_.longest_edge() + step_.step * step_.step * acceleration.norm();
   collect_shapes(1.0);
+  std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
   project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end);
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
   collect_pairs(jobs);
+}
+
+/// motion_.end with as much of the acceleration as has been felt, fallen_ with all of it.
+void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
+  const double h = step_.step;
+  fallen_ = motion_.end;
+  std::size_t pin = 0;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothState& state = *cloths_[c].state;
+    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
+      if ((*cloths_[c].is_pinned)[i]) {
+        motion_.end[v] = fallen_[v] = pin_targets[pin++];
+        continue;
+      }
+      const Vec3 coasting = motion_.start[v] + h * state.v.get(i);
+      motion_.end[v] = coasting + h * h * felt_acceleration(state, i, acceleration);
+      fallen_[v] = coasting + h * h * acceleration;
+    }
+  }
 }
 
 void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
@@ -224,6 +251,7 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
+  longest_edge_ = proximity_.longest_edge();
   collect_pairs(jobs);
   collect_shapes(0.0);
   if (constraints_.empty()) return;
@@ -301,6 +329,7 @@ void ContactSystem::project(JobSystem& jobs) {
   for (int search = 0; search < kSearches && has_left_reach(); ++search) {
     arrived_ = motion_.end;
     proximity_.update(motion_, jobs);
+    longest_edge_ = proximity_.longest_edge();
     constraints_.clear();
     collect_pairs(jobs);
     collect_shapes(0.0);

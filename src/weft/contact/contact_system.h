@@ -136,6 +136,7 @@ class ContactSystem {
 
   void renumber(const std::vector<Collider>& colliders);
   void place_bodies();
+  void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
   void collect_pairs(JobSystem& jobs);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
@@ -174,6 +175,7 @@ class ContactSystem {
   std::vector<Body> bodies_;
   std::vector<char> is_solid_;      // (num_vertices) on a closed mesh
   std::vector<char> is_one_piece_;  // (cloths)
+  double longest_rest_edge_ = 0;    // of cloth [m]
   Proximity proximity_;
 
   // The step.
@@ -183,6 +185,8 @@ class ContactSystem {
   bool is_predicted_ = false;  // the solve knows of contacts
   double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
+  std::vector<Vec3> fallen_;          // where inertia and all of gravity would take it
+  double longest_edge_ = 0;           // of cloth, at most [m]
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
   std::vector<Constraint> constraints_;
   std::vector<int> found_;             // of these, those that find_contacts told of last

@@ -47,6 +47,7 @@ void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_ver
        {&vertex_triangle_, &edge_edge_, &ordered_, &chunks_[0].vertex_triangle, &chunks_[0].edge_edge})
     pairs->reserve(room);
   fans_.reserve(room);
+  moved_.reserve(surface_.num_vertices);
   made_for_.end.clear();
 }
 

@@ -262,6 +262,7 @@ void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& ke
   if (num_leaves == 0) return;
   nodes_.reserve(2 * num_leaves - 1);
   build_nodes(0, num_leaves);
+  is_marked_.reserve(nodes_.size());
   choose_starts();
   refit([&](int item) { return boxes[item]; }, jobs);
   built_area_ = total_area();
