@@ -8,7 +8,7 @@
 namespace weft {
 namespace {
 
-const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 2e-3};
+const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 5e-3};
 
 /// Two squares side by side that nothing joins, 40 cm each, a metre between them.
 std::shared_ptr<const ClothTopology> make_two_squares() {

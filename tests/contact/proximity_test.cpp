@@ -269,6 +269,26 @@ TEST(Proximity, MissesNothingInASmallTremble) { check_random_motion(0.3 * kSlack
 
 TEST(Proximity, MissesNothingInBigJumps) { check_random_motion(1.5 * kCell, false, 6); }
 
+TEST(Proximity, MissesNothingWhereOnlyAPartMoves) {
+  // Less than the share at which everything is looked for anew, while all drifts.
+  const auto jobs = make_serial_jobs();
+  for (auto& [name, scene] : make_scenes()) {
+    Proximity proximity = scene.make_proximity();
+    Random random(11);
+    for (int s = 0; s < 20; ++s) {
+      std::vector<Vec3> end = scene.places;
+      for (int v = 0; v < static_cast<int>(end.size()); ++v) {
+        if (v < scene.num_cloth_vertices) end[v] += Vec3(0.01, -0.02, 0);
+        if (random.uniform(0, 1) < 0.15) end[v] += test::random_vector(random, kCell);
+      }
+      const SurfaceMotion motion = scene.motion_to(end);
+      proximity.update(motion, *jobs);
+      check(proximity, scene, motion, name + ", step " + std::to_string(s));
+      scene.places = end;
+    }
+  }
+}
+
 TEST(Proximity, MissesNothingWhereEverythingTurnsAndTravels) {
   const auto jobs = make_serial_jobs();
   for (auto& [name, scene] : make_scenes()) {

@@ -170,6 +170,56 @@ TEST_P(EveryLevelAndThread, PairsThatMayMeetEqualBruteForce) {
   }
 }
 
+TEST_P(EveryLevelAndThread, OfMarkedItemsThatHaveMovedNoPairIsMissed) {
+  Random random(8);
+  Boxes boxes = inputs()[7].second;
+  std::vector<MovingAabb> moving;
+  for (const Aabb& box : boxes) moving.push_back({box, box_around(Vec3::Zero(), 0.01)});
+  const auto box_of = [&](int i) { return moving[i]; };
+  AabbTree tree, other;
+  for (AabbTree* t : {&tree, &other}) {
+    t->build(boxes, {}, *jobs_);
+    t->refit(box_of, *jobs_);
+  }
+  std::vector<char> is_marked(boxes.size());
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      is_marked[i] = random.uniform(0, 1) < 0.1;
+      if (is_marked[i]) moving[i].box = box_around(test::random_vector(random, 1), 0.1);
+    }
+    for (AabbTree* t : {&tree, &other}) {
+      t->mark(is_marked);
+      t->refit(box_of, *jobs_, AabbTree::Extent::marked);
+    }
+    std::vector<ItemPair> self_pairs, all_pairs;
+    for (int a = 0; a < static_cast<int>(boxes.size()); ++a) {
+      for (int b = 0; b < static_cast<int>(boxes.size()); ++b) {
+        if (!(is_marked[a] || is_marked[b]) || !moving[a].may_meet(moving[b])) continue;
+        all_pairs.push_back({a, b});
+        if (a < b) self_pairs.push_back({a, b});
+      }
+    }
+    const auto includes = [](const std::vector<ItemPair>& found, const std::vector<ItemPair>& wanted) {
+      return std::includes(found.begin(), found.end(), wanted.begin(), wanted.end());
+    };
+    PairSearch search;
+    tree.find_self_pairs(*jobs_, search, AabbTree::Extent::marked);
+    EXPECT_FALSE(self_pairs.empty());
+    EXPECT_TRUE(includes(sorted(search.pairs), self_pairs)) << round;
+    tree.find_pairs(other, *jobs_, search, AabbTree::Extent::marked);
+    EXPECT_TRUE(includes(sorted(search.pairs), all_pairs)) << round;
+    // What is not marked is where it was: all pairs are still those of brute force.
+    tree.find_self_pairs(*jobs_, search);
+    std::vector<ItemPair> every;
+    for (int a = 0; a < static_cast<int>(boxes.size()); ++a) {
+      for (int b = a + 1; b < static_cast<int>(boxes.size()); ++b) {
+        if (moving[a].may_meet(moving[b])) every.push_back({a, b});
+      }
+    }
+    EXPECT_EQ(sorted(search.pairs), every) << round;
+  }
+}
+
 TEST_P(EveryLevelAndThread, OrderOfPairsDoesNotDependOnThreadsOrVectors) {
   const Boxes boxes = inputs()[7].second;
   const auto serial = make_serial_jobs();

@@ -18,7 +18,7 @@ double dot(const Vec3Array& a, const Vec3Array& b) {
 
 /// Divides by d, as a matrix without couplings would.
 auto by_diagonal(double d) {
-  return [d](const Vec3Array& r, Vec3Array& z) {
+  return [d](const Vec3Array& r, JobSystem&, Vec3Array& z) {
     for (std::size_t i = 0; i < r.size(); ++i) z.set(i, r.get(i) / d);
     return dot(r, z);
   };
@@ -28,10 +28,11 @@ struct ContactFilterTest : testing::Test {
   static constexpr double kStiff = 1000, kFree = 2;
   const PaddedRows rows = padded_rows_of(*build_grid_topology(test::square(3, 1), SpringModel::simplified));
   ContactFilter filter;
+  std::unique_ptr<JobSystem> jobs = make_serial_jobs();
 
   Vec3Array apply(const Vec3Array& r) {
     Vec3Array z(rows.size());
-    const double told = filter.apply(by_diagonal(kStiff), by_diagonal(kFree), r, z);
+    const double told = filter.apply(by_diagonal(kStiff), by_diagonal(kFree), r, *jobs, z);
     EXPECT_NEAR(told, dot(r, z), 1e-5 * std::abs(told) + 1e-12);
     return z;
   }
@@ -74,6 +75,17 @@ TEST_F(ContactFilterTest, IsSymmetricAndPositive) {
       EXPECT_NEAR(dot(a, apply(b)), dot(b, apply(a)), 1e-6);
       EXPECT_GT(dot(a, apply(a)), 0);
     }
+  }
+}
+
+TEST_F(ContactFilterTest, GivesTheSameBitsForAnyNumberOfThreads) {
+  filter.hold(rows, 5, Vec3(1, 2, 3).normalized());
+  const Vec3Array r = pushed_at(5, {1, -2, 3});
+  const Vec3Array alone = apply(r);
+  for (const int threads : {2, 5}) {
+    jobs = make_jobs(threads);
+    const Vec3Array z = apply(r);
+    for (std::size_t i = 0; i < z.size(); ++i) EXPECT_EQ(z.get(i), alone.get(i)) << threads << ", " << i;
   }
 }
 

@@ -7,6 +7,7 @@ namespace weft {
 namespace {
 
 constexpr double kPositionTolerance = 1e-6;  // corrections below need no further pass [m]
+constexpr double kNear = 2;  // what has so many times the first pass' largest correction as room is left out
 constexpr double kVelocityTolerance = 1e-4;  // [m/s]
 constexpr int kVelocityPasses = 12;
 
@@ -42,20 +43,32 @@ double slow_slide(Constraint& c, const std::vector<double>& inverse_masses, std:
 }  // namespace
 
 double project_positions(const std::vector<double>& inverse_masses, int passes,
-                         std::vector<Constraint>& constraints, std::vector<Vec3>& positions) {
-  double first = 0;
+                         std::vector<Constraint>& constraints, std::vector<Vec3>& positions,
+                         std::vector<int>& near) {
+  double first = 0, largest = 0;
+  const auto project = [&](Constraint& c, double lack) {
+    const double push = std::max(0.0, c.push + lack / c.inverse_mass);
+    const double change = push - c.push;
+    if (change == 0) return;
+    c.push = push;
+    c.is_active |= push > 0;
+    c.apply(change * c.normal, inverse_masses, positions);
+    largest = std::max(largest, std::abs(change) * c.inverse_mass);
+  };
+  const auto lack_of = [&](const Constraint& c) { return c.target - c.normal.dot(c.sum(positions)); };
+  near.clear();
   for (int pass = 0; pass < passes; ++pass) {
-    double largest = 0;
-    for (Constraint& c : constraints) {
-      if (c.inverse_mass == 0) continue;
-      const double lack = c.target - c.normal.dot(c.sum(positions));
-      const double push = std::max(0.0, c.push + lack / c.inverse_mass);
-      const double change = push - c.push;
-      if (change == 0) continue;
-      c.push = push;
-      c.is_active |= push > 0;
-      c.apply(change * c.normal, inverse_masses, positions);
-      largest = std::max(largest, std::abs(change) * c.inverse_mass);
+    largest = 0;
+    if (pass < 2) {
+      for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
+        Constraint& c = constraints[n];
+        if (c.inverse_mass == 0) continue;
+        const double lack = lack_of(c);
+        if (pass == 1 && (c.push > 0 || lack > -kNear * first)) near.push_back(n);
+        project(c, lack);
+      }
+    } else {
+      for (const int n : near) project(constraints[n], lack_of(constraints[n]));
     }
     if (pass == 0) first = largest;
     if (largest < kPositionTolerance) break;

@@ -55,9 +55,11 @@ struct Constraint {
 
 /// Moves positions until all constraints hold: Gauss–Seidel, in order, at most `passes` times. Each
 /// constraint's push is kept positive as a whole, so that later passes may take back what earlier ones gave.
-/// Returns the largest correction of the first pass [m].
+/// From the third pass on those that have much room are left out; `near` is work space for the others'
+/// numbers. Returns the largest correction of the first pass [m].
 double project_positions(const std::vector<double>& inverse_masses, int passes,
-                         std::vector<Constraint>& constraints, std::vector<Vec3>& positions);
+                         std::vector<Constraint>& constraints, std::vector<Vec3>& positions,
+                         std::vector<int>& near);
 
 /// Takes from the velocities, wherever positions had to be pushed, what still approaches, and slows what
 /// slides by Coulomb's law:

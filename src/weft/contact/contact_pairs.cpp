@@ -20,8 +20,8 @@ constexpr double kRecovery = 0.2;
 /// Almost parallel edges have no reliable direction between them: sin² of the angle.
 constexpr double kParallelSq = 0.03;
 
-/// Edges that pass each other at this share of their length when they are in one plane do meet.
-constexpr double kMeeting = 1e-3;
+/// Edges that pass each other nearer than this when they are in one plane do meet [m].
+constexpr double kMeeting = 1e-5;
 
 /// Features this near have no direction between them at all [m].
 constexpr double kTouching = 1e-9;
@@ -96,9 +96,9 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   c.vertex = {i, j, k, pair.a};
   const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
   double distance = d.distance();
-  const double gap = gap_of(pair, c);
-  if (distance > gap + relative_travel(c)) return false;
-  if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
+  const double gap = gap_of(pair, c), travel = relative_travel(c);
+  if (distance > gap + travel) return false;
+  if (const auto time = find_meeting_time(c, distance, travel)) {
     const std::array<Vec3, 4> p = places_at(c, *time);
     const PointTriangleDistance there = point_triangle_distance(p[3], p[0], p[1], p[2]);
     if (there.region == TriangleRegion::face) {
@@ -135,14 +135,12 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
     return u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm();
   };
   const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
-  const double distance = d.distance(), gap = gap_of(pair, c);
-  if (distance > gap + relative_travel(c)) return false;
-  if (const auto time = find_coplanar_time(places(c, motion_.start), places(c, motion_.end))) {
+  const double distance = d.distance(), gap = gap_of(pair, c), travel = relative_travel(c);
+  if (distance > gap + travel) return false;
+  if (const auto time = find_meeting_time(c, distance, travel)) {
     const std::array<Vec3, 4> p = places_at(c, *time);
     const EdgeEdgeDistance there = edge_edge_distance(p[0], p[1], p[2], p[3]);
-    const double meeting = kMeeting * (p[1] - p[0]).norm();
-    if (is_inside(there) && there.distance_sq < meeting * meeting &&
-        !are_parallel(p[1] - p[0], p[3] - p[2])) {
+    if (is_inside(there) && there.distance() < kMeeting && !are_parallel(p[1] - p[0], p[3] - p[2])) {
       c.weight = {1 - there.s, there.s, -(1 - there.t), -there.t};
       c.normal = (p[1] - p[0]).cross(p[3] - p[2]).stableNormalized();
       return finish_crossing(pair, c);
@@ -155,6 +153,13 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
   return finish_pair(distance, gap, c);
+}
+
+/// When the four are in one plane, if they can have met by then: from `distance`, moving by `travel` at most.
+std::optional<double> ContactSystem::find_meeting_time(const Constraint& c, double distance,
+                                                       double travel) const {
+  if (distance > travel + kMeeting) return std::nullopt;
+  return find_coplanar_time(places(c, motion_.start), places(c, motion_.end));
 }
 
 std::array<Vec3, 4> ContactSystem::places(const Constraint& c, const std::vector<Vec3>& x) {

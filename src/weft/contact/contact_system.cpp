@@ -27,7 +27,7 @@ constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
 
 /// How far cloth may move before pairs are looked for anew: a share of its cells, or of its thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
-  constexpr double kMostOfEdge = 0.15, kLeastOfEdge = 0.03;
+  constexpr double kMostOfEdge = 0.15, kLeastOfEdge = 0.015;
   double sum = 0;
   int count = 0;
   for (const Spring& s : topology.springs) {
@@ -36,7 +36,7 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
     ++count;
   }
   const double edge = count > 0 ? sum / count : 0.0;
-  return {std::max(thickness, kMostOfEdge * edge), std::max(thickness / 2, kLeastOfEdge * edge)};
+  return {std::max(thickness, kMostOfEdge * edge), std::max(thickness / 4, kLeastOfEdge * edge)};
 }
 
 /// How much of the acceleration the particle has given way to in the step before, from none, where it hung or
@@ -135,6 +135,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   inverse_mass_.assign(n, 0.0);
   velocity_.assign(n, Vec3::Zero());
   slowed_.assign(n, Vec3::Zero());
+  near_.reserve(n);
   is_touched_.assign(n, 0);
   is_solid_.assign(n, 0);
   for (const Body& body : bodies_) {
@@ -176,7 +177,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
-  project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end);
+  project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
   collect_pairs(jobs);
@@ -300,7 +301,7 @@ void ContactSystem::settle_positions() {
   const int rounds = is_predicted_ ? kRoundsAfterSolve : kRounds;
   const int passes = is_predicted_ ? kPassesAfterSolve : kPasses;
   for (int round = 0; round < rounds; ++round) {
-    const double moved = project_positions(inverse_mass_, passes, constraints_, motion_.end);
+    const double moved = project_positions(inverse_mass_, passes, constraints_, motion_.end, near_);
     if (moved < kSettled) return;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;

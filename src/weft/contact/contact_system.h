@@ -2,6 +2,7 @@
 /// Holds cloth off colliders, off itself and off other cloth.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -141,6 +142,7 @@ class ContactSystem {
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
+  std::optional<double> find_meeting_time(const Constraint& c, double distance, double travel) const;
   static std::array<Vec3, 4> places(const Constraint& c, const std::vector<Vec3>& x);
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
   bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
@@ -199,6 +201,7 @@ class ContactSystem {
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
+  std::vector<int> near_;
   std::vector<double> shape_distance_;
   std::vector<Vec3> velocity_, slowed_;
   LastLine last_line_;

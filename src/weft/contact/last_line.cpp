@@ -13,7 +13,7 @@ namespace {
 constexpr int kPairGrain = 1024;     // pairs per chunk
 constexpr int kPushRounds = 6;       // of impulses, each followed by a search for new impacts
 constexpr int kPushPasses = 20;      // over all impulses in a round
-constexpr int kZoneRounds = 24;      // zones halve what is not rigid, and grow
+constexpr int kZoneRounds = 60;      // zones halve what is not rigid, and grow
 constexpr double kLeastShare = 0.1;  // of the rest of a zone's motion: below, it moves rigidly
 
 /// Features keep this share of what they are held apart by; where that is little, the floor [m].
@@ -312,7 +312,7 @@ void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
   pushed_ = motion_->end;
   for (int round = 0; round < kPushRounds && !hits_.empty(); ++round) {
     for (const Hit& hit : hits_) pushes_.push_back(hit.constraint);
-    project_positions(*step_.inverse_mass, kPushPasses, pushes_, pushed_);
+    project_positions(*step_.inverse_mass, kPushPasses, pushes_, pushed_, near_pushes_);
     for (const Constraint& c : pushes_) {
       for (int k = 0; k < c.num_vertices; ++k) {
         if ((*step_.inverse_mass)[c.vertex[k]] > 0) move(c.vertex[k], pushed_[c.vertex[k]]);

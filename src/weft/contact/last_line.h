@@ -106,6 +106,7 @@ class LastLine {
   bool only_moved_ = false;         // look at pairs with a vertex in is_moved_ alone
   std::vector<char> is_moved_;      // (num_vertices) since hits were looked for
   std::vector<Constraint> pushes_;  // impulses' constraints
+  std::vector<int> near_pushes_;    // work space
   std::vector<Vec3> pushed_;        // (num_vertices) ends with impulses, before rounding
 
   // Zones.

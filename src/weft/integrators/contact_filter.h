@@ -2,8 +2,10 @@
 /// Private to integrators/: what a preconditioner that is the same for x, y and z does about contacts.
 
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
 
@@ -24,18 +26,29 @@ class ContactFilter {
   /// A contact that holds the particle along this unit vector.
   void hold(const PaddedRows& rows, int particle, const Vec3& normal);
 
-  /// z = P⁻¹ r; stiff(r, z) and free(r, z) compute V r and return r·V r. Returns r·z.
+  /// z = P⁻¹ r; stiff(r, jobs, z) and free(r, jobs, z) compute V r and return r·V r. Returns r·z. Of few
+  /// threads each takes one of the two: within them threads have little to do before they must wait.
   template <class Stiff, class Free>
-  double apply(const Stiff& stiff, const Free& free, const Vec3Array& r, Vec3Array& z) {
-    if (held_.empty()) return free(r, z);
-    const double dot = stiff(r, z);
+  double apply(const Stiff& stiff, const Free& free, const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
+    if (held_.empty()) return free(r, jobs, z);
     along_surface_ = r;
     take_normals(along_surface_);
     if (slid_.size() != r.size()) slid_ = Vec3Array(r.size());
-    const double rest = free(along_surface_, slid_);
+    double dots[2];
+    const bool is_side_by_side = jobs.num_threads() > 1 && jobs.num_threads() <= kFewThreads;
+    const auto run = [&](int cycle) {
+      JobSystem& below = is_side_by_side ? *serial_ : jobs;
+      dots[cycle] = cycle == 0 ? stiff(r, below, z) : free(along_surface_, below, slid_);
+    };
+    if (is_side_by_side) {
+      jobs.run(2, run);
+    } else {
+      run(0);
+      run(1);
+    }
     take_normals(slid_);
     add_slid(z);
-    return dot + rest;
+    return dots[0] + dots[1];
   }
 
  private:
@@ -45,12 +58,15 @@ class ContactFilter {
     std::array<Vec3, 3> normal;
   };
 
+  static constexpr int kFewThreads = 3;
+
   void take_normals(Vec3Array& field) const;
   void add_slid(Vec3Array& z) const;
 
   std::vector<Held> held_;
   std::vector<int> index_;          // (rows) in held_, -1: none
   Vec3Array along_surface_, slid_;  // S r, S V_free S r
+  std::unique_ptr<JobSystem> serial_ = make_serial_jobs();
 };
 
 }  // namespace weft

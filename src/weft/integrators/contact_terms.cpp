@@ -40,6 +40,7 @@ void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel&
   driven_ = driven;
   num_linearised_ = 0;
   terms_.clear();
+  active_.clear();
   have_pushed_.assign(contacts.size(), 0);
   if (contacts.empty()) return;
   mass_per_step_.clear();
@@ -96,6 +97,7 @@ double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3&
 double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
   if (num_linearised_ == 0) guess_forces(x);
   double energy = 0;
+  active_.clear();
   for (std::size_t n = 0; n < terms_.size(); ++n) {
     Term& t = terms_[n];
     const Contact& c = *t.contact;
@@ -107,10 +109,16 @@ double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
     const Vec3 slide = c.slide(x);
     t.friction = friction_stiffness(t, depth, slide);
     const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;
+    Spring spring{.num_particles = c.num_particles,
+                  .weight = c.weight,
+                  .normal = c.normal,
+                  .beyond_friction = c.stiffness - t.friction,
+                  .friction = t.friction};
     for (int k = 0; k < c.num_particles; ++k) {
-      const int at = x.rows.index(c.particle[k]);
+      const int at = spring.at[k] = x.rows.index(c.particle[k]);
       force.set(at, force.get(at) + c.weight[k] * push);
     }
+    active_.push_back(spring);
     energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
   }
   ++num_linearised_;
@@ -150,19 +158,13 @@ void ContactTerms::compute_forces(const OffsetPositions& x, const Vec3Array& oth
   give_rest_to_contacts(contacts, left, forces);
 }
 
-double ContactTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const {
+double ContactTerms::add_product(const Vec3Array& p, Vec3Array& q) const {
   double dot = 0;
-  for (const Term& t : terms_) {
-    if (!t.is_active) continue;
-    const Contact& c = *t.contact;
+  for (const Spring& s : active_) {
     Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < c.num_particles; ++k) sum += c.weight[k] * p.get(rows.index(c.particle[k]));
-    const double along = c.normal.dot(sum);
-    const Vec3 product = (c.stiffness - t.friction) * along * c.normal + t.friction * sum;
-    for (int k = 0; k < c.num_particles; ++k) {
-      const int at = rows.index(c.particle[k]);
-      q.set(at, q.get(at) + c.weight[k] * product);
-    }
+    for (int k = 0; k < s.num_particles; ++k) sum += s.weight[k] * p.get(s.at[k]);
+    const Vec3 product = s.beyond_friction * s.normal.dot(sum) * s.normal + s.friction * sum;
+    for (int k = 0; k < s.num_particles; ++k) q.set(s.at[k], q.get(s.at[k]) + s.weight[k] * product);
     dot += sum.dot(product);
   }
   return dot;

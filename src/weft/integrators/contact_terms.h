@@ -1,6 +1,7 @@
 #pragma once
 /// Private to integrators/: contacts in the potential of `newton`.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -56,7 +57,7 @@ class ContactTerms {
   void compute_forces(const OffsetPositions& x, const Vec3Array& others, std::vector<Vec3>& forces) const;
 
   /// q += H p, and p·Hp [J].
-  double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;
+  double add_product(const Vec3Array& p, Vec3Array& q) const;
 
   /// Adds what preconditioners must know of the Hessian: to `stiff` its largest stiffness, whatever the
   /// direction, to `along` that along surfaces alone [N/m], and the normals to the filter.
@@ -84,6 +85,15 @@ class ContactTerms {
     double friction = 0;  // κ [N/m]
   };
 
+  /// The Hessian of a contact that pushes.
+  struct Spring {
+    int num_particles;
+    std::array<int, 4> at;  // indices by the rows
+    std::array<double, 4> weight;
+    Vec3 normal;
+    double beyond_friction, friction;  // κ_n − κ, κ [N/m]
+  };
+
   void guess_forces(const OffsetPositions& x);
   double friction_stiffness(const Term& term, double depth, const Vec3& slide) const;
 
@@ -93,6 +103,7 @@ class ContactTerms {
   std::vector<double> mass_per_step_;  // (num_particles) m/h², 0 of pinned particles [N/m]
   std::vector<double> borne_;          // (num_particles) Σ w² of the contacts that push
   std::vector<Term> terms_;
+  std::vector<Spring> active_;  // of those that pushed at the last linearise()
   std::vector<char> have_pushed_;
 };
 

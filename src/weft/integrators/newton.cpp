@@ -337,17 +337,19 @@ class NewtonIntegrator final : public Integrator {
     settings.enough = std::max(settings.enough / more, kNoise);
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
       double dot = potential_.multiply(p, jobs, q);
-      dot += contacts_.add_product(rows_, p, q);
+      dot += contacts_.add_product(p, q);
       dot += air_.add_product(rows_, p, q);
       set_at_pins(Vec3::Zero(), q);
       return dot;
     };
-    const auto free = [&](const Vec3Array& r, Vec3Array& z) { return preconditioner_.apply(r, jobs, z); };
-    const auto stiff = [&](const Vec3Array& r, Vec3Array& z) {
-      return stiff_preconditioner_.apply(r, jobs, z);
+    const auto free = [&](const Vec3Array& r, JobSystem& its_jobs, Vec3Array& z) {
+      return preconditioner_.apply(r, its_jobs, z);
+    };
+    const auto stiff = [&](const Vec3Array& r, JobSystem& its_jobs, Vec3Array& z) {
+      return stiff_preconditioner_.apply(r, its_jobs, z);
     };
     const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
-      return filter_.apply(stiff, free, r, z);
+      return filter_.apply(stiff, free, r, jobs, z);
     };
     return gradients_.solve(multiply, precondition, force_, settings, jobs, direction_);
   }
