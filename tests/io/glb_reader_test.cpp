@@ -66,9 +66,11 @@ TEST(GlbReader, GivesBackWhatWasWritten) {
   const Animation written{.title = "a run",
                           .frames_per_second = 50,
                           .cloths = {make_cloth(5), make_cloth(5)},
-                          .bodies = {make_body("ball", {}, 5), make_body("rock", {})}};
+                          .bodies = {make_body("ball", {}, 5), make_body("rock", {})},
+                          .passing = {{"sheet", "rock"}}};
   const Animation read = write_and_read("round_trip", written);
   EXPECT_EQ(read.title, "a run");
+  EXPECT_EQ(read.passing, written.passing);
   EXPECT_NEAR(read.frames_per_second, 50, 1e-5) << "key times are floats";
   ASSERT_EQ(read.cloths.size(), 2u);
   ASSERT_EQ(read.bodies.size(), 2u);

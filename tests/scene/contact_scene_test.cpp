@@ -46,6 +46,22 @@ TEST(Thickness, NotGivenFollowsFromTheMesh) {
   EXPECT_NEAR(thickness("[1000, 1000]"), 0.57e-3, 0.01e-3) << "half of (2 + √2)/3 mm";
 }
 
+TEST(ContactRules, OfASceneReachTheWorldAndSilenceTheWarning) {
+  const std::string start = sheet_with("[4, 4]", "{ spring_structural = 10 }") +
+                            "[[collider]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.5, 0, 0.5]\n"
+                            "radius = 0.3\n";
+  const auto build = [&](const std::string& rule) {
+    return build_world(parse_scene(start + rule, "scene.toml"), make_serial_jobs());
+  };
+  EXPECT_EQ(build("").warnings.size(), 1u) << "the sheet starts inside the ball";
+  const SceneWorld passing = build("[[contact]]\nbetween = [\"ball\", \"sheet\"]\ncollide = false\n");
+  EXPECT_TRUE(passing.warnings.empty());
+  using Pairs = std::vector<std::array<std::string, 2>>;
+  EXPECT_EQ(passing.world.passing_pairs(), (Pairs{{"sheet", "ball"}}));
+  const SceneWorld rubbing = build("[[contact]]\nbetween = [\"ball\", \"sheet\"]\nfriction = 0.1\n");
+  EXPECT_TRUE(rubbing.world.passing_pairs().empty());
+}
+
 class DeformingMesh : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }

@@ -203,8 +203,8 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   if (c.inverse_mass == 0) return false;
   const bool is_body = is_on_body(c);
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
-  c.friction = is_body ? shapes_[body_of(std::max(first, last)).collider].collider->friction
-                       : std::sqrt(friction_of(first) * friction_of(last));
+  const Place cloth = place_of(std::min(first, last)), other = place_of(std::max(first, last));
+  c.friction = laws_[law_of(cloth, other)].friction;
   return true;
 }
 
@@ -215,10 +215,6 @@ ContactSystem::Place ContactSystem::place_of(int vertex) const {
   }
   const int cloth = mesh_of(first_vertex_, vertex);
   return {cloth, -1, vertex - first_vertex_[cloth]};
-}
-
-double ContactSystem::friction_of(int vertex) const {
-  return cloths_[mesh_of(first_vertex_, vertex)].model->material.friction;
 }
 
 const ContactSystem::Body& ContactSystem::body_of(int vertex) const {

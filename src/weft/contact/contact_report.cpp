@@ -85,13 +85,18 @@ ContactSystem::Place ContactSystem::place_of_triangle(int triangle) const {
 }
 
 UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
-                                       const std::vector<Collider>& colliders, double time) {
-  begin_step(cloths, colliders, {.time = time, .step = 1});
+                                       const std::vector<Collider>& colliders, const ContactStep& now) {
+  begin_step(cloths, colliders, now);
   Tangle tangle{.surface = &surface(),
                 .first_vertex = first_vertex_,
                 .num_cloth_vertices = first_vertex_.back(),
                 .inverse_mass = &inverse_mass_,
                 .half_thickness = &motion_.half_thickness};
+  const auto pass = [&](const Place& cloth, const Place& other) {
+    return !laws_[law_of(cloth, other)].collide;
+  };
+  tangle.pass = [&](int v, int w) { return pass(place_of(std::min(v, w)), place_of(std::max(v, w))); };
+  tangle.pass_solid = [&](int v, int collider) { return pass(place_of(v), {.collider = collider}); };
   for (const ContactCloth& cloth : cloths_) {
     const TriangleMesh& mesh = cloth.model->topology->mesh;
     tangle.num_cloth_triangles += mesh.num_triangles();

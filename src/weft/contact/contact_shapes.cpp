@@ -118,7 +118,9 @@ void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Tria
   c.num_vertices = num_vertices;
   c.vertex = {vertices[0], vertices[1], vertices[2], 0};
   c.shape = shape;
-  c.friction = shapes_[shape].collider->friction;
+  const PairLaw& law = laws_[law_of(place_of(vertices[0]), {.collider = shape})];
+  if (!law.collide) return;
+  c.friction = law.friction;
   take_plane(c);
   if (c.inverse_mass > 0) constraints_.push_back(c);
 }

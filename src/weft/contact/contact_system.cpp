@@ -74,7 +74,51 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
     }
   }
   place_bodies();
+  set_laws();
   begin_momentum();
+}
+
+/// Of two cloths the friction is the geometric mean of both, of a cloth and a collider the collider's, where
+/// nothing else is said.
+void ContactSystem::set_laws() {
+  const int num_cloths = static_cast<int>(cloths_.size()), num_shapes = static_cast<int>(shapes_.size());
+  laws_.resize(num_cloths * (num_cloths + num_shapes));
+  const auto own = [&](int cloth) { return cloths_[cloth].model->material.friction; };
+  for (int c = 0; c < num_cloths; ++c) {
+    for (int d = 0; d < num_cloths; ++d)
+      laws_[law_of({.cloth = c}, {.cloth = d})] = {std::sqrt(own(c) * own(d))};
+    for (int s = 0; s < num_shapes; ++s)
+      laws_[law_of({.cloth = c}, {.collider = s})] = {shapes_[s].collider->friction};
+  }
+  for (const ContactRule& rule : step_.rules) {
+    const Place cloth{.cloth = rule.cloth}, other{.cloth = rule.other_cloth, .collider = rule.collider};
+    PairLaw& law = laws_[law_of(cloth, other)];
+    law = {rule.friction.value_or(law.friction), rule.collide};
+    if (rule.other_cloth >= 0) laws_[law_of(other, cloth)] = law;
+  }
+  set_passes();
+}
+
+/// Things are the cloths, then all colliders.
+void ContactSystem::set_passes() {
+  passes_.clear();
+  if (std::all_of(laws_.begin(), laws_.end(), [](const PairLaw& law) { return law.collide; }))
+    return proximity_.let_pass(passes_);
+  const int num_cloths = static_cast<int>(cloths_.size()),
+            num_things = num_cloths + static_cast<int>(shapes_.size());
+  passes_.assign(num_things * num_things, 0);
+  for (int c = 0; c < num_cloths; ++c) {
+    for (int t = 0; t < num_things; ++t)
+      passes_[c * num_things + t] = passes_[t * num_things + c] = !laws_[c * num_things + t].collide;
+  }
+  proximity_.let_pass(passes_);
+}
+
+/// Of a cloth and a cloth or collider, in laws_.
+std::size_t ContactSystem::law_of(const Place& cloth, const Place& other) const {
+  const std::size_t num_cloths = cloths_.size();
+  return cloth.cloth * (num_cloths + shapes_.size()) +
+         (other.cloth >= 0 ? other.cloth : num_cloths + other.collider);
 }
 
 void ContactSystem::renumber(const std::vector<Collider>& colliders) {
@@ -100,6 +144,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   bodies_.clear();
   Surface surface;
   std::vector<Vec3> rest;
+  std::vector<int> things;  // (triangles)
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Proximity::Slack slack{kInfinity, kInfinity};
   for (const ContactCloth& cloth : cloths_) {
@@ -107,6 +152,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     numbered_cloths_.push_back(cloth.model->topology);
     first_vertex_.push_back(surface.num_vertices);
     surface.add(topology.mesh.triangles, topology.num_particles());
+    things.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
     rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
     const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
     slack = {std::min(slack.most, own.most), std::min(slack.least, own.least)};
@@ -121,6 +167,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     bodies_.push_back({c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(),
                        is_closed(count_surface_edges(*shape->mesh))});
     surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
+    things.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
   }
   surface.build_fans();
   find_pieces(surface);
@@ -143,6 +190,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
       std::fill(&is_solid_[body.first_vertex], &is_solid_[body.end_vertex - 1] + 1, char{1});
   }
   proximity_.reset(std::move(surface), std::move(rest), num_cloth_vertices, num_cloth_triangles, slack);
+  proximity_.set_things(std::move(things));
 }
 
 void ContactSystem::place_bodies() {
@@ -268,7 +316,7 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   }
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const LastLineReport report = last_line_.hold(
-      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_}, proximity_, motion_, jobs);
+      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_}, proximity_, motion_, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {

@@ -28,10 +28,18 @@ struct ContactCloth {
   bool is_free = false;                          // gravity and contact alone act on it from outside
 };
 
+/// What is between a cloth and a collider, another cloth or itself.
+struct ContactRule {
+  int cloth = 0, other_cloth = -1, collider = -1;  // exactly one of the last two is not -1
+  std::optional<double> friction;                  // Coulomb's coefficient; empty: as they say themselves [1]
+  bool collide = true;                             // false: they go through each other
+};
+
 struct ContactStep {
-  double time = 0;      // at the end of the step [s]
-  double step = 0;      // its length [s]
-  bool tracks = false;  // whether contact_points() will be asked for
+  double time = 0;                          // at the end of the step [s]
+  double step = 0;                          // its length [s]
+  bool tracks = false;                      // whether contact_points() will be asked for
+  std::span<const ContactRule> rules = {};  // of two for the same pair the last one counts
 };
 
 /// Contact of all cloths with all colliders and with each other, step by step:
@@ -84,9 +92,9 @@ class ContactSystem {
   /// What zones of the last line do is not in it.
   std::vector<ContactPoint> contact_points() const;
 
-  /// Sets apart what crosses as it is now, colliders where they are at `time` (see untangle.h).
+  /// Sets apart what crosses as it is, colliders where they are, now (see untangle.h).
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                          double time);
+                          const ContactStep& now);
   const Surface& surface() const { return proximity_.surface(); }
 
   /// What a vertex of the common numbering belongs to, and its number there; exactly one of cloth and
@@ -106,6 +114,12 @@ class ContactSystem {
     int first_vertex = 0;  // of the common numbering
     int end_vertex = 0;
     bool is_closed = false;
+  };
+
+  struct PairLaw {
+    double friction = 0;  // [1]
+    bool collide = true;
+    bool operator==(const PairLaw&) const = default;
   };
 
   /// Where a particle, the middle of an edge or a triangle is nearest to a plain shape.
@@ -149,7 +163,9 @@ class ContactSystem {
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
-  double friction_of(int vertex) const;
+  void set_laws();
+  void set_passes();
+  std::size_t law_of(const Place& cloth, const Place& other) const;
   const Body& body_of(int vertex) const;
   bool is_on_body(const Constraint& c) const;
   bool is_on_closed_body(int vertex) const;
@@ -176,6 +192,7 @@ class ContactSystem {
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<char> is_solid_;      // (num_vertices) on a closed mesh
+  std::vector<char> passes_;        // (things, things) go through each other; empty: none do
   std::vector<char> is_one_piece_;  // (cloths)
   double longest_rest_edge_ = 0;    // of cloth [m]
   Proximity proximity_;
@@ -190,6 +207,7 @@ class ContactSystem {
   std::vector<Vec3> fallen_;          // where inertia and all of gravity would take it
   double longest_edge_ = 0;           // of cloth, at most [m]
   std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
+  std::vector<PairLaw> laws_;         // (cloths, cloths and then colliders)
   std::vector<Constraint> constraints_;
   std::vector<int> found_;             // of these, those that find_contacts told of last
   std::vector<Touch> touches_;         // in this step

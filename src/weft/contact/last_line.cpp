@@ -251,9 +251,17 @@ void LastLine::find_shape_hits(int s) {
   for (const Triangle& t : proximity_->surface().triangles) {
     if (t[0] >= num_cloth_vertices()) break;
     if (!is_near_[t[0]] && !is_near_[t[1]] && !is_near_[t[2]]) continue;
-    if (!is_asked_for({t[0], t[1], t[2], 0}, 3)) continue;
+    if (!is_asked_for({t[0], t[1], t[2], 0}, 3) || pass(t[0], s)) continue;
     if (test_triangle_shape(s, t, hit)) hits_.push_back(hit);
   }
+}
+
+/// Whether a vertex of cloth and a shape go through each other.
+bool LastLine::pass(int vertex, int shape) const {
+  if (step_.passes->empty()) return false;
+  const std::size_t num_cloths = step_.first_vertex->size() - 1,
+                    num_things = num_cloths + step_.shapes->size();
+  return (*step_.passes)[mesh_of(*step_.first_vertex, vertex) * num_things + num_cloths + shape] != 0;
 }
 
 /// In the shape's own frame, where it stays and the triangle moves in straight lines. What is in the shape at

@@ -45,6 +45,7 @@ struct LastLineStep {
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
   const std::vector<Vec3>* origins = nullptr;   // (cloths) of which positions are stored as float offsets
   const std::vector<char>* is_solid = nullptr;  // (num_vertices) on a closed mesh
+  const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) go through each other; or empty
 };
 
 class LastLine {
@@ -89,6 +90,7 @@ class LastLine {
   template <class Find>
   bool test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find, Hit& hit) const;
   void find_shape_hits(int shape);
+  bool pass(int vertex, int shape) const;
   bool test_triangle_shape(int shape, const Triangle& triangle, Hit& hit) const;
   void move(int vertex, const Vec3& to);
   void push_apart(JobSystem& jobs, LastLineReport& report);

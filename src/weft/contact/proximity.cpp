@@ -51,6 +51,18 @@ void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_ver
   made_for_.end.clear();
 }
 
+void Proximity::let_pass(const std::vector<char>& passes) {
+  if (passes == passes_) return;
+  passes_ = passes;
+  num_things_ = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(passes.size()))));
+  made_for_.end.clear();
+}
+
+bool Proximity::pass(int triangle, int other) const {
+  if (passes_.empty()) return false;
+  return passes_[thing_of_triangle_[triangle] * num_things_ + thing_of_triangle_[other]] != 0;
+}
+
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
   if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness)
     return rebuild(motion, jobs);
@@ -252,7 +264,8 @@ void Proximity::add_pairs(const std::vector<ItemPair>& triangles, int first, boo
       jobs, static_cast<int>(triangles.size()), kGrain, chunks_,
       [&](int p, PairChunk& chunk) {
         const ItemPair pair{triangles[p].a, triangles[p].b + first};
-        if (is_renewed_[pair.a] || is_renewed_[pair.b]) add_pairs_of_triangles(pair, is_fan, chunk);
+        if ((is_renewed_[pair.a] || is_renewed_[pair.b]) && !pass(pair.a, pair.b))
+          add_pairs_of_triangles(pair, is_fan, chunk);
       },
       [&](const PairChunk& chunk) {
         append(chunk.vertex_triangle, vertex_triangle_);

@@ -40,6 +40,11 @@ class Proximity {
   void reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices, int num_cloth_triangles,
              const Slack& slack);
 
+  /// What each triangle belongs to (triangles), and which of these go through each other: `passes` (things,
+  /// things) is symmetric; empty: none do. Pairs of those that do are not listed.
+  void set_things(std::vector<int> thing_of_triangle) { thing_of_triangle_ = std::move(thing_of_triangle); }
+  void let_pass(const std::vector<char>& passes);
+
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
   /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
@@ -74,6 +79,7 @@ class Proximity {
   void choose_slack();
   void measure_edges();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
+  bool pass(int triangle, int other) const;
   bool renew(const SurfaceMotion& motion, JobSystem& jobs);
   void mark_moved(const SurfaceMotion& motion);
   void drop_pairs_of_moved();
@@ -99,6 +105,9 @@ class Proximity {
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
+  std::vector<int> thing_of_triangle_;
+  std::vector<char> passes_;
+  std::size_t num_things_ = 0;
   Slack slacks_;
   double slack_ = 0;      // for the next lists [m]
   double made_with_ = 0;  // for those at hand [m]

@@ -141,6 +141,7 @@ class Untangler {
   }
 
   void add_pierced(int s, int t, std::vector<Pierced>& pierced) const {
+    if (tangle_.pass(surface_.triangles[s][0], surface_.triangles[t][0])) return;
     for (const auto& [owner, other] : {std::pair(s, t), std::pair(t, s)}) {
       const Triangle& triangle = surface_.triangles[other];
       for (const int e : surface_.owned[owner].edge) {
@@ -158,7 +159,7 @@ class Untangler {
 
   /// Free particles of cloth in a solid.
   std::vector<int> find_inside(std::size_t s) const {
-    const ColliderShape& shape = tangle_.solids[s].shape;
+    const auto& [collider, shape, first_vertex, end_vertex] = tangle_.solids[s];
     std::vector<int> found;
     const std::vector<Vec3> cloth(x_.begin(), x_.begin() + tangle_.num_cloth_vertices);
     std::vector<int> winding;
@@ -166,7 +167,7 @@ class Untangler {
     for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
       const bool is_inside =
           winding.empty() ? signed_distance(shape, cloth[v]).distance < 0 : winding[v] != 0;
-      if (is_inside && is_free(v)) found.push_back(v);
+      if (is_inside && is_free(v) && !tangle_.pass_solid(v, collider)) found.push_back(v);
     }
     return found;
   }

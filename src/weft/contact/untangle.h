@@ -12,6 +12,7 @@
 /// What is inside a solid goes out by the nearest way, or, where neighbours disagree on that, all in one
 /// direction. This is a repair of places, not a motion: cloth may pass through cloth here, as nowhere else.
 
+#include <functional>
 #include <vector>
 
 #include "weft/contact/collider.h"
@@ -33,7 +34,9 @@ struct Tangle {
     ColliderShape shape;                   // where it is
     int first_vertex = 0, end_vertex = 0;  // of a closed mesh
   };
-  std::vector<Solid> solids;  // plain shapes and closed meshes
+  std::vector<Solid> solids;                 // plain shapes and closed meshes
+  std::function<bool(int, int)> pass;        // two vertices' things go through each other
+  std::function<bool(int, int)> pass_solid;  // a vertex of cloth, and a collider, do
 };
 
 /// An edge that runs through a triangle.

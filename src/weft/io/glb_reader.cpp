@@ -257,6 +257,7 @@ class Reader {
     Animation animation;
     if (model_.asset.extras.Has("title"))
       animation.title = model_.asset.extras.Get("title").Get<std::string>();
+    animation.passing = read_passing();
     animation.frames_per_second = read_frames_per_second();
     for (size_t n = 0; n < model_.nodes.size(); ++n) add_node(static_cast<int>(n), animation);
     if (animation.cloths.empty() && animation.bodies.empty()) {
@@ -270,6 +271,20 @@ class Reader {
   }
 
  private:
+  std::vector<std::array<std::string, 2>> read_passing() const {
+    std::vector<std::array<std::string, 2>> pairs;
+    if (!model_.asset.extras.Has("passing")) return pairs;
+    const Value& list = model_.asset.extras.Get("passing");
+    for (std::size_t p = 0; list.IsArray() && p < list.ArrayLen(); ++p) {
+      const Value& pair = list.Get(static_cast<int>(p));
+      const bool is_pair =
+          pair.IsArray() && pair.ArrayLen() == 2 && pair.Get(0).IsString() && pair.Get(1).IsString();
+      if (!is_pair) fail("has a pair of things that go through each other that is not two names");
+      pairs.push_back({pair.Get(0).Get<std::string>(), pair.Get(1).Get<std::string>()});
+    }
+    return pairs;
+  }
+
   void add_node(int index, Animation& animation) const {
     const tinygltf::Node& node = model_.nodes[index];
     if (!node.extras.Has("weft") || !node.extras.Get("weft").IsObject()) return;

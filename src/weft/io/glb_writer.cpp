@@ -211,10 +211,20 @@ class GlbBuilder {
     tinygltf::Scene scene;
     if (!animation_.title.empty()) {
       scene.name = animation_.title;
-      model_.asset.extras = tinygltf::Value({{"title", tinygltf::Value(animation_.title)}});
     }
+    model_.asset.extras = asset_extras();
     model_.scenes.push_back(std::move(scene));
     model_.defaultScene = 0;
+  }
+
+  tinygltf::Value asset_extras() const {
+    Extras extras;
+    if (!animation_.title.empty()) extras["title"] = tinygltf::Value(animation_.title);
+    tinygltf::Value::Array pairs;
+    for (const auto& [a, b] : animation_.passing)
+      pairs.emplace_back(tinygltf::Value::Array{tinygltf::Value(a), tinygltf::Value(b)});
+    if (!pairs.empty()) extras["passing"] = tinygltf::Value(std::move(pairs));
+    return extras.empty() ? tinygltf::Value() : tinygltf::Value(std::move(extras));
   }
 
   /// The key times, and the weights that all cloths share: frame k shows morph target k - 1 and no other.

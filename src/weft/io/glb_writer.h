@@ -50,16 +50,18 @@ struct Animation {
   double frames_per_second = 60;  // > 0
   std::vector<AnimatedMesh> cloths;
   std::vector<RigidMesh> bodies;
+  std::vector<std::array<std::string, 2>> passing = {};  // names of those that may go through each other
 };
 
 /// Writes the animation; materials are double-sided, fabric coordinates become texture coordinates in metres.
 /// What glTF has no words for goes to the nodes' extras, as
 /// `"weft": {"role": "cloth"}` or `{"role": "collider", "shape": "sphere", "center": [0, 0, 0], "radius":
 /// 0.3}`; other shapes are `plane` (point, normal), `capsule` (a, b, radius), `box` (center, half_size,
-/// rotation: nine numbers row by row) and `mesh`. All meshes have the same number of frames (>= 1). Writes to
-/// FILE.part first, so that an earlier result is replaced whole or not at all. Throws InputError if the file
-/// cannot be written, with the system's reason, and for an animation that no viewer could show: without
-/// meshes, with unequal numbers of frames, or with coordinates that are not finite.
+/// rotation: nine numbers row by row) and `mesh`. The asset's extras hold `title` and `passing`. All meshes
+/// have the same number of frames (>= 1). Writes to FILE.part first, so that an earlier result is replaced
+/// whole or not at all. Throws InputError if the file cannot be written, with the system's reason, and for an
+/// animation that no viewer could show: without meshes, with unequal numbers of frames, or with coordinates
+/// that are not finite.
 void write_glb(const std::filesystem::path& file, const Animation& animation);
 
 }  // namespace weft

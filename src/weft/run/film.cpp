@@ -76,6 +76,7 @@ std::vector<float> positions(const ClothState& state) {
 Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
   animation_.title = scene.name;
   animation_.frames_per_second = scene.fps;
+  animation_.passing = world.passing_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothTopology& topology = *world.model({c}).topology;
     AnimatedMesh mesh;

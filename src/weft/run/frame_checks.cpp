@@ -129,6 +129,7 @@ FrameToCheck WorldFrames::now() const {
     const Solid shape = place(shape_at(collider, world_.time()), is_closed_[k], result);
     result.frame.colliders.push_back({collider.name, shape});
   }
+  result.frame.passing = world_.passing_pairs();
   return result;
 }
 
@@ -161,6 +162,7 @@ FrameToCheck AnimationFrames::at(int frame) const {
                                body.mesh.triangles, placement, is_closed_[k], result));
     result.frame.colliders.push_back({body.name, shape});
   }
+  result.frame.passing = animation_.passing;
   return result;
 }
 

@@ -90,6 +90,13 @@ struct ClothSceneDesc {
   std::vector<PinDesc> pins;
 };
 
+/// Of two things by their names, in place of what they say themselves.
+struct ContactDesc {
+  std::array<std::string, 2> between;  // cloths and colliders, one cloth at least; a cloth twice: with itself
+  std::optional<double> friction;      // Coulomb's coefficient, >= 0 [1]
+  bool collide = true;                 // false: they go through each other
+};
+
 struct WindKey {
   double time = 0;               // [s]
   Vec3 velocity = Vec3::Zero();  // [m/s]
@@ -116,6 +123,7 @@ struct SceneDesc {
   double duration = 3;           // [s], > 0
   std::vector<ClothSceneDesc> cloths;  // at least one
   std::vector<ColliderSceneDesc> colliders;
+  std::vector<ContactDesc> contacts;
   WindDesc wind;
   IntegratorSettings solver;
   int steps_per_frame = 1;  // >= 1

@@ -30,6 +30,7 @@ shape = "capsule"
 shape = "box"
 [[collider]]
 shape = "mesh"
+[[contact]]
 [wind]
 keys = [{}]
 )",

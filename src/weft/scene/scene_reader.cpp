@@ -101,6 +101,39 @@ WindDesc read_wind(TomlTable table) {
   return wind;
 }
 
+bool has_cloth(const SceneDesc& scene, const std::string& name) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const auto& c) { return c.name == name; });
+}
+
+bool has_collider(const SceneDesc& scene, const std::string& name) {
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [&](const auto& c) { return c.name == name; });
+}
+
+ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
+  constexpr std::string_view kForm = "two names of cloths or colliders, as in [\"sheet\", \"ball\"]";
+  ContactDesc contact;
+  table.require({"between"}, kForm);
+  table.read("collide", contact.collide);
+  const TomlValue friction = table.get("friction");
+  if (double number = 0; friction && friction.read(number, not_negative())) contact.friction = number;
+  const TomlValue between = table.get("between");
+  if (!between) return contact;
+  const std::vector<TomlValue> names = between.elements(kForm);
+  if (names.size() != 2) {
+    between.expected(kForm);
+    return contact;
+  }
+  for (int n = 0; n < 2; ++n) {
+    std::string& name = contact.between[n];
+    if (names[n].read(name) && !has_cloth(scene, name) && !has_collider(scene, name))
+      names[n].mistake("there is neither a cloth nor a collider \"" + name + "\"");
+  }
+  if (has_collider(scene, contact.between[0]) && has_collider(scene, contact.between[1]))
+    between.mistake("one of the two must be a cloth; colliders do not touch each other");
+  return contact;
+}
+
 void read_integrator(TomlTable& solver, std::string& integrator) {
   const std::vector<std::string> names(integrator_names().begin(), integrator_names().end());
   const TomlValue value = solver.get("integrator");
@@ -185,6 +218,7 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
     scene.colliders.push_back(
         read_collider(collider, static_cast<int>(scene.colliders.size()) + 1, file.parent_path()));
   }
+  for (TomlTable& contact : root.tables("contact")) scene.contacts.push_back(read_contact(contact, scene));
   scene.wind = read_wind(root.table("wind"));
   read_solver(root.table("solver"), scene);
   return scene;

@@ -208,14 +208,22 @@ std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded
   return pins;
 }
 
-void warn_about_start(const std::vector<Collider>& colliders, const std::string& cloth,
-                      const std::vector<Vec3>& positions, std::vector<std::string>& warnings) {
-  for (const Collider& collider : colliders) {
-    const int inside = count_inside(shape_at(collider, 0), positions);
-    if (inside == 0) continue;
-    warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
-                       (inside == 1 ? " particle" : " particles") + " inside collider \"" + collider.name +
-                       "\"; move them apart");
+void warn_about_start(const World& world, std::vector<std::string>& warnings) {
+  const auto passing = world.passing_pairs();
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const std::string& cloth = world.name({c});
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < world.state({c}).x.size(); ++i)
+      positions.push_back(world.state({c}).position(i));
+    for (const Collider& collider : world.colliders()) {
+      const std::array<std::string, 2> pair{cloth, collider.name};
+      if (std::find(passing.begin(), passing.end(), pair) != passing.end()) continue;
+      const int inside = count_inside(shape_at(collider, 0), positions);
+      if (inside == 0) continue;
+      warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
+                         (inside == 1 ? " particle" : " particles") + " inside collider \"" + collider.name +
+                         "\"; move them apart");
+    }
   }
 }
 
@@ -257,9 +265,12 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
                                         .positions = positions,
                                         .velocity = desc.velocity});
     world.set_pins(id, make_pins(desc, loaded, positions));
-    if (!scene.untangle) warn_about_start(world.colliders(), desc.name, positions, result.warnings);
   }
-  if (scene.untangle) untangle(world, result.warnings);
+  for (const auto& [between, friction, collide] : scene.contacts) {
+    if (friction) world.set_friction(between[0], between[1], *friction);
+    world.set_collision(between[0], between[1], collide);
+  }
+  scene.untangle ? untangle(world, result.warnings) : warn_about_start(world, result.warnings);
   return result;
 }
 

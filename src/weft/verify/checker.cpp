@@ -21,6 +21,35 @@ void add_collider_surfaces(const Frame& frame, std::vector<SurfaceView>& surface
   }
 }
 
+bool may_pass(const Frame& frame, const std::string& a, const std::string& b) {
+  return std::any_of(frame.passing.begin(), frame.passing.end(), [&](const auto& pair) {
+    return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+  });
+}
+
+const std::string& bare_name_of(const Frame& frame, int surface) {
+  const auto num_cloths = static_cast<int>(frame.cloths.size());
+  return surface < num_cloths ? frame.cloths[surface].name : frame.colliders[surface - num_cloths].name;
+}
+
+/// Of each solid, in the cloths that it holds off.
+std::optional<Penetration> find_deepest_of_held(const Frame& frame, const std::vector<SurfaceView>& cloths,
+                                                const std::vector<Solid>& solids) {
+  if (frame.passing.empty()) return find_deepest(cloths, solids);
+  std::optional<Penetration> deepest;
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    std::vector<SurfaceView> held = cloths;
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      if (may_pass(frame, frame.cloths[c].name, frame.colliders[s].name))
+        held[c] = {.positions = {}, .triangles = {}, .is_cloth = true};
+    }
+    std::optional<Penetration> found = find_deepest(held, {&solids[s], 1});
+    if (found && found->solid >= 0) found->solid = static_cast<int>(s);
+    if (found && (!deepest || found->depth > deepest->depth)) deepest = found;
+  }
+  return deepest;
+}
+
 std::string quoted(const std::string& kind, const std::string& name) { return kind + " \"" + name + "\""; }
 
 std::string name_of(const Frame& frame, int surface) {
@@ -36,10 +65,13 @@ FrameCheck check_frame(const Frame& frame, int num_listed) {
   std::vector<SurfaceView> surfaces = cloth_surfaces(frame);
   std::vector<Solid> solids;
   for (const NamedCollider& collider : frame.colliders) solids.push_back(collider.shape);
-  check.deepest = find_deepest(surfaces, solids);
+  check.deepest = find_deepest_of_held(frame, surfaces, solids);
 
   add_collider_surfaces(frame, surfaces);
-  const std::vector<Crossing> crossings = find_crossings(surfaces);
+  std::vector<Crossing> crossings = find_crossings(surfaces);
+  std::erase_if(crossings, [&](const Crossing& c) {
+    return may_pass(frame, bare_name_of(frame, c.a.surface), bare_name_of(frame, c.b.surface));
+  });
   check.intersections = static_cast<int>(crossings.size());
   const std::size_t listed = std::min(crossings.size(), static_cast<std::size_t>(num_listed));
   check.first.assign(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(listed));

@@ -4,6 +4,7 @@
 /// It looks at positions and shapes alone, knows nothing of how they came about, and shares no code with the
 /// detection of contact that it checks.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct NamedCollider {
 struct Frame {
   std::vector<NamedCloth> cloths;
   std::vector<NamedCollider> colliders;
+  std::vector<std::array<std::string, 2>> passing = {};  // names of things that may go through each other
 };
 
 struct FrameCheck {

@@ -161,6 +161,51 @@ void World::set_wind(const Wind& wind) {
   environment_.wind = wind;
 }
 
+ContactSystem::Place World::find_place(const std::string& name) const {
+  for (int c = 0; c < num_cloths(); ++c) {
+    if (cloths_[c].name == name) return {c, -1, 0};
+  }
+  for (int c = 0; c < static_cast<int>(colliders_.size()); ++c) {
+    if (colliders_[c].name == name) return {-1, c, 0};
+  }
+  throw InputError("there is neither a cloth nor a collider \"" + name + "\"");
+}
+
+ContactRule& World::rule_for(const std::string& a, const std::string& b) {
+  ContactSystem::Place cloth = find_place(a), other = find_place(b);
+  if (cloth.cloth < 0) std::swap(cloth, other);
+  require(cloth.cloth >= 0,
+          "\"" + a + "\" and \"" + b +
+              "\" are both colliders, which do not touch each other; one of the two must be a cloth");
+  if (other.cloth > cloth.cloth) std::swap(cloth, other);
+  const auto is_theirs = [&](const ContactRule& r) {
+    return r.cloth == cloth.cloth && r.other_cloth == other.cloth && r.collider == other.collider;
+  };
+  const auto known = std::find_if(rules_.begin(), rules_.end(), is_theirs);
+  if (known != rules_.end()) return *known;
+  return rules_.emplace_back(ContactRule{cloth.cloth, other.cloth, other.collider, {}, true});
+}
+
+void World::set_friction(const std::string& a, const std::string& b, double friction) {
+  require(std::isfinite(friction) && friction >= 0,
+          "the friction of \"" + a + "\" and \"" + b + "\" must be 0 or more");
+  rule_for(a, b).friction = friction;
+}
+
+void World::set_collision(const std::string& a, const std::string& b, bool collide) {
+  rule_for(a, b).collide = collide;
+}
+
+std::vector<std::array<std::string, 2>> World::passing_pairs() const {
+  std::vector<std::array<std::string, 2>> pairs;
+  for (const ContactRule& r : rules_) {
+    if (r.collide) continue;
+    pairs.push_back({cloths_[r.cloth].name,
+                     r.other_cloth >= 0 ? cloths_[r.other_cloth].name : colliders_[r.collider].name});
+  }
+  return pairs;
+}
+
 void World::set_integrator(const IntegratorSettings& settings) {
   make_integrator(settings);  // throws before anything has changed
   for (const Cloth& cloth : cloths_) {
@@ -213,7 +258,7 @@ void World::begin_contact(double time, double dt) {
     is_predicted |= cloth.integrator->resolves_contacts();
   }
   contact_system_.begin_step(contact_cloths_, colliders_,
-                             {.time = time, .step = dt, .tracks = tracks_contacts_});
+                             {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_});
   if (is_predicted) contact_system_.predict(environment_.gravity, pin_positions_, *jobs_);
 }
 
@@ -316,7 +361,8 @@ UntangleReport World::untangle() {
   UntangleReport report;
   const Snapshot before = snapshot();
   show_contact_cloths();
-  const UntangleResult result = contact_system_.untangle(contact_cloths_, colliders_, time_);
+  const UntangleResult result =
+      contact_system_.untangle(contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
   report.rounds = result.rounds;
   report.crossed = describe(result.before);
   report.left = describe(result.after);

@@ -86,6 +86,11 @@ class World {
   /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
   void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
+  /// Coulomb's coefficient of two things by their names, of which one at least is a cloth (a cloth twice: with
+  /// itself), in place of what they say themselves. Throws InputError for unknown names and below 0.
+  void set_friction(const std::string& a, const std::string& b, double friction);
+  /// Whether two things, named as above, collide or go through each other.
+  void set_collision(const std::string& a, const std::string& b, bool collide);
   void track_contacts(bool enabled) {
     tracks_contacts_ = enabled;
   }  // for contact_points(); costs some percent
@@ -113,6 +118,9 @@ class World {
   /// Ordered by what touches; empty without contact, and where contacts are not tracked. Summed over time the
   /// forces are what cloth's momentum needs; where cloth trembles those of a single step are not its weight.
   std::vector<ContactPoint> contact_points() const;
+
+  /// The names of things that go through each other (pairs).
+  std::vector<std::array<std::string, 2>> passing_pairs() const;
 
   const Vec3& gravity() const { return environment_.gravity; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
@@ -158,6 +166,8 @@ class World {
   std::string describe(const Infeasible& pair) const;
   std::vector<std::string> describe(const Knots& knots) const;
   std::string name_of(const ContactSystem::Place& place) const;
+  ContactSystem::Place find_place(const std::string& name) const;
+  ContactRule& rule_for(const std::string& a, const std::string& b);
   void save(Snapshot& snapshot) const;
   void aim_pins(Cloth& cloth, double time);
 
@@ -168,6 +178,7 @@ class World {
   std::shared_ptr<JobSystem> jobs_;
   std::vector<Cloth> cloths_;
   std::vector<Collider> colliders_;
+  std::vector<ContactRule> rules_;  // one per pair
 
   // Work space of step(), kept so that it allocates nothing.
   ContactSystem contact_system_;
