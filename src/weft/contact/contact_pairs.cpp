@@ -23,6 +23,9 @@ constexpr double kParallelSq = 0.03;
 /// Edges that pass each other nearer than this when they are in one plane do meet [m].
 constexpr double kMeeting = 1e-5;
 
+/// Pairs of cloth and collider count for the solve from this share of their gap farther apart.
+constexpr double kNearBy = 0.6;
+
 /// Features this near have no direction between them at all [m].
 constexpr double kTouching = 1e-9;
 
@@ -72,9 +75,10 @@ bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
       nearest = d;
       pair = &pairs[p];
     }
-    if (nearest.distance() <= motion_.half_thickness[vertex]) break;
+    if (nearest.distance() <= near_by(motion_.half_thickness[vertex], true)) break;
   }
-  if (nearest.region == TriangleRegion::face || nearest.distance() > motion_.half_thickness[vertex])
+  if (nearest.region == TriangleRegion::face ||
+      nearest.distance() > near_by(motion_.half_thickness[vertex], true))
     return false;
   const auto [i, j, k] = proximity_.surface().triangles[pair->b];
   c.num_vertices = 4;
@@ -110,7 +114,8 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   if (d.region != TriangleRegion::face) return false;
   c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
   const std::vector<Vec3>& y = motion_.end;
-  if (distance > gap && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > gap) return false;
+  const double near = near_by(gap, is_on_body(c));
+  if (distance > near && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > near) return false;
   if (is_on_closed_body(i)) {
     // The outside is known, so that what is inside by a little is pushed out.
     c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
@@ -149,7 +154,8 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
   if (distance < kTouching) return false;
   const std::vector<Vec3>& y = motion_.end;
-  if (distance > gap && edge_edge_distance(y[i], y[j], y[k], y[l]).distance() > gap) return false;
+  const double near = near_by(gap, is_on_body(c));
+  if (distance > near && edge_edge_distance(y[i], y[j], y[k], y[l]).distance() > near) return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
   return finish_pair(distance, gap, c);
@@ -184,6 +190,12 @@ bool ContactSystem::finish_crossing(const FeaturePair& pair, Constraint& c) cons
 double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const {
   const double thickness = motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
   return (is_on_body(c) ? 1 - pressed_in_ : 1) * std::min(thickness, double{pair.max_gap});
+}
+
+/// How near a pair must be to count. The solve is told of what lies on a collider though it does not quite
+/// touch: it would fall.
+double ContactSystem::near_by(double gap, bool is_body) const {
+  return (is_for_solve_ && is_body ? 1 + kNearBy : 1) * gap;
 }
 
 /// By how much the pair's distance can change during the step, at most [m].

@@ -55,7 +55,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
                                const ContactStep& step) {
   cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
-  is_predicted_ = false;
+  is_predicted_ = is_for_solve_ = false;
   pressed_in_ = 0;
   touches_.clear();
   shapes_.clear();
@@ -213,7 +213,7 @@ void ContactSystem::end_of(int cloth, std::span<const char> pushing) {
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
-  is_predicted_ = true;
+  is_predicted_ = is_for_solve_ = true;
   expect_motion(acceleration, pin_targets);
   proximity_.update(motion_, jobs);
   constraints_.clear();
@@ -296,6 +296,7 @@ int ContactSystem::wild_cloth() const {
 }
 
 void ContactSystem::hold_off(JobSystem& jobs) {
+  is_for_solve_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
   proximity_.update(motion_, jobs);
   constraints_.clear();

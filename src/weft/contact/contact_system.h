@@ -161,6 +161,7 @@ class ContactSystem {
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
   bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
+  double near_by(double gap, bool is_body) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
   void set_laws();
@@ -202,6 +203,7 @@ class ContactSystem {
   std::vector<MovingShape> shapes_;
   ContactStep step_;
   bool is_predicted_ = false;  // the solve knows of contacts
+  bool is_for_solve_ = false;  // contacts are being predicted
   double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
   std::vector<Vec3> fallen_;          // where inertia and all of gravity would take it
