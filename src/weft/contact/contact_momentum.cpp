@@ -33,6 +33,7 @@ void ContactSystem::find_pieces(const Surface& surface) {
 
 void ContactSystem::begin_momentum() {
   const int num_cloths = static_cast<int>(cloths_.size());
+  if (num_cloths < 2) return;
   touching_.resize(num_cloths);
   std::iota(touching_.begin(), touching_.end(), 0);
   is_held_.clear();
@@ -56,6 +57,7 @@ int ContactSystem::group_of(int cloth) const {
 }
 
 void ContactSystem::note_pushes(int cloth, std::span<const char> pushing) {
+  if (cloths_.size() < 2) return;
   for (std::size_t n = 0; n < pushing.size(); ++n) {
     if (!pushing[n]) continue;
     const Constraint& c = constraints_[found_[n]];
@@ -70,6 +72,7 @@ void ContactSystem::note_pushes(int cloth, std::span<const char> pushing) {
 
 void ContactSystem::keep_momentum(const Vec3& gravity) {
   const int num_cloths = static_cast<int>(cloths_.size());
+  if (num_cloths < 2) return;
   for (int group = 0; group < num_cloths; ++group) {
     int num_members = 0;
     bool is_held = false;

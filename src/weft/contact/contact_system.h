@@ -119,7 +119,6 @@ class ContactSystem {
   struct PairLaw {
     double friction = 0;  // [1]
     bool collide = true;
-    bool operator==(const PairLaw&) const = default;
   };
 
   /// Where a particle, the middle of an edge or a triangle is nearest to a plain shape.
@@ -221,7 +220,7 @@ class ContactSystem {
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
-  std::vector<int> near_;
+  std::vector<int> near_;  // of constraints_, for project_positions
   std::vector<double> shape_distance_;
   std::vector<Vec3> velocity_, slowed_;
   LastLine last_line_;

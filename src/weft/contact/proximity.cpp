@@ -23,6 +23,9 @@ constexpr double kFarthest = 100;
 /// If more than this share of the vertices have moved, all pairs are looked for anew.
 constexpr double kManyMoved = 0.4;
 
+/// What has used up more than this share of its slack is looked for anew together with what has left it.
+constexpr double kSoon = 0.3;
+
 /// No vertex may move farther against the rest than this many times the cloth's size [1].
 constexpr double kMostOfSize = 10;
 
@@ -74,17 +77,20 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
 }
 
 /// What two features do in straight lines keeps their pair, as long as each corner stays within the slack of
-/// where it was, at every time.
+/// where it was, at every time. Once one has left it, those that will soon do so count as well.
 void Proximity::find_moved(const SurfaceMotion& motion) {
   moved_.clear();
   drift_at_start_ = find_drift(motion.start, made_for_.start);
   drift_at_end_ = find_drift(motion.end, made_for_.end);
-  const double most_sq = made_with_ * made_with_;
+  const double most_sq = made_with_ * made_with_, soon_sq = kSoon * kSoon * most_sq;
+  bool has_any_left = false;
   for (int v = 0; v < surface_.num_vertices; ++v) {
-    const Vec3 at_start = motion.start[v] - made_for_.start[v] - drift_at_start_,
-               at_end = motion.end[v] - made_for_.end[v] - drift_at_end_;
-    if (!(at_start.squaredNorm() <= most_sq && at_end.squaredNorm() <= most_sq)) moved_.push_back(v);
+    const double at_start_sq = (motion.start[v] - made_for_.start[v] - drift_at_start_).squaredNorm(),
+                 at_end_sq = (motion.end[v] - made_for_.end[v] - drift_at_end_).squaredNorm();
+    has_any_left |= !(at_start_sq <= most_sq && at_end_sq <= most_sq);
+    if (!(at_start_sq <= soon_sq && at_end_sq <= soon_sq)) moved_.push_back(v);
   }
+  if (!has_any_left) moved_.clear();
 }
 
 /// What all cloth has moved in common.

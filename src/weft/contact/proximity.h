@@ -113,8 +113,7 @@ class Proximity {
   double made_with_ = 0;  // for those at hand [m]
 
   AabbTree cloth_tree_, body_tree_;
-  SurfaceMotion
-      made_for_;  // what the lists were made for, but for a motion in common; empty if there are none
+  SurfaceMotion made_for_;      // what the lists were made for, but for a motion in common; or empty
   Vec3 origin_ = Vec3::Zero();  // of boxes
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   double longest_edge_ = 0;  // [m]
