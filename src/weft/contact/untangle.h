@@ -34,9 +34,10 @@ struct Tangle {
     ColliderShape shape;                   // where it is
     int first_vertex = 0, end_vertex = 0;  // of a closed mesh
   };
-  std::vector<Solid> solids;                 // plain shapes and closed meshes
-  std::function<bool(int, int)> pass;        // two vertices' things go through each other
-  std::function<bool(int, int)> pass_solid;  // a vertex of cloth, and a collider, do
+  std::vector<Solid> solids;  // plain shapes and closed meshes
+  // Whether things go through each other: those of two vertices; that of a vertex of cloth, and a collider.
+  // Never empty.
+  std::function<bool(int, int)> pass, pass_solid;
 };
 
 /// An edge that runs through a triangle.
