@@ -62,11 +62,13 @@ class BulletContestant final : public Contestant {
     body_ = std::make_unique<btSoftBody>(&info, model.num_particles(), x.data(), mass.data());
     body_->m_cfg.piterations = 1;
     body_->m_cfg.collisions = 0;
-    for (const Spring& spring : model.topology->springs) {
+    const std::vector<Spring>& springs = model.topology->springs;
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      const Spring& spring = springs[s];
+      const double k = model.stiffness(static_cast<int>(s));
       const double inv_mass = body_->m_nodes[spring.i].m_im + body_->m_nodes[spring.j].m_im;
       btSoftBody::Material* material = body_->appendMaterial();
-      material->m_kLST =
-          static_cast<btScalar>(inv_mass / (inv_mass + 1 / (step() * step() * model.stiffness(spring.kind))));
+      material->m_kLST = static_cast<btScalar>(inv_mass / (inv_mass + 1 / (step() * step() * k)));
       body_->appendLink(spring.i, spring.j, material);
     }
     return body_.get();

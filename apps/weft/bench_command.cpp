@@ -6,6 +6,7 @@
 #include "bench/contact.h"
 #include "bench/frontier.h"
 #include "bench/integrators.h"
+#include "bench/kernels.h"
 #include "bench/pictures.h"
 #include "bench/random_scenes.h"
 #include "bench/scaling.h"
@@ -52,6 +53,22 @@ void add_integrators(CLI::App& bench) {
   command->callback([options, simd] {
     if (!simd->empty()) limit_simd(*simd);
     bench::bench_integrators(*options);
+  });
+}
+
+void add_kernels(CLI::App& bench) {
+  auto options = std::make_shared<bench::KernelBenchOptions>();
+  auto simd = std::make_shared<std::string>();
+  CLI::App* command =
+      bench.add_subcommand("kernels", "How far each kernel of newton is from what the machine allows");
+  command->add_option("--sizes", options->sizes, "Particles per side")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 4096))
+      ->capture_default_str();
+  add_common_options(*command, *options, *simd);
+  command->callback([options, simd] {
+    if (!simd->empty()) limit_simd(*simd);
+    bench::bench_kernels(*options);
   });
 }
 
@@ -180,6 +197,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bench", "Measure speed");
   command->require_subcommand(1);
   add_integrators(*command);
+  add_kernels(*command);
   add_frontier(*command);
   add_collision(*command, exit_code);
   add_contact(*command, exit_code);

@@ -109,7 +109,7 @@ TEST(Increments, FilterIsTheJacobiSweepOfEquation14) {
     const std::vector<double> weight = weights_of(*model, step);
     ClothState state = make_state(c.topology->mesh.positions);
     IncrementField u;
-    u.fit(*c.topology);
+    u.fit(*model);
     Random random(3);
     std::vector<Vec3> expected;
     for (int i = 0; i < model->num_particles(); ++i) {

@@ -94,7 +94,7 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
       fabric.damping = damping;
       const auto model = sheet_of(fabric, SheetKind::parallel, bending);
       ElementTerms terms;
-      terms.begin_step(*model->elements, kStep, from);
+      terms.begin_step(*model->elements, kStep, from, from);
       return terms.energy(to);
     };
     const TriangleMesh mesh = make_sheet(SheetKind::parallel, 8);

@@ -35,7 +35,7 @@ class Explicit {
         x(model.topology->mesh.positions),
         v_(x.size(), Vec3::Zero()) {
     elements_.damping = 0;
-    terms_.begin_step(elements_, 1, x);
+    terms_.begin_step(elements_, 1, x, x);
   }
 
   void advance(const Environment& environment, double step, int num_steps) {

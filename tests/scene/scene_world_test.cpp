@@ -14,6 +14,38 @@
 namespace weft {
 namespace {
 
+TEST(SceneWorld, StiffensTheSpringsOfARegion) {
+  const std::string text = R"([scene]
+format = 1
+[[cloth]]
+grid = { size = [1, 1], cells = [4, 4] }
+[cloth.fabric]
+spring_structural = 100
+[[cloth.stiffen]]
+select = { box = { min = [-1, -1, -1], max = [0.3, 1, 2] } }
+factor = 5
+[[cloth.stiffen]]
+select = { index = [0, 1] }
+factor = 2
+)";
+  const SceneWorld scene = build_world(parse_scene(text, "scene.toml"), make_serial_jobs());
+  const ClothModel& model = scene.world.model({0});
+  const auto column = [](int particle) { return particle % 5; };
+  for (int s = 0; s < static_cast<int>(model.topology->springs.size()); ++s) {
+    const Spring& spring = model.topology->springs[s];
+    const bool is_in_box = column(spring.i) <= 1 && column(spring.j) <= 1;
+    const bool is_first = spring.i == 0 && spring.j == 1;
+    EXPECT_EQ(model.stiffness(s), model.stiffness(spring.kind) * (is_in_box ? 5 : 1) * (is_first ? 2 : 1));
+  }
+  EXPECT_THROW(build_world(parse_scene(text + R"([[cloth.stiffen]]
+select = { sphere = { center = [9, 9, 9], radius = 1 } }
+factor = 2
+)",
+                                       "scene.toml"),
+                           make_serial_jobs()),
+               InputError);
+}
+
 /// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a folder of its own.
 class MeshCollider : public testing::Test {
  protected:

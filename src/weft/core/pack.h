@@ -29,6 +29,21 @@ struct PackOf {
 template <int W>
 using Pack = typename PackOf<W>::Type;
 
+/// A choice for every lane: all bits set, or none.
+template <int W>
+struct MaskOf {
+  typedef int Type __attribute__((vector_size(4 * W)));
+};
+template <int W>
+using Mask = typename MaskOf<W>::Type;
+
+/// mask[lane] ? a[lane] : b[lane]
+template <int W>
+WEFT_ALWAYS_INLINE Pack<W> blend(Mask<W> mask, Pack<W> a, Pack<W> b) {
+  return reinterpret_cast<Pack<W>>((reinterpret_cast<Mask<W>>(a) & mask) |
+                                   (reinterpret_cast<Mask<W>>(b) & ~mask));
+}
+
 /// mask[lane] < bound[lane] ? a[lane] : b[lane]
 template <class V>
 WEFT_ALWAYS_INLINE V select_less(V value, V bound, V a, V b) {
@@ -71,6 +86,25 @@ WEFT_PACK_OPERATOR(-)
 WEFT_PACK_OPERATOR(*)
 WEFT_PACK_OPERATOR(/)
 #undef WEFT_PACK_OPERATOR
+
+template <int W>
+struct Mask {
+  int lane[W] = {};
+
+  int& operator[](int l) { return lane[l]; }
+  Mask operator~() const {
+    Mask r;
+    for (int l = 0; l < W; ++l) r[l] = ~lane[l];
+    return r;
+  }
+};
+
+template <int W>
+Pack<W> blend(const Mask<W>& mask, const Pack<W>& a, const Pack<W>& b) {
+  Pack<W> r;
+  for (int l = 0; l < W; ++l) r[l] = mask.lane[l] ? a[l] : b[l];
+  return r;
+}
 
 template <int W>
 Pack<W> select_less(const Pack<W>& value, const Pack<W>& bound, const Pack<W>& a, const Pack<W>& b) {
@@ -121,6 +155,22 @@ WEFT_ALWAYS_INLINE float widest(Pack<W> a) {
   float most = a[0];
   for (int l = 1; l < W; ++l) most = most < a[l] ? a[l] : most;
   return most;
+}
+
+/// 1 where first, first + 1, … is less than `end`, else 0: without comparisons, which compilers cut into
+/// single lanes where both outcomes are constants.
+template <int W>
+WEFT_ALWAYS_INLINE Pack<W> count_below(std::ptrdiff_t end, std::ptrdiff_t first) {
+  const Pack<W> left = static_cast<float>(end) - count_from<W>(first);
+  return smaller(larger(left, broadcast<W>(0)), broadcast<W>(1));
+}
+
+/// Where first, first + 1, … is even.
+template <int W>
+WEFT_ALWAYS_INLINE Mask<W> even_from(std::ptrdiff_t first) {
+  Mask<W> even{};
+  for (int l = 0; l < W; ++l) even[l] = (l & 1) == 0 ? -1 : 0;
+  return (first & 1) == 0 ? even : ~even;
 }
 
 template <class V>

@@ -21,13 +21,8 @@ class Cells {
  public:
   /// Those whose upper left particles are in row j, from column i on, i >= −1.
   WEFT_ALWAYS_INLINE Cells(const GridElements& g, std::ptrdiff_t i, int j)
-      : at_(g.rows.row(j) + i), is_main_(broadcast<W>(1)) {
-    const Pack<W> column = count_from<W>(i), zero = broadcast<W>(0), one = broadcast<W>(1);
-    exists_ = select_less(column, broadcast<W>(static_cast<float>(g.rows.row_length - 1)), one, zero);
-    exists_ = select_less(column, zero, zero, exists_);
-    if (kAlternates) {
-      for (int l = 0; l < W; ++l) is_main_[l] = ((i + j + l) & 1) == 0 ? 1.0f : 0.0f;
-    }
+      : at_(g.rows.row(j) + i), is_main_(even_from<W>(i + j)) {
+    exists_ = count_below<W>(g.rows.row_length - 1, i) - count_below<W>(0, i);
   }
 
   WEFT_ALWAYS_INLINE std::ptrdiff_t at() const { return at_; }
@@ -35,7 +30,7 @@ class Cells {
 
   /// `main` in cells cut from a to d, `other` in those cut from b to c.
   WEFT_ALWAYS_INLINE Pack<W> choose(Pack<W> main, Pack<W> other) const {
-    return kAlternates ? select_less(broadcast<W>(0), is_main_, main, other) : main;
+    return kAlternates ? blend<W>(is_main_, main, other) : main;
   }
   WEFT_ALWAYS_INLINE Pack<W> choose(float main, float other) const {
     return choose(broadcast<W>(main), broadcast<W>(other));
@@ -77,7 +72,8 @@ class Cells {
   }
 
   std::ptrdiff_t at_;
-  Pack<W> exists_, is_main_;
+  Pack<W> exists_;
+  Mask<W> is_main_;
 };
 
 WEFT_ALWAYS_INLINE Rows strain_planes(const GridElements& g, float* planes, int first) {

@@ -45,10 +45,10 @@ kernels::Forcing make_forcing(const IncrementSettings& s) {
 
 }  // namespace
 
-void IncrementField::fit(const ClothTopology& topology) {
-  const bool is_grid = topology.grid.has_value();
-  const int row_length = is_grid ? topology.grid->num_columns() : topology.num_particles();
-  const int num_rows = is_grid ? topology.grid->num_rows() : 1;
+void IncrementField::fit(const ClothModel& model) {
+  const bool is_grid = model.has_equal_springs();
+  const int row_length = is_grid ? model.topology->grid->num_columns() : model.num_particles();
+  const int num_rows = is_grid ? model.topology->grid->num_rows() : 1;
   if (row_length == row_length_ && num_rows == num_rows_) return;
   row_length_ = row_length;
   num_rows_ = num_rows;
@@ -60,11 +60,11 @@ void IncrementField::fit(const ClothTopology& topology) {
 void compute_increments(const ClothModel& model, const ClothState& state, const IncrementSettings& settings,
                         const std::vector<float>& mass, const std::vector<float>& weight, JobSystem& jobs,
                         IncrementField& u) {
-  u.fit(*model.topology);
+  u.fit(model);
   const kernels::Forcing forcing = make_forcing(settings);
   const kernels::ConstRows x = kernels::rows(state.x), v = kernels::rows(state.v);
   const kernels::Rows out = kernels::rows(u.values);
-  if (model.topology->grid) {
+  if (model.has_equal_springs()) {
     const kernels::GridStencil stencil = make_stencil(model);
     parallel_for(jobs, u.num_rows(), rows_per_chunk(u.row_length()), [&](int begin, int end) {
       kernels::grid_increments(stencil, model.topology->spring_model, forcing, x, v, mass.data(),
@@ -72,11 +72,10 @@ void compute_increments(const ClothModel& model, const ClothState& state, const 
     });
   } else {
     const int first = u.index(0);
-    parallel_for(jobs, model.topology->table.num_slices(), kGrain / NeighbourTable::kLanes,
-                 [&](int begin, int end) {
-                   kernels::mesh_increments(model, forcing, x, v, mass.data(), weight.data(),
-                                            {out.x + first, out.y + first, out.z + first}, begin, end);
-                 });
+    parallel_for(jobs, model.table().num_slices(), kGrain / NeighbourTable::kLanes, [&](int begin, int end) {
+      kernels::mesh_increments(model, forcing, x, v, mass.data(), weight.data(),
+                               {out.x + first, out.y + first, out.z + first}, begin, end);
+    });
   }
 }
 
@@ -105,7 +104,7 @@ void apply_filtered_increments(const ClothModel& model, const IncrementField& u,
                                ClothState& state) {
   const kernels::ConstRows in = kernels::rows(u.values);
   const kernels::Rows x = kernels::rows(state.x), v = kernels::rows(state.v);
-  if (model.topology->grid) {
+  if (model.has_equal_springs()) {
     const kernels::GridStencil stencil = make_stencil(model);
     parallel_for(jobs, u.num_rows(), rows_per_chunk(u.row_length()), [&](int begin, int end) {
       kernels::grid_filtered(stencil, model.topology->spring_model, step, weight.data(), outside,
@@ -113,11 +112,10 @@ void apply_filtered_increments(const ClothModel& model, const IncrementField& u,
     });
   } else {
     const int first = u.index(0);
-    parallel_for(jobs, model.topology->table.num_slices(), kGrain / NeighbourTable::kLanes,
-                 [&](int begin, int end) {
-                   kernels::mesh_filtered(model, step, weight.data(), outside,
-                                          {in.x + first, in.y + first, in.z + first}, x, v, begin, end);
-                 });
+    parallel_for(jobs, model.table().num_slices(), kGrain / NeighbourTable::kLanes, [&](int begin, int end) {
+      kernels::mesh_filtered(model, step, weight.data(), outside, {in.x + first, in.y + first, in.z + first},
+                             x, v, begin, end);
+    });
   }
 }
 

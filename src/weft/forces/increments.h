@@ -16,7 +16,7 @@ namespace weft {
 class IncrementField {
  public:
   /// Zeros, laid out for the given cloth. Does nothing if it is so already.
-  void fit(const ClothTopology& topology);
+  void fit(const ClothModel& model);
 
   /// Where particle i of the cloth is in `values`.
   int index(int i) const { return first_ + (i / row_length_) * stride_ + i % row_length_; }

@@ -118,15 +118,15 @@ WEFT_MULTIVERSION(mesh_sweep, (const MeshFilteredArguments& a), (a))
 
 void mesh_increments(const ClothModel& model, const Forcing& forcing, ConstRows x, ConstRows v,
                      const float* mass, const float* weight, Rows u, int slice_begin, int slice_end) {
-  mesh_slices({model.topology->table, model.entry_stiffness.data(), model.num_particles(), forcing, x, v,
-               mass, weight, u, slice_begin, slice_end});
+  mesh_slices({model.table(), model.entry_stiffness.data(), model.num_particles(), forcing, x, v, mass,
+               weight, u, slice_begin, slice_end});
 }
 
 void mesh_filtered(const ClothModel& model, float step, const float* weight, const Outside& outside,
                    ConstRows u, Rows x, Rows v, int slice_begin, int slice_end) {
   const Eigen::Vector3f g = outside.gain.cast<float>();
-  mesh_sweep({model.topology->table, model.entry_stiffness.data(), model.num_particles(), step, weight,
-              outside.keep, g.x(), g.y(), g.z(), u, x, v, slice_begin, slice_end});
+  mesh_sweep({model.table(), model.entry_stiffness.data(), model.num_particles(), step, weight, outside.keep,
+              g.x(), g.y(), g.z(), u, x, v, slice_begin, slice_end});
 }
 
 }  // namespace weft::kernels

@@ -58,10 +58,29 @@ void IncrementalPotential::fit_grid(const ClothModel& model) {
     stiffness_[f] = static_cast<float>(stiffness[f]);
     rest_length_[f] = static_cast<float>(rest_length[f]);
   }
+  grid_stiffness_.clear();
+  if (!model.has_equal_springs()) spread_grid_stiffness(model);
   if (!hessian_.empty()) return;
   hessian_.assign(kernels::GridPotential::hessian_size(rows_, num_families), 0.0f);
   slope_.assign(num_families * rows_.size() + kPackLanes, 0.0f);
   parts_.assign(rows_.num_rows, 0.0);
+}
+
+/// Every spring's stiffness to where the kernels want it: in its family, at the end that owns it.
+void IncrementalPotential::spread_grid_stiffness(const ClothModel& model) {
+  const int columns = rows_.row_length;
+  grid_stiffness_.assign(num_families_ * rows_.size() + kPackLanes, 0.0f);
+  const std::vector<Spring>& springs = topology_->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const int i = springs[s].i, j = springs[s].j;
+    for (int f = 0; f < num_families_; ++f) {
+      const kernels::FamilyOffset o = kernels::kFamilyOffsets[f];
+      const bool is_own = j / columns - i / columns == o.rows && j % columns - i % columns == o.columns;
+      if (is_own)
+        grid_stiffness_[f * rows_.size() + rows_.index(i)] =
+            static_cast<float>(model.stiffness(static_cast<int>(s)));
+    }
+  }
 }
 
 void IncrementalPotential::fit_mesh(const ClothModel& model) {
@@ -116,6 +135,7 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
           .num_families = num_families_,
           .alternates = topology_->spring_model == SpringModel::alternating,
           .stiffness = stiffness_,
+          .own_stiffness = grid_stiffness_.empty() ? nullptr : grid_stiffness_.data(),
           .rest_length = rest_length_,
           .has_soft_border = has_soft_border_,
           .damping = damping_,

@@ -64,6 +64,7 @@ class IncrementalPotential {
 
  private:
   void fit_grid(const ClothModel& model);
+  void spread_grid_stiffness(const ClothModel& model);
   void fit_mesh(const ClothModel& model);
   kernels::GridPotential grid_view(const Vec3Array& e);
   kernels::MeshPotential mesh_view(const Vec3Array& e);
@@ -75,9 +76,11 @@ class IncrementalPotential {
   std::shared_ptr<const ClothTopology> topology_;
   std::uint64_t model_id_ = 0;
   PaddedRows rows_;
-  int num_families_ = 0;               // of equal springs on a grid; 0 if none has any stiffness
-  float stiffness_[6] = {};            // of each family [N/m]
-  float rest_length_[6] = {};          // of each family [m]
+  int num_families_ = 0;       // of equal springs on a grid; 0 if none has any stiffness
+  float stiffness_[6] = {};    // of each family [N/m]
+  float rest_length_[6] = {};  // of each family [m]
+  std::vector<float>
+      grid_stiffness_;  // of each spring of a grid, as slope_ has them; empty: its family's [N/m]
   std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
   float damping_ = 0;                  // c [N/m]
   float damping_time_ = 0;             // c of a spring, over its stiffness, besides [1]

@@ -12,31 +12,23 @@ constexpr float kMinLengthSq = 1e-30f;
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
   const int step = kFamilyOffsets[family].columns;
-  const Pack<W> column = count_from<W>(i), zero = broadcast<W>(0), one = broadcast<W>(1);
-  const float begin = step < 0 ? 1.0f : 0.0f,
-              end = static_cast<float>(g.rows.row_length - (step > 0 ? step : 0));
-  Pack<W> exists = select_less(column, broadcast<W>(begin), zero, one);
-  exists = select_less(column, broadcast<W>(end), exists, zero);
-  if (g.alternates && (family == 2 || family == 5)) {
-    Pack<W> even{};
-    for (int l = 0; l < W; ++l) even[l] = (l & 1) == 0 ? 1.0f : 0.0f;
-    exists = exists * (((i + j) & 1) == 0 ? even : 1.0f - even);
-  }
+  const int end = g.rows.row_length - (step > 0 ? step : 0);
+  Pack<W> exists = count_below<W>(end, i) - count_below<W>(step < 0 ? 1 : 0, i);
+  if (g.alternates && (family == 2 || family == 5))
+    exists = blend<W>(even_from<W>(i + j), exists, broadcast<W>(0));
   return exists;
 }
 
 /// A half where a structural spring is on a border that is soft, else 1.
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
-  const Pack<W> half = broadcast<W>(0.5f), one = broadcast<W>(1);
-  if (!g.has_soft_border || family > 1) return one;
-  if (family == 0) return j == 0 || j + 1 == g.rows.num_rows ? half : one;
-  const Pack<W> column = count_from<W>(i), last = broadcast<W>(static_cast<float>(g.rows.row_length - 1));
-  return select_less(column, broadcast<W>(1), half, select_less(column, last, one, half));
+  if (!g.has_soft_border || family > 1) return broadcast<W>(1);
+  if (family == 0) return broadcast<W>(j == 0 || j + 1 == g.rows.num_rows ? 0.5f : 1.0f);
+  return 0.5f + 0.5f * (count_below<W>(g.rows.row_length - 1, i) - count_below<W>(1, i));
 }
 
 /// The springs of one family that start in row j.
-template <int W, bool kStore, bool kDamped>
+template <int W, bool kStore, bool kDamped, bool kOwn>
 WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy) {
   using V = Pack<W>;
   const FamilyOffset o = kFamilyOffsets[family];
@@ -44,6 +36,7 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
   const float stiffness = g.stiffness[family], rest_length = g.rest_length[family];
   float* t_out = g.hessian + g.hessian_row(j, family, 0);
   float* slope_out = g.slope + g.slope_row(j, family);
+  const float* own = kOwn ? g.own_stiffness + g.slope_row(j, family) : nullptr;
   const int pitch = g.rows.stride();
   for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int part) WEFT_INLINE_LAMBDA {
     const std::ptrdiff_t p = first + i, q = p + offset;
@@ -53,7 +46,7 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     const V length_sq = larger(dx * dx + dy * dy + dz * dz, broadcast<W>(kMinLengthSq));
     const V length = square_root(length_sq), inverse = 1.0f / length;
     const V exists = spring_exists<W>(g, family, i, j);
-    const V k = stiffness * exists * border_share<W>(g, family, i, j);
+    const V k = kOwn ? load<W>(own + i) : stiffness * exists * border_share<W>(g, family, i, j);
     const V extension = length - rest_length;
     V slope = k * extension * inverse;
     energy.add(part, 0.5f * k * extension * extension);
@@ -96,28 +89,35 @@ WEFT_ALWAYS_INLINE void inertia_row(const GridPotential& g, int j, LaneSums<W>& 
   });
 }
 
-template <int W, bool kStore, bool kDamped>
+template <int W, bool kStore, bool kDamped, bool kOwn>
 WEFT_ALWAYS_INLINE void springs_of_rows(const GridPotential& g, int row_begin, int row_end, double* energy) {
   for (int j = row_begin; j < row_end; ++j) {
     LaneSums<W> sum;
     inertia_row<W>(g, j, sum);
     for (int family = 0; family < g.num_families; ++family) {
       const bool starts_here = j + kFamilyOffsets[family].rows < g.rows.num_rows;
-      if (starts_here) spring_row<W, kStore, kDamped>(g, family, j, sum);
+      if (starts_here) spring_row<W, kStore, kDamped, kOwn>(g, family, j, sum);
     }
     energy[j] = sum.total();
   }
 }
 
+template <int W, bool kOwn>
+WEFT_ALWAYS_INLINE void springs_of_rows(const GridPotential& g, bool store, int row_begin, int row_end,
+                                        double* energy) {
+  if (g.damping > 0 || g.damping_time > 0) {
+    if (store) return springs_of_rows<W, true, true, kOwn>(g, row_begin, row_end, energy);
+    return springs_of_rows<W, false, true, kOwn>(g, row_begin, row_end, energy);
+  }
+  if (store) return springs_of_rows<W, true, false, kOwn>(g, row_begin, row_end, energy);
+  springs_of_rows<W, false, false, kOwn>(g, row_begin, row_end, energy);
+}
+
 template <int W>
 WEFT_ALWAYS_INLINE void springs_body(const GridPotential& g, bool store, int row_begin, int row_end,
                                      double* energy) {
-  if (g.damping > 0 || g.damping_time > 0) {
-    if (store) return springs_of_rows<W, true, true>(g, row_begin, row_end, energy);
-    return springs_of_rows<W, false, true>(g, row_begin, row_end, energy);
-  }
-  if (store) return springs_of_rows<W, true, false>(g, row_begin, row_end, energy);
-  springs_of_rows<W, false, false>(g, row_begin, row_end, energy);
+  if (g.own_stiffness) return springs_of_rows<W, true>(g, store, row_begin, row_end, energy);
+  springs_of_rows<W, false>(g, store, row_begin, row_end, energy);
 }
 
 WEFT_MULTIVERSION_PACKS(springs,

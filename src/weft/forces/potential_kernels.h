@@ -21,11 +21,12 @@ inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2
 /// Everything that the kernels of a grid read and write.
 struct GridPotential {
   PaddedRows rows;
-  int num_families = 5;                // 5, 6 with both diagonals, 0 without springs
-  bool alternates = false;             // diagonals start only where row + column is even
-  const float* stiffness = nullptr;    // of each family
-  const float* rest_length = nullptr;  // of each family
-  bool has_soft_border = false;        // structural springs on it have half their stiffness
+  int num_families = 5;                  // 5, 6 with both diagonals, 0 without springs
+  bool alternates = false;               // diagonals start only where row + column is even
+  const float* stiffness = nullptr;      // of each family
+  const float* own_stiffness = nullptr;  // of each spring, as slope_row has them; null: its family's
+  const float* rest_length = nullptr;    // of each family
+  bool has_soft_border = false;          // structural springs on it have half their stiffness
   float damping = 0;
   float damping_time = 0;  // damping that every spring has more, over its stiffness
   bool is_projected = true;
@@ -44,6 +45,7 @@ struct GridPotential {
                rows.stride() +
            2 * kPackLanes;
   }
+  /// Row j of a family's springs, in `slope`.
   int slope_row(int j, int family) const { return family * static_cast<int>(rows.size()) + rows.row(j); }
 };
 

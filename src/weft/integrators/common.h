@@ -1,6 +1,7 @@
 #pragma once
 /// Private to integrators/: what several of them need.
 
+#include <algorithm>
 #include <vector>
 
 #include "weft/forces/increments.h"
@@ -36,6 +37,22 @@ class PinMotion {
  private:
   std::vector<Vec3> velocity_;
 };
+
+/// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1. elastic(i) is
+/// their force on particle i, zero on pins [N].
+template <class Elastic>
+double free_share(const ClothModel& model, const std::vector<int>& pinned, const Vec3& gravity,
+                  const Elastic& elastic) {
+  const double gravity_sq = gravity.squaredNorm();
+  if (pinned.empty() || gravity_sq == 0) return 1;
+  double mass = 0, carried = 0;
+  for (int i = 0; i < model.num_particles(); ++i) {
+    mass += model.mass[i];
+    carried -= elastic(i).dot(gravity) / gravity_sq;
+  }
+  for (const int p : pinned) mass -= model.mass[p];
+  return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
+}
 
 /// The settings of the fast kernels that follow from model and environment: no gravity, damping as in the
 /// material.

@@ -47,7 +47,7 @@ class DesbrunIntegrator final : public Integrator {
   };
 
   /// The matrix's off-diagonal element of a spring, without its sign [kg].
-  static double coupling(const ClothModel& model, const Spring& spring, double step) {
+  static double coupling(const ClothModel& model, int spring, double step) {
     return step * step * model.stiffness(spring) + step * model.material.damping;
   }
 
@@ -65,8 +65,9 @@ class DesbrunIntegrator final : public Integrator {
       const double wind = step * environment.wind.drag * topology.area[i];
       entries.emplace_back(i, i, is_pinned_[i] ? 1.0 : model.mass[i] + wind);
     }
-    for (const Spring& s : topology.springs) {
-      const double c = coupling(model, s, step);
+    for (std::size_t k = 0; k < topology.springs.size(); ++k) {
+      const Spring& s = topology.springs[k];
+      const double c = coupling(model, static_cast<int>(k), step);
       entries.emplace_back(s.i, s.i, is_pinned_[s.i] ? 0.0 : c);
       entries.emplace_back(s.j, s.j, is_pinned_[s.j] ? 0.0 : c);
       entries.emplace_back(std::max(s.i, s.j), std::min(s.i, s.j),
@@ -92,8 +93,9 @@ class DesbrunIntegrator final : public Integrator {
                          wind_force(environment.wind, topology.area[i], state.v.get(i));
       right_side_.row(i) = step * force;
     }
-    for (const Spring& s : topology.springs) {
-      const double k = model.stiffness(s);
+    for (std::size_t i = 0; i < topology.springs.size(); ++i) {
+      const Spring& s = topology.springs[i];
+      const double k = model.stiffness(static_cast<int>(i));
       const Vec3 d = state.x.get(s.j) - state.x.get(s.i), w = state.v.get(s.j) - state.v.get(s.i);
       const Vec3 damping = projected ? projected_damping_force(b, d, w) : plain_damping_force(b, w);
       const Vec3 impulse = step * (spring_force(k, s.rest_length, d) + damping + step * k * w);
@@ -107,10 +109,12 @@ class DesbrunIntegrator final : public Integrator {
     for (std::size_t p = 0; p < pins.particle.size(); ++p) {
       right_side_.row(pins.particle[p]) = pins_.velocity()[p] - state.v.get(pins.particle[p]);
     }
-    for (const Spring& s : model.topology->springs) {
+    const std::vector<Spring>& springs = model.topology->springs;
+    for (std::size_t k = 0; k < springs.size(); ++k) {
+      const Spring& s = springs[k];
       if (is_pinned_[s.i] == is_pinned_[s.j]) continue;
       const int pin = is_pinned_[s.i] ? s.i : s.j, other = s.i + s.j - pin;
-      right_side_.row(other) += coupling(model, s, step) * right_side_.row(pin);
+      right_side_.row(other) += coupling(model, static_cast<int>(k), step) * right_side_.row(pin);
     }
   }
 

@@ -17,21 +17,22 @@ HingeCorners corners_of(const HingeElement& h, const std::vector<Vec3>& x) {
 
 }  // namespace
 
-void ElementTerms::begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start) {
+void ElementTerms::begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start,
+                              const std::vector<Vec3>& shape) {
   elements_ = &elements;
   start_ = start;
   damped_.clear();
   vertex_.clear();
   weight_.clear();
   if (elements.damping == 0) return;
-  damp_membranes(elements.damping / step, start);
-  damp_bending(elements.damping / step, start);
+  damp_membranes(elements.damping / step, shape);
+  damp_bending(elements.damping / step, shape);
 }
 
 /// δeᵀ C δe as three rows, by Cholesky's C = Σ d l lᵀ.
-void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& start) {
+void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& shape) {
   for (const MembraneElement& m : elements_->membranes) {
-    const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, corners_of(m, start));
+    const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, corners_of(m, shape));
     Mat3 rest = elements_->stiffness;
     for (int c = 0; c < 3; ++c) {
       const double pivot = rest(c, c);
@@ -47,10 +48,10 @@ void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& start) 
   }
 }
 
-void ElementTerms::damp_bending(double share, const std::vector<Vec3>& start) {
+void ElementTerms::damp_bending(double share, const std::vector<Vec3>& shape) {
   const BendingRows& rows = elements_->bending;
   for (int r = 0; r < rows.num_rows(); ++r) {
-    const Vec3 curvature = bending_curvature(rows, r, start);
+    const Vec3 curvature = bending_curvature(rows, r, shape);
     if (curvature.norm() == 0) continue;
     const Vec3 direction = curvature.normalized();
     const int begin = static_cast<int>(vertex_.size());
@@ -61,7 +62,7 @@ void ElementTerms::damp_bending(double share, const std::vector<Vec3>& start) {
     damped_.push_back({begin, static_cast<int>(vertex_.size()), share * rows.stiffness[r]});
   }
   for (const HingeElement& h : elements_->hinges) {
-    const HingeCorners gradient = hinge_angle_gradient(corners_of(h, start));
+    const HingeCorners gradient = hinge_angle_gradient(corners_of(h, shape));
     const int begin = static_cast<int>(vertex_.size());
     vertex_.insert(vertex_.end(), h.vertices.begin(), h.vertices.end());
     weight_.insert(weight_.end(), gradient.begin(), gradient.end());

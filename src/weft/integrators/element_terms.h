@@ -21,7 +21,10 @@ class ElementTerms {
  public:
   using AddBlock = std::function<void(int i, int j, const Mat3& block)>;  // i == j: to the diagonal
 
-  void begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start);
+  /// Strain and curvature change as they do where the cloth is in `shape`; an integrator of first order may
+  /// take `start`.
+  void begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start,
+                  const std::vector<Vec3>& shape);
 
   double energy(const std::vector<Vec3>& x) const;
 
@@ -43,8 +46,8 @@ class ElementTerms {
     double stiffness = 0;
   };
 
-  void damp_membranes(double share, const std::vector<Vec3>& start);
-  void damp_bending(double share, const std::vector<Vec3>& start);
+  void damp_membranes(double share, const std::vector<Vec3>& shape);
+  void damp_bending(double share, const std::vector<Vec3>& shape);
 
   const ClothElements* elements_ = nullptr;
   std::vector<Vec3> start_;

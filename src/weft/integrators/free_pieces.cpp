@@ -13,8 +13,9 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (const Spring& s : model.topology->springs) {
-    if (model.stiffness(s) > 0) parent[root(s.i)] = root(s.j);
+  const std::vector<Spring>& springs = model.topology->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    if (model.stiffness(static_cast<int>(s)) > 0) parent[root(springs[s].i)] = root(springs[s].j);
   }
   if (model.elements) {
     for (const MembraneElement& m : model.elements->membranes) {

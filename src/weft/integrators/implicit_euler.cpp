@@ -4,10 +4,12 @@
 ///            + h · (damping, wind and air dissipation at velocity (x − x₀)/h)
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
-/// by Newton's method with line search and sparse Cholesky, in double precision. Where the true Hessian is
-/// not positive definite (compressed springs) that of spring_jacobian_clamped takes its place: with a line
-/// search it needs a third of the iterations that absolute values need (10 against 37 on a buckling 64 x 64
-/// sheet).
+/// by Newton's method with line search and sparse Cholesky, in double precision. `newton` in double precision
+/// is the same from another start: BDF2 is implicit Euler over T = h/β from x₀ + m s with the velocity
+/// v + m (v − v₋₁), s being the displacement of the step before (newton_kernels.h: β, m). Where the true
+/// Hessian is not positive definite (compressed springs) that of spring_jacobian_clamped takes its place:
+/// with a line search it needs a third of the iterations that absolute values need (10 against 37 on a
+/// buckling 64 x 64 sheet).
 
 #include <algorithm>
 #include <cmath>
@@ -19,19 +21,25 @@
 #include "weft/integrators/common.h"
 #include "weft/integrators/contact_terms.h"
 #include "weft/integrators/element_terms.h"
+#include "weft/integrators/newton_kernels.h"
 #include "weft/solvers/block_cholesky.h"
 
 namespace weft {
 namespace {
 
-constexpr double kArmijo = 1e-4;         // share of the predicted decrease that a step must bring
-constexpr double kSmallestShare = 1e-8;  // of a Newton step that the line search tries
-constexpr double kFinest = 1e-6;         // of the tolerance: no more is asked for strain limits
-constexpr double kStickSpeed = 1e-3;     // slower slides count as sticking [m/s]
+constexpr double kArmijo = 1e-4;              // share of the predicted decrease that a step must bring
+constexpr double kSmallestShare = 1e-8;       // of a Newton step that the line search tries
+constexpr double kFinest = 1e-6;              // of the tolerance: no more is asked for strain limits
+constexpr double kStickSpeed = 1e-3;          // slower slides count as sticking [m/s]
+constexpr double kReferenceTolerance = 1e-9;  // of `newton` in doubles [m/s]
+
+enum class Order { first, second };
+enum class Keeps { floats, doubles };
 
 class ImplicitEulerIntegrator final : public Integrator {
  public:
-  explicit ImplicitEulerIntegrator(const ImplicitEulerSettings& settings) : settings_(settings) {}
+  ImplicitEulerIntegrator(const ImplicitEulerSettings& settings, Order order, Keeps keeps)
+      : settings_(settings), order_(order), keeps_(keeps) {}
 
   bool resolves_contacts() const override { return true; }
   std::span<const Vec3> contact_forces() const override { return contact_forces_; }
@@ -42,11 +50,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     begin_step(model, environment, step, state);
     const IntegratorReport report = minimise();
     if (environment.tells_contact_forces) tell_contact_forces();
-    for (int i = 0; i < model.num_particles(); ++i) {
-      state.v.set(i, (x_[i] - start_[i]) / step);
-      state.x.set(i, x_[i]);
-    }
-    pins_.finish(environment.pins, state);
+    finish_step(step, state);
     return report;
   }
 
@@ -70,25 +74,108 @@ class ImplicitEulerIntegrator final : public Integrator {
                   const ClothState& state) {
     model_ = &model;
     environment_ = &environment;
-    step_ = step;
-    const int n = model.num_particles();
     fit_pattern();
-    pins_.prepare(environment.pins, step, state);
+    is_pinned_.assign(model.num_particles(), 0);
+    for (const int p : environment.pins.particle) is_pinned_[p] = 1;
+    load(state);
+    start_from(before_.x, before_.v, step);
+    if (order_ == Order::second) begin_second_order(step, state.history);
     air_.begin(model, environment, state);
-    air_.set_still(1 / step);
-    is_pinned_.assign(n, 0);
-    start_.resize(n);
-    inertial_.resize(n);
-    for (int i = 0; i < n; ++i) {
-      start_[i] = state.x.get(i);
-      inertial_[i] = start_[i] + step * state.v.get(i) + step * step * environment.gravity;
-    }
-    if (model.elements) elements_.begin_step(*model.elements, step, start_);
+    air_.set_still(1 / step_);
     x_ = inertial_;
     for (std::size_t p = 0; p < environment.pins.particle.size(); ++p) {
-      is_pinned_[environment.pins.particle[p]] = 1;
-      x_[environment.pins.particle[p]] = environment.pins.position[p] - state.origin;
+      const int i = environment.pins.particle[p];
+      x_[i] = environment.pins.position[p] - state.origin;
+      if (step_ < step) start_[i] = x_[i] - step_ / step * (x_[i] - before_.x[i]);  // velocity: its whole way
     }
+    damped_shape_ = step_ < step ? x_ : start_;
+    if (model.elements) elements_.begin_step(*model.elements, step_, start_, damped_shape_);
+  }
+
+  /// The state at the start of the step, as precisely as it is kept.
+  void load(const ClothState& state) {
+    static const std::vector<Vec3> kNone;
+    const auto copy = [&](const Vec3Array& values, const std::vector<Vec3>& precise, std::vector<Vec3>& to) {
+      to.resize(values.size());
+      for (std::size_t i = 0; i < to.size(); ++i)
+        to[i] = most_precise(keeps_ == Keeps::doubles ? precise : kNone, values, i);
+    };
+    copy(state.x, state.precise.x, before_.x);
+    copy(state.v, state.precise.v, before_.v);
+    if (order_ == Order::first || state.history.step == 0) return;
+    copy(state.history.displacement, state.precise.displacement, before_.displacement);
+    copy(state.history.velocity, state.precise.velocity, before_.velocity);
+  }
+
+  /// A step of implicit Euler from there [s].
+  void start_from(const std::vector<Vec3>& x, const std::vector<Vec3>& v, double time) {
+    step_ = time;
+    start_ = x;
+    inertial_.resize(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      inertial_[i] = x[i] + time * v[i] + time * time * environment_->gravity;
+  }
+
+  /// BDF2, unless contact takes part in this step or did in the one before (see `newton`).
+  void begin_second_order(double step, const MotionHistory& history) {
+    if (history.step == 0) invent_history(step);
+    if (history.step > 0 && history.had_contact) return;
+    if (touches(inertial_)) return;
+    const StepScheme bdf2 = make_bdf2(step, history.step > 0 ? history.step : step);
+    std::vector<Vec3> x = before_.x, v = before_.v;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += bdf2.memory * before_.displacement[i];
+      v[i] += bdf2.memory * (before_.v[i] - before_.velocity[i]);
+    }
+    start_from(x, v, step / bdf2.beta);
+  }
+
+  /// As `newton` has it: of cloth that falls freely as far as nothing carries it.
+  void invent_history(double step) {
+    gradient_.assign(before_.x.size(), Vec3::Zero());
+    add_spring_gradient(before_.x);
+    if (model_->elements) {
+      elements_.begin_step(*model_->elements, step, before_.x, before_.x);
+      elements_.add_gradient(before_.x, gradient_);
+    }
+    const Vec3& gravity = environment_->gravity;
+    const auto elastic = [&](int i) -> Vec3 {
+      return is_pinned_[i] ? Vec3(Vec3::Zero()) : Vec3(-gradient_[i]);
+    };
+    const Vec3 a = free_share(*model_, environment_->pins.particle, gravity, elastic) * gravity;
+    before_.displacement.resize(before_.x.size());
+    before_.velocity.resize(before_.x.size());
+    for (std::size_t i = 0; i < before_.x.size(); ++i) {
+      before_.displacement[i] = step * before_.v[i] - 0.5 * step * step * a;
+      before_.velocity[i] = before_.v[i] - step * a;
+    }
+  }
+
+  bool touches(const std::vector<Vec3>& x) const {
+    const auto& contacts = environment_->contacts;
+    return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return c.depth(x) > 0; });
+  }
+
+  void finish_step(double step, ClothState& state) {
+    const std::size_t n = x_.size();
+    std::vector<Vec3>& v = trial_;  // at the end
+    v.resize(n);
+    for (std::size_t i = 0; i < n; ++i) v[i] = (x_[i] - start_[i]) / step_;
+    for (const int p : environment_->pins.particle) v[p] = (x_[p] - before_.x[p]) / step;
+    const auto store = [&](const std::vector<Vec3>& from, Vec3Array& to, std::vector<Vec3>& precise) {
+      to.resize(n);
+      for (std::size_t i = 0; i < n; ++i) to.set(i, from[i]);
+      if (keeps_ == Keeps::doubles) precise = from;
+    };
+    store(x_, state.x, state.precise.x);
+    store(v, state.v, state.precise.v);
+    if (order_ == Order::first) return;
+    before_.displacement.resize(n);
+    for (std::size_t i = 0; i < n; ++i) before_.displacement[i] = x_[i] - before_.x[i];
+    store(before_.displacement, state.history.displacement, state.precise.displacement);
+    store(before_.v, state.history.velocity, state.precise.velocity);
+    state.history.step = step;
+    state.history.had_contact = touches(x_);
   }
 
   using Pair = std::pair<int, int>;
@@ -186,10 +273,11 @@ class ImplicitEulerIntegrator final : public Integrator {
       energy += 0.5 * model_->mass[i] / (step_ * step_) * (x[i] - inertial_[i]).squaredNorm() +
                 0.5 * step_ * wind.drag * model_->topology->area[i] * slip.squaredNorm();
     }
-    for (const Spring& s : model_->topology->springs) {
-      energy += spring_energy(model_->stiffness(s), s.rest_length, x[s.j] - x[s.i]);
+    for (int k = 0; k < num_springs(); ++k) {
+      const Spring& s = spring(k);
+      energy += spring_energy(model_->stiffness(k), s.rest_length, x[s.j] - x[s.i]);
       if (is_damped()) {
-        energy += 0.5 * step_ * relative_velocity(s, x).dot(damping_force(s, relative_velocity(s, x)));
+        energy += 0.5 * step_ * relative_velocity(s, x).dot(damping_force(k, relative_velocity(s, x)));
       }
     }
     for (std::size_t c = 0; c < environment_->contacts.size(); ++c) {
@@ -233,22 +321,27 @@ class ImplicitEulerIntegrator final : public Integrator {
 
   bool is_damped() const { return model_->material.damping > 0 || model_->material.damping_time > 0; }
 
+  int num_springs() const { return static_cast<int>(model_->topology->springs.size()); }
+  const Spring& spring(int k) const { return model_->topology->springs[k]; }
+
   Vec3 relative_velocity(const Spring& s, const std::vector<Vec3>& x) const {
     return ((x[s.j] - start_[s.j]) - (x[s.i] - start_[s.i])) / step_;
   }
 
-  /// Projected damping acts along the spring as it was at the start of the step: the potential stays
-  /// quadratic.
-  Vec3 damping_force(const Spring& s, const Vec3& w) const {
-    const double b = model_->damping(s);
+  /// Projected damping acts along the spring as it was at the start of the step, or for second order as it is
+  /// predicted: the potential stays quadratic.
+  Vec3 damping_force(int k, const Vec3& w) const {
+    const double b = model_->damping(k);
     if (model_->material.damping_kind == DampingKind::plain) return plain_damping_force(b, w);
-    return projected_damping_force(b, start_[s.j] - start_[s.i], w);
+    const Spring& s = spring(k);
+    return projected_damping_force(b, damped_shape_[s.j] - damped_shape_[s.i], w);
   }
 
-  Mat3 damping_jacobian(const Spring& s) const {
-    const double b = model_->damping(s);
+  Mat3 damping_jacobian(int k) const {
+    const double b = model_->damping(k);
     if (model_->material.damping_kind == DampingKind::plain) return plain_damping_jacobian(b);
-    return projected_damping_jacobian(b, start_[s.j] - start_[s.i]);
+    const Spring& s = spring(k);
+    return projected_damping_jacobian(b, damped_shape_[s.j] - damped_shape_[s.i]);
   }
 
   /// On the contact's point at x_.
@@ -257,6 +350,15 @@ class ImplicitEulerIntegrator final : public Integrator {
     const Vec3 s = contact.slide(x_);
     const double friction = contact.friction * normal_force_[c] / std::max(s.norm(), kStickSpeed * step_);
     return contact.stiffness * contact.depth(x_) * contact.normal - friction * s;
+  }
+
+  void add_spring_gradient(const std::vector<Vec3>& x) {
+    for (int k = 0; k < num_springs(); ++k) {
+      const Spring& s = spring(k);
+      const Vec3 force = spring_force(model_->stiffness(k), s.rest_length, x[s.j] - x[s.i]);
+      gradient_[s.i] -= force;
+      gradient_[s.j] += force;
+    }
   }
 
   void compute_gradient() {
@@ -268,9 +370,10 @@ class ImplicitEulerIntegrator final : public Integrator {
                      wind_force(wind, model_->topology->area[i], velocity);
       if (air_.is_active()) gradient_[i] -= air_.force(static_cast<int>(i), x_[i] - start_[i]);
     }
-    for (const Spring& s : model_->topology->springs) {
-      Vec3 force = spring_force(model_->stiffness(s), s.rest_length, x_[s.j] - x_[s.i]);
-      if (is_damped()) force += damping_force(s, relative_velocity(s, x_));
+    add_spring_gradient(x_);
+    for (int k = 0; k < (is_damped() ? num_springs() : 0); ++k) {
+      const Spring& s = spring(k);
+      const Vec3 force = damping_force(k, relative_velocity(s, x_));
       gradient_[s.i] -= force;
       gradient_[s.j] += force;
     }
@@ -293,21 +396,19 @@ class ImplicitEulerIntegrator final : public Integrator {
           inertia * Mat3::Identity() - wind_jacobian(wind, model_->topology->area[i]) / step_;
       if (air_.is_active()) matrix_.diagonal[i] += air_.hessian(static_cast<int>(i));
     }
-    const std::vector<Spring>& springs = model_->topology->springs;
-    for (std::size_t p = 0; p < springs.size(); ++p) {
-      const Spring& s = springs[p];
-      const double k = model_->stiffness(s);
+    for (int p = 0; p < num_springs(); ++p) {
+      const Spring& s = spring(p);
+      const double k = model_->stiffness(p);
       const Vec3 d = x_[s.j] - x_[s.i];
       Mat3 block =
           true_hessian ? spring_jacobian(k, s.rest_length, d) : spring_jacobian_clamped(k, s.rest_length, d);
-      if (is_damped()) block += damping_jacobian(s) / step_;
+      if (is_damped()) block += damping_jacobian(p) / step_;
       matrix_.diagonal[s.i] += block;
       matrix_.diagonal[s.j] += block;
       const bool pinned = is_pinned_[s.i] || is_pinned_[s.j];
       matrix_.off_diagonal[p] = pinned ? Mat3::Zero() : Mat3(-block);
     }
-    std::fill(matrix_.off_diagonal.begin() + static_cast<std::ptrdiff_t>(springs.size()),
-              matrix_.off_diagonal.end(), Mat3::Zero());
+    std::fill(matrix_.off_diagonal.begin() + num_springs(), matrix_.off_diagonal.end(), Mat3::Zero());
     if (model_->elements) add_element_blocks(true_hessian ? StressFilter::exact : StressFilter::absolute);
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       add_contact_blocks(environment_->contacts[c], contact_hessian(c));
@@ -389,6 +490,8 @@ class ImplicitEulerIntegrator final : public Integrator {
   }
 
   ImplicitEulerSettings settings_;
+  Order order_;
+  Keeps keeps_;
   std::shared_ptr<const ClothTopology> analyzed_;
   std::shared_ptr<const ClothElements> analyzed_elements_;
   bool is_analyzed_ = false;
@@ -399,23 +502,32 @@ class ImplicitEulerIntegrator final : public Integrator {
   std::vector<std::pair<Pair, int>> pair_index_;  // of matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;
-  PinMotion pins_;
 
   // The step being taken.
   const ClothModel* model_ = nullptr;
   const Environment* environment_ = nullptr;
-  double step_ = 0;
+  double step_ = 0;      // T [s]
+  PreciseState before_;  // at the start of the step
   std::vector<char> is_pinned_;
   std::vector<double> normal_force_;  // of each contact [N]
   std::vector<char> have_pushed_;     // of the contacts, since the step began
   std::vector<Vec3> contact_forces_;  // of each contact, at the end of the step [N]
-  std::vector<Vec3> start_, inertial_, x_, trial_, gradient_, direction_;
+  std::vector<Vec3> start_, inertial_, damped_shape_, x_, trial_, gradient_, direction_;
 };
 
 }  // namespace
 
 std::unique_ptr<Integrator> make_implicit_euler(const ImplicitEulerSettings& settings) {
-  return std::make_unique<ImplicitEulerIntegrator>(settings);
+  return std::make_unique<ImplicitEulerIntegrator>(settings, Order::first, Keeps::floats);
+}
+
+std::unique_ptr<Integrator> make_implicit_euler_in_double(const ImplicitEulerSettings& settings) {
+  return std::make_unique<ImplicitEulerIntegrator>(settings, Order::first, Keeps::doubles);
+}
+
+std::unique_ptr<Integrator> make_newton_in_double() {
+  return std::make_unique<ImplicitEulerIntegrator>(ImplicitEulerSettings{.tolerance = kReferenceTolerance},
+                                                   Order::second, Keeps::doubles);
 }
 
 }  // namespace weft

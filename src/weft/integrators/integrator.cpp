@@ -16,8 +16,15 @@ bool moves_elements(std::string_view integrator) {
 
 bool feels_air(std::string_view integrator) { return moves_elements(integrator); }
 
+bool has_double_precision(std::string_view integrator) { return moves_elements(integrator); }
+
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;
+  if (settings.is_double) {
+    if (name == "implicit_euler") return make_implicit_euler_in_double(settings.implicit_euler);
+    if (name == "newton") return make_newton_in_double();
+    throw InputError("integrator \"" + name + "\" has no double precision; newton and implicit_euler have");
+  }
   if (name == "explicit") return make_explicit(settings.explicit_euler);
   if (name == "paper") return make_paper(settings.paper);
   if (name == "paper_fixed") return make_paper_fixed();

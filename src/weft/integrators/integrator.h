@@ -80,6 +80,9 @@ struct IntegratorSettings {
   ImplicitEulerSettings implicit_euler;
   NewtonSettings newton;
   XpbdSettings xpbd;
+  /// For references: states are kept in doubles too, and `newton` then solves its equations like
+  /// `implicit_euler`, to the last digits, by sparse Cholesky. Only these two have it.
+  bool is_double = false;
 };
 
 /// What one call of advance() has to tell.
@@ -125,7 +128,10 @@ bool moves_elements(std::string_view integrator);
 /// Whether it knows the air's drag and lift (Wind::air); the others know the paper's wind alone.
 bool feels_air(std::string_view integrator);
 
-/// Throws InputError for an unknown name.
+/// Whether it can work in double precision.
+bool has_double_precision(std::string_view integrator);
+
+/// Throws InputError for an unknown name, and for double precision where there is none.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);
 
 // The family, one file each.
@@ -134,6 +140,8 @@ std::unique_ptr<Integrator> make_paper(const PaperSettings& settings);
 std::unique_ptr<Integrator> make_paper_fixed();
 std::unique_ptr<Integrator> make_desbrun();
 std::unique_ptr<Integrator> make_implicit_euler(const ImplicitEulerSettings& settings);
+std::unique_ptr<Integrator> make_implicit_euler_in_double(const ImplicitEulerSettings& settings);
+std::unique_ptr<Integrator> make_newton_in_double();
 std::unique_ptr<Integrator> make_newton(const NewtonSettings& settings);
 std::unique_ptr<Integrator> make_xpbd(const XpbdSettings& settings);
 

@@ -108,20 +108,13 @@ class NewtonIntegrator final : public Integrator {
 
   /// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1.
   double free_share(const ClothModel& model, const Vec3& gravity, JobSystem& jobs, const ClothState& state) {
-    const double gravity_sq = gravity.squaredNorm();
-    if (pinned_.empty() || gravity_sq == 0) return 1;
+    if (pinned_.empty()) return 1;
     potential_.fit(model, 0);
     for (int i = 0; i < model.num_particles(); ++i) potential_.target.set(rows_.index(i), state.x.get(i));
     clear(correction_);
     potential_.linearise(correction_, jobs, force_);
     set_at_pins(Vec3::Zero(), force_);
-    double mass = 0, carried = 0;
-    for (int i = 0; i < model.num_particles(); ++i) {
-      mass += model.mass[i];
-      carried -= force_.get(rows_.index(i)).dot(gravity) / gravity_sq;
-    }
-    for (const int p : pinned_) mass -= model.mass[p];
-    return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
+    return weft::free_share(model, pinned_, gravity, [&](int i) { return force_.get(rows_.index(i)); });
   }
 
   /// BDF2; implicit Euler while contact takes part in this step or did in the one before, for BDF2 remembers

@@ -18,8 +18,7 @@ Lists springs_of_mesh(const ClothModel& model, double damping) {
     for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1]; ++row) {
       const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
       if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
-      lists[i].emplace_back(table.neighbour[entry],
-                            model.stiffness(model.topology->springs[spring].kind) + damping);
+      lists[i].emplace_back(table.neighbour[entry], model.stiffness(spring) + damping);
     }
   }
   return lists;
@@ -67,6 +66,7 @@ void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows
     fill_grid_by_elements(*model.elements, step, added);
   } else {
     fill_grid_by_springs(model, step);
+    if (!model.has_equal_springs()) scale_grid_springs(model, step);
   }
   pin_grid();
 }
@@ -136,6 +136,28 @@ void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double 
       level.down_right[first + i] = i + 1 < columns ? here : 0.0f;
       if (level.has_down_left) level.down_left[first + i] = i > 0 ? here : 0.0f;
     }
+  }
+}
+
+/// Structural springs and diagonals as stiff as they are each; bending springs, which are lumped into the
+/// former, as they are without factors.
+void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double step) {
+  GridLevel& level = grid_.finest();
+  const ClothMaterial& m = model.material;
+  const std::vector<Spring>& springs = model.topology->springs;
+  const int columns = level.rows.row_length;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const Spring& spring = springs[s];
+    if (spring.kind == SpringKind::bend) continue;
+    const bool is_structural = spring.kind == SpringKind::structural;
+    const int offset = spring.j - spring.i;
+    std::vector<float>& across = is_structural ? level.right : level.down_right;
+    std::vector<float>& down = is_structural ? level.down : level.down_left;
+    std::vector<float>& family = offset == (is_structural ? 1 : columns + 1) ? across : down;
+    const bool is_along_z = is_structural && offset == columns;
+    const double was = is_along_z ? m.structural_z.value_or(m.structural) : model.stiffness(spring.kind);
+    const double more = model.stiffness(static_cast<int>(s)) - was;
+    family[level.rows.index(spring.i)] += static_cast<float>((1 + m.damping_time / step) * more);
   }
 }
 

@@ -35,6 +35,7 @@ class ScalarPreconditioner {
  private:
   void build_mesh(const ClothModel& model, double step, const std::vector<double>& added);
   void fill_grid_by_springs(const ClothModel& model, double step);
+  void scale_grid_springs(const ClothModel& model, double step);
   void fill_grid_by_elements(const ClothElements& elements, double step, const std::vector<double>& added);
   void pin_grid();
 

@@ -37,9 +37,10 @@ class XpbdIntegrator final : public Integrator {
     if (model.id == model_id_ && pins.particle == pinned_) return;
     if (model.elements)
       throw InputError("xpbd knows springs alone, no membranes: use newton or implicit_euler");
-    if (model.topology != topology_) {
+    if (model.topology != topology_ || model.has_equal_springs() != has_equal_springs_) {
       topology_ = model.topology;
-      springs_ = topology_->grid ? make_grid_projection(*topology_) : make_mesh_projection(*topology_);
+      has_equal_springs_ = model.has_equal_springs();
+      springs_ = has_equal_springs_ ? make_grid_projection(*topology_) : make_mesh_projection(*topology_);
     }
     model_id_ = model.id;
     pinned_ = pins.particle;
@@ -59,6 +60,7 @@ class XpbdIntegrator final : public Integrator {
   XpbdSettings settings_;
   std::uint64_t model_id_ = 0;
   std::shared_ptr<const ClothTopology> topology_;
+  bool has_equal_springs_ = false;
   std::vector<int> pinned_;
   std::unique_ptr<SpringProjection> springs_;
   PinMotion pin_motion_;

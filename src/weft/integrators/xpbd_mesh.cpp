@@ -120,8 +120,7 @@ class MeshProjection final : public SpringProjection {
 
   void set_numbers(const ClothModel& model, const std::vector<int>& pinned) override {
     stiffness_.clear();
-    for (const int s : springs_)
-      stiffness_.push_back(static_cast<float>(model.stiffness(model.topology->springs[s].kind)));
+    for (const int s : springs_) stiffness_.push_back(static_cast<float>(model.stiffness(s)));
     for (std::size_t i = 0; i < particles_.size(); ++i)
       particles_[i].inv_mass() = static_cast<float>(1 / model.mass[i]);
     for (const int i : pinned) particles_[i].inv_mass() = 0;

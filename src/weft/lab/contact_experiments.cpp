@@ -109,11 +109,13 @@ Capstan pull_over_drum(const ContactExperiment& setup, double friction) {
   const auto tension = [&](int column) {
     Vec3 sum = Vec3::Zero();
     const ClothModel& model = world.model(strip);
-    for (const Spring& s : topology->springs) {
+    for (std::size_t k = 0; k < topology->springs.size(); ++k) {
+      const Spring& s = topology->springs[k];
       const int i = s.i % (grid.cells_x + 1), j = s.j % (grid.cells_x + 1);
       if (std::min(i, j) != column || std::max(i, j) != column + 1) continue;
       const Vec3 between = world.state(strip).position(s.j) - world.state(strip).position(s.i);
-      sum += (i < j ? 1.0 : -1.0) * spring_force(model.stiffness(s), s.rest_length, between);
+      sum +=
+          (i < j ? 1.0 : -1.0) * spring_force(model.stiffness(static_cast<int>(k)), s.rest_length, between);
     }
     return sum.norm();
   };

@@ -23,9 +23,11 @@ std::vector<double> predict_shares(const ClothModel& model, double step) {
   const auto n = model.mass.size();
   std::vector<double> a(n), sum(n, 0.0), share(n);
   for (std::size_t i = 0; i < n; ++i) a[i] = step * step * model.stiffness_sum[i] / model.mass[i];
-  for (const Spring& s : model.topology->springs) {
-    sum[s.i] += model.stiffness(s.kind) / (1 + a[s.j]);
-    sum[s.j] += model.stiffness(s.kind) / (1 + a[s.i]);
+  const std::vector<Spring>& springs = model.topology->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const double k = model.stiffness(static_cast<int>(s));
+    sum[springs[s].i] += k / (1 + a[springs[s].j]);
+    sum[springs[s].j] += k / (1 + a[springs[s].i]);
   }
   for (std::size_t i = 0; i < n; ++i) share[i] = (1 + step * step / model.mass[i] * sum[i]) / (1 + a[i]);
   return share;

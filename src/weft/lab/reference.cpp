@@ -21,11 +21,12 @@ std::uint64_t hash_of(const HungCloth& cloth, int num_frames, int substeps) {
   for (const int n : {kVersion, num_frames, substeps}) hash.add(n);
   add_to_hash(cloth.state, hash);
   const ClothModel& model = *cloth.model;
-  for (const Spring& s : model.topology->springs) {
-    hash.add(s.i);
-    hash.add(s.j);
-    hash.add(s.rest_length);
-    hash.add(model.stiffness(s.kind));
+  const std::vector<Spring>& springs = model.topology->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    hash.add(springs[s].i);
+    hash.add(springs[s].j);
+    hash.add(springs[s].rest_length);
+    hash.add(model.stiffness(static_cast<int>(s)));
   }
   for (const double m : model.mass) hash.add(m);
   hash.add(model.material.damping);

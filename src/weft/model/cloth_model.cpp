@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <string>
+
+#include "weft/core/error.h"
 
 namespace weft {
 namespace {
@@ -11,16 +15,30 @@ std::uint64_t next_id() {
   return ++counter;
 }
 
+void check_factors(const std::vector<double>& factors, std::size_t num_springs) {
+  if (factors.empty()) return;
+  if (factors.size() != num_springs)
+    throw InputError("the cloth has " + std::to_string(num_springs) + " springs and " +
+                     std::to_string(factors.size()) + " spring factors; expected one for each, or none");
+  for (std::size_t s = 0; s < factors.size(); ++s) {
+    if (!(factors[s] >= 0) || !std::isfinite(factors[s]))
+      throw InputError("the factor of spring " + std::to_string(s) + " is " + std::to_string(factors[s]) +
+                       "; expected a finite number not below 0");
+  }
+}
+
 }  // namespace
 
-double ClothModel::stiffness(const Spring& s) const {
-  if (!material.structural_z || s.kind != SpringKind::structural) return stiffness(s.kind);
+double ClothModel::stiffness(int spring) const {
+  const Spring& s = topology->springs[spring];
+  const double factor = material.spring_factors.empty() ? 1.0 : material.spring_factors[spring];
+  if (!material.structural_z || s.kind != SpringKind::structural) return factor * stiffness(s.kind);
   const Grid& grid = *topology->grid;
   const int column = s.i % grid.num_columns(), row = s.i / grid.num_columns();
   const bool is_along_x = s.j == s.i + 1;
   const bool is_on_border =
       is_along_x ? row == 0 || row == grid.cells_z : column == 0 || column == grid.cells_x;
-  return (is_on_border ? 0.5 : 1.0) * (is_along_x ? material.structural : *material.structural_z);
+  return factor * (is_on_border ? 0.5 : 1.0) * (is_along_x ? material.structural : *material.structural_z);
 }
 
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model) {
@@ -51,13 +69,17 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
   model->material = material;
   model->elements = std::move(elements);
   const ClothTopology& t = *model->topology;
+  check_factors(material.spring_factors, t.springs.size());
+  if (t.grid && !material.spring_factors.empty())
+    model->own_table = build_neighbour_table(t.num_particles(), t.springs);
 
   for (const double area : t.area) model->mass.push_back(material.density * area);
   model->stiffness_sum.assign(t.num_particles(), 0.0);
   std::vector<int> springs_around(t.num_particles(), 0);
-  for (const Spring& spring : t.springs) {
-    for (const int p : {spring.i, spring.j}) {
-      model->stiffness_sum[p] += model->stiffness(spring);
+  for (std::size_t s = 0; s < t.springs.size(); ++s) {
+    const double k = model->stiffness(static_cast<int>(s));
+    for (const int p : {t.springs[s].i, t.springs[s].j}) {
+      model->stiffness_sum[p] += k;
       ++springs_around[p];
     }
   }
@@ -66,8 +88,8 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
       for (const int p : {c.i, c.j}) model->stiffness_sum[p] += c.stiffness;
     }
   }
-  for (const int s : t.table.spring) {
-    const double k = s < 0 ? 0.0 : model->stiffness(t.springs[s]);
+  for (const int s : model->table().spring) {
+    const double k = s < 0 ? 0.0 : model->stiffness(s);
     model->entry_stiffness.push_back(static_cast<float>(k));
   }
   for (int i = 0; i < t.num_particles(); ++i) {

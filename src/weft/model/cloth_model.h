@@ -38,7 +38,10 @@ struct ClothMaterial {
   // them.
   std::optional<double> structural_z;  // of structural springs along the second axis; those on the border, of
                                        // both axes, then have half their stiffness [N/m]
-  double damping_time = 0;  // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
+  double damping_time = 0;             // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
+
+  /// Of each spring of the topology, in its order: what the stiffness above is multiplied by, >= 0; empty: 1.
+  std::vector<double> spring_factors;
 };
 
 struct ClothTopology {
@@ -67,13 +70,20 @@ struct ClothModel {
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
   std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]
-  std::vector<float> entry_stiffness;  // k of each entry of topology->table, 0 in its padding [N/m]
+  NeighbourTable own_table;            // of a grid whose springs have factors; else empty
+  std::vector<float> entry_stiffness;  // k of each entry of table(), 0 in its padding [N/m]
   double max_stiffness_rate = 0;       // max_i Σ_j k_ij / m_i [1/s²]
   double max_damping_rate = 0;         // max_i Σ_j d_ij / m_i [1/s]
 
   int num_particles() const { return topology->num_particles(); }
 
-  /// Stiffness of the springs of a kind [N/m].
+  /// Whether all springs of a direction are equal: those of a grid without factors.
+  bool has_equal_springs() const { return topology->grid && material.spring_factors.empty(); }
+
+  /// The springs around each particle; empty where all of a direction are equal.
+  const NeighbourTable& table() const { return topology->grid ? own_table : topology->table; }
+
+  /// Stiffness of the springs of a kind, before factors [N/m].
   double stiffness(SpringKind kind) const {
     switch (kind) {
       case SpringKind::structural:
@@ -86,12 +96,14 @@ struct ClothModel {
     return material.bend;
   }
 
-  double stiffness(const Spring& spring) const;  // [N/m]
-  double damping(const Spring& spring) const {   // [N·s/m]
+  double stiffness(int spring) const;  // of a spring of the topology [N/m]
+  double damping(int spring) const {   // [N·s/m]
     return material.damping + material.damping_time * stiffness(spring);
   }
 };
 
+/// Throws InputError if there are spring factors, but not as many as springs, or one is negative or not
+/// finite.
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
                                                     const ClothMaterial& material,
                                                     std::shared_ptr<const ClothElements> elements = nullptr);

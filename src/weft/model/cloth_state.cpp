@@ -41,12 +41,22 @@ ClothState make_state(const std::vector<Vec3>& positions) {
   return state;
 }
 
+Vec3 most_precise(const std::vector<Vec3>& precise, const Vec3Array& values, std::size_t i) {
+  const Vec3 rounded = values.get(i);
+  if (precise.empty() || precise[i].cast<float>().cast<double>() != rounded) return rounded;
+  return precise[i];
+}
+
 void follow_cloth(ClothState& state) {
   const Vec3 drift = middle(state.x);
   if (!drift.allFinite() || drift.cwiseAbs().maxCoeff() < kMaxDrift) return;
   const Vec3 shift = round_to_lattice(drift);
   state.origin += shift;
-  for (std::size_t i = 0; i < state.x.size(); ++i) state.x.set(i, state.x.get(i) - shift);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec3 x = most_precise(state.precise.x, state.x, i) - shift;
+    state.x.set(i, x);
+    if (!state.precise.x.empty()) state.precise.x[i] = x;
+  }
 }
 
 void add_to_hash(const ClothState& state, Hash& hash) {
@@ -57,6 +67,11 @@ void add_to_hash(const ClothState& state, Hash& hash) {
   for (int c = 0; c < 3; ++c) hash.add(state.origin[c]);
   add(state.x);
   add(state.v);
+  for (const auto* values : {&state.precise.x, &state.precise.v}) {
+    for (const Vec3& value : *values) {
+      for (const double component : value) hash.add(component);
+    }
+  }
   const MotionHistory& history = state.history;
   if (history.step == 0) return;
   hash.add(history.step);

@@ -182,6 +182,9 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   const NumberRule share = {.low = NumberRule::Low::zero, .most = 1};
   table.read("color", std::span<double>(cloth.color), share, "[0.7, 0.2, 0.1]");
   cloth.pins = read_pins(table, shape ? &*shape : nullptr);
+  if (cloth.fabric && cloth.fabric->membrane == Membrane::triangle)
+    table.refuse("stiffen", "only springs have it: give spring stiffnesses, or membrane = \"springs\"");
+  cloth.stiffened = read_stiffened(table, shape ? &*shape : nullptr);
   return cloth;
 }
 

@@ -145,4 +145,18 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFi
   return pins;
 }
 
+std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape) {
+  const Pinnable pinnable(shape);
+  std::vector<StiffenDesc> stiffened;
+  for (TomlTable& table : cloth.tables("stiffen")) {
+    StiffenDesc part;
+    const auto selection = read_select(table, pinnable);
+    table.require({"factor"}, "a number not below 0");
+    table.read("factor", part.factor, not_negative());
+    if (selection) part.select = *selection;
+    stiffened.push_back(part);
+  }
+  return stiffened;
+}
+
 }  // namespace weft

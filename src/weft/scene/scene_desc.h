@@ -36,6 +36,12 @@ struct PinDesc {
   Vec3 pivot = Vec3::Zero();     // what `motion` turns about [m]
 };
 
+/// Springs that are stiffer or softer than the cloth's others: those with both ends in the selection.
+struct StiffenDesc {
+  ParticleSelection select;
+  double factor = 1;  // what their stiffness is multiplied by, >= 0 [1]
+};
+
 struct MeshFile {
   std::filesystem::path file;   // resolved against the scene file's folder
   bool up_is_z = false;         // turned first, so that its z axis becomes the world's y axis
@@ -88,6 +94,7 @@ struct ClothSceneDesc {
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
   std::vector<PinDesc> pins;
+  std::vector<StiffenDesc> stiffened;  // of springs alone; factors multiply where selections overlap
 };
 
 /// Of two things by their names, in place of what they say themselves.

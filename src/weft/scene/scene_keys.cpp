@@ -19,6 +19,7 @@ spring_structural = 1
 [[cloth.pin]]
 select = { box = {} }
 motion = [{}]
+[[cloth.stiffen]]
 [[collider]]
 shape = "sphere"
 motion = [{}]

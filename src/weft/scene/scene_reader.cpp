@@ -177,6 +177,9 @@ void read_solver(TomlTable table, SceneDesc& scene) {
   table.read_choice<NewtonQuality>(
       "quality", solver.newton.quality,
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
+  table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
+  if (solver.is_double && !has_double_precision(solver.integrator))
+    table.get("precision").mistake("\"double\" is for newton and implicit_euler alone");
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);

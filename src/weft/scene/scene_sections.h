@@ -19,6 +19,9 @@ ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::pa
 /// A cloth's pins, in both forms; `shape` is nullptr if it could not be read.
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
 
+/// Where a cloth's springs are stiffer or softer; `shape` as for pins.
+std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
+
 /// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 

@@ -191,19 +191,37 @@ struct Selector {
   }
 };
 
+std::vector<int> select(const Selector& selector, const ParticleSelection& selection, const char* what) {
+  std::vector<int> selected = std::visit(selector, selection);
+  std::sort(selected.begin(), selected.end());
+  selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
+  if (!selected.empty()) return selected;
+  throw InputError("cloth \"" + selector.cloth.name + "\": " + what +
+                   " holds no particle; regions are in world coordinates [m], after position and rotation");
+}
+
+/// Of each spring; empty if none is said to be stiffer than the others.
+std::vector<double> make_spring_factors(const ClothSceneDesc& desc, const LoadedCloth& loaded,
+                                        const std::vector<Vec3>& positions) {
+  std::vector<double> factors;
+  const std::vector<Spring>& springs = loaded.topology->springs;
+  for (const StiffenDesc& part : desc.stiffened) {
+    factors.resize(springs.size(), 1.0);
+    std::vector<char> is_inside(positions.size(), 0);
+    for (const int p : select({desc, loaded, positions}, part.select, "a stiffened region")) is_inside[p] = 1;
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      if (is_inside[springs[s].i] && is_inside[springs[s].j]) factors[s] *= part.factor;
+    }
+  }
+  return factors;
+}
+
 std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded,
                            const std::vector<Vec3>& positions) {
   std::vector<Pin> pins;
   for (const PinDesc& pin : desc.pins) {
-    std::vector<int> selected = std::visit(Selector{desc, loaded, positions}, pin.select);
-    std::sort(selected.begin(), selected.end());
-    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
-    if (selected.empty()) {
-      throw InputError("cloth \"" + desc.name +
-                       "\": a pin's region holds no particle; regions are in world " +
-                       "coordinates [m], after position and rotation");
-    }
-    pins.push_back({std::move(selected), RigidMotion(pin.motion), pin.pivot});
+    pins.push_back({select({desc, loaded, positions}, pin.select, "a pin's region"), RigidMotion(pin.motion),
+                    pin.pivot});
   }
   return pins;
 }
@@ -257,6 +275,7 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
     const LoadedCloth loaded = load(desc, result.warnings);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
     Stuff stuff = make_stuff(desc, loaded, result.warnings);
+    stuff.material.spring_factors = make_spring_factors(desc, loaded, positions);
     if (scene.contact) fit_thickness(desc, loaded.topology->mesh, stuff.material);
     const ClothId id = world.add_cloth({.name = desc.name,
                                         .topology = loaded.topology,

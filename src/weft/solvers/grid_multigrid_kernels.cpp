@@ -160,15 +160,18 @@ WEFT_ALWAYS_INLINE void smooth_rows(const GridLevel& a, ConstComponent3 b, Const
       const std::ptrdiff_t i = first + column;
       const V inverse = load<W>(a.inverse.data() + i), diagonal = load<W>(a.diagonal.data() + i);
       const V zero = broadcast<W>(0);
-      const auto sweep = [&](const float* right_side, const float* u, float* to) WEFT_INLINE_LAMBDA {
-        const V here = load<W>(u + i), side = load<W>(right_side + i);
+      const auto sweep = [&](V side, const float* u) WEFT_INLINE_LAMBDA {
+        const V here = load<W>(u + i);
         const V residual = side - diagonal * here + couple<W, kDownLeft>(a, u, i, stride);
-        const V result = select_less(zero, inverse, here + inverse * residual, zero);
-        store(to + i, result);
-        return side * result;
+        return select_less(zero, inverse, here + inverse * residual, zero);
       };
-      const V px = sweep(b.x, x.x, out.x), py = sweep(b.y, x.y, out.y), pz = sweep(b.z, x.z, out.z);
-      sum.add(part, px + py + pz);
+      // All loads before the first store: the compiler could not tell that couplings stay the same.
+      const V sx = load<W>(b.x + i), sy = load<W>(b.y + i), sz = load<W>(b.z + i);
+      const V rx = sweep(sx, x.x), ry = sweep(sy, x.y), rz = sweep(sz, x.z);
+      store(out.x + i, rx);
+      store(out.y + i, ry);
+      store(out.z + i, rz);
+      sum.add(part, sx * rx + sy * ry + sz * rz);
     });
     if (dots) dots[j] = sum.total();
   }
@@ -217,9 +220,10 @@ WEFT_ALWAYS_INLINE void residual_row(const GridLevel& a, ConstComponent3 b, Cons
     const auto residual = [&](const float* side, const float* u) WEFT_INLINE_LAMBDA {
       return load<W>(side + i) - diagonal * load<W>(u + i) + couple<W, kDownLeft>(a, u, i, stride);
     };
-    store(out.x + column, residual(b.x, x.x));
-    store(out.y + column, residual(b.y, x.y));
-    store(out.z + column, residual(b.z, x.z));
+    const V rx = residual(b.x, x.x), ry = residual(b.y, x.y), rz = residual(b.z, x.z);
+    store(out.x + column, rx);
+    store(out.y + column, ry);
+    store(out.z + column, rz);
   });
 }
 
@@ -253,16 +257,20 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
     compute(2 * j + 1);
     const Shares shares = shares_at(j, num_rows);
     const float weight_before = shares.before, weight_after = shares.after;
-    const auto combine = [&](float* at, const float* up, const float* down, float* to) WEFT_INLINE_LAMBDA {
+    const auto combine = [&](float* at, const float* up, const float* down) WEFT_INLINE_LAMBDA {
       for_packs<W>(length, [&](std::ptrdiff_t i, int) WEFT_INLINE_LAMBDA {
         const V sum = load<W>(at + i) + weight_before * load<W>(up + i) + weight_after * load<W>(down + i);
         store(at + i, sum);
       });
-      halve(at, length, to + coarse.rows.row(j), coarse.rows.row_length);
     };
-    combine(here.x, before.x, after.x, out.x);
-    combine(here.y, before.y, after.y, out.y);
-    combine(here.z, before.z, after.z, out.z);
+    // All three before any is halved: that reads them shifted, which stalls while stores are under way.
+    combine(here.x, before.x, after.x);
+    combine(here.y, before.y, after.y);
+    combine(here.z, before.z, after.z);
+    const int to = coarse.rows.row(j);
+    halve(here.x, length, out.x + to, coarse.rows.row_length);
+    halve(here.y, length, out.y + to, coarse.rows.row_length);
+    halve(here.z, length, out.z + to, coarse.rows.row_length);
   }
 }
 

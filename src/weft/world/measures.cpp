@@ -37,8 +37,10 @@ double compute_elastic_energy(const ClothElements& elements, const ClothState& s
 
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
   double energy = model.elements ? compute_elastic_energy(*model.elements, state) : 0;
-  for (const Spring& s : model.topology->springs) {
-    energy += spring_energy(model.stiffness(s), s.rest_length, state.x.get(s.j) - state.x.get(s.i));
+  const std::vector<Spring>& springs = model.topology->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    energy += spring_energy(model.stiffness(static_cast<int>(s)), springs[s].rest_length,
+                            state.x.get(springs[s].j) - state.x.get(springs[s].i));
   }
   return energy;
 }
