@@ -35,10 +35,25 @@ std::vector<Row> rows(const FabricPreset& preset) {
   return rows;
 }
 
+using Curves = std::vector<std::pair<const char*, const std::vector<StretchPoint>*>>;
+
+/// The curves that the fabric has.
+Curves curves(const Fabric& f) {
+  Curves all = {{"stretch_warp", &f.stretch_warp}, {"stretch_weft", &f.stretch_weft}};
+  std::erase_if(all, [](const auto& curve) { return curve.second->empty(); });
+  return all;
+}
+
 void print(const FabricPreset& preset) {
   fmt::print("# {}: {}\n", preset.name, preset.title);
   for (const Row& row : rows(preset)) {
     fmt::print("{:<9} = {:<10.10g} # [{}] {}\n", row.key, row.value, row.unit, *row.source);
+  }
+  for (const auto& [key, points] : curves(preset.fabric)) {
+    std::string text;
+    for (const StretchPoint& p : *points)
+      text += fmt::format("{}[{:g}, {:g}]", text.empty() ? "" : ", ", p.strain, p.tension);
+    fmt::print("{} = [{}] # [1, N/m] {}\n", key, text, preset.sources.stretch);
   }
 }
 
@@ -49,6 +64,11 @@ nlohmann::ordered_json to_json(const FabricPreset& preset) {
     json[row.key] = row.value;
     units[row.key] = row.unit;
     sources[row.key] = *row.source;
+  }
+  for (const auto& [key, points] : curves(preset.fabric)) {
+    for (const StretchPoint& p : *points) json[key].push_back({p.strain, p.tension});
+    units[key] = {"1", "N/m"};
+    sources[key] = preset.sources.stretch;
   }
   json["units"] = units;
   json["sources"] = sources;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support.h"
+#include "weft/core/error.h"
 #include "weft/world/measures.h"
 
 namespace weft {
@@ -40,6 +41,51 @@ Slide measure(World& world, ClothId cloth, const Mat3& tilt, double seconds, int
 }
 
 enum class Ground { plane, box };
+
+/// A sheet on a plane that rises by 40 cm per metre, with a speed down it; static friction 0.5, sliding 0.3.
+Slide start_on_slope(const std::string& integrator, double speed, double static_friction) {
+  constexpr double kSize = 0.32;
+  const double angle_deg = std::atan(0.4) * 180 / 3.14159265358979;
+  const Mat3 tilt = tilt_of(angle_deg);
+  World world;
+  world.set_integrator({.integrator = integrator});
+  world.add_collider({.name = "slope",
+                      .shape = Plane{Vec3::Zero(), tilt * Vec3::UnitY()},
+                      .friction = 0.3,
+                      .motion = {},
+                      .static_friction = static_friction});
+  const auto topology = build_grid_topology(test::square(8, kSize), SpringModel::simplified);
+  const ClothId cloth =
+      world.add_cloth({.name = "sheet",
+                       .topology = topology,
+                       .material = kSoft,
+                       .positions = place_on_slope(*topology, kSize, tilt, kSoft.thickness / 2),
+                       .velocity = -speed * (tilt * Vec3::UnitX())});
+  constexpr double kSeconds = 0.5;
+  Slide slide = measure(world, cloth, tilt, kSeconds, 120);
+  slide.acceleration -= speed / (0.5 * kSeconds);
+  return slide;
+}
+
+TEST(StaticFriction, HoldsWhatLiesAndNotWhatSlides) {
+  const double a = std::atan(0.4), sliding = kGravity * (std::sin(a) - 0.3 * std::cos(a));
+  for (const char* integrator : {"newton", "implicit_euler", "paper_fixed"}) {
+    EXPECT_NEAR(start_on_slope(integrator, 0, 0.5).acceleration, 0, 0.02) << integrator << ": lies";
+    EXPECT_NEAR(start_on_slope(integrator, 0.3, 0.5).acceleration, sliding, 0.05 * sliding)
+        << integrator << ": slides";
+    EXPECT_NEAR(start_on_slope(integrator, 0, 0).acceleration, sliding, 0.05 * sliding)
+        << integrator << ": has no static friction of its own";
+  }
+}
+
+TEST(StaticFriction, MayBeThatOfAPair) {
+  World world;
+  world.add_collider({.name = "floor", .shape = Plane{}, .motion = {}});
+  world.add_cloth(
+      {.name = "sheet", .topology = build_grid_topology(test::square(2), SpringModel::simplified)});
+  EXPECT_NO_THROW(world.set_friction("sheet", "floor", 0.2, 0.4));
+  EXPECT_THROW(world.set_friction("sheet", "floor", 0.2, -0.4), InputError);
+}
 
 /// A sheet of 8 x 8 cells of 4 cm on a slope of the collider's friction.
 Slide slide_on(Ground ground, const std::string& integrator, double angle_deg, double friction) {

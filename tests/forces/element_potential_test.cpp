@@ -43,12 +43,8 @@ std::shared_ptr<const ClothModel> model_of(const std::shared_ptr<const ClothTopo
                            elements);
 }
 
-/// With a strain limit too, most triangles of a Bent sheet are beyond it, in one direction or in both.
-std::vector<Sheet> all_sheets(double damping, double strain_limit = 0) {
-  Fabric fabric = kFabric;
-  fabric.damping = damping;
-  fabric.strain_limit = strain_limit;
-  std::vector<Sheet> sheets;
+/// Of every kind of mesh.
+void add_sheets(const Fabric& fabric, std::vector<Sheet>& sheets) {
   for (const SpringModel model : {SpringModel::simplified, SpringModel::alternating}) {
     const auto topology = build_grid_topology(kGrid, model);
     for (const GridWarp warp : {GridWarp::first_axis, GridWarp::second_axis}) {
@@ -62,6 +58,29 @@ std::vector<Sheet> all_sheets(double damping, double strain_limit = 0) {
     sheets.push_back(
         {test::to_string(kind), model_of(topology, build_mesh_elements(topology->mesh, warp, fabric))});
   }
+}
+
+std::vector<Sheet> linear_sheets(double damping) {
+  Fabric fabric = kFabric;
+  fabric.damping = damping;
+  std::vector<Sheet> sheets;
+  add_sheets(fabric, sheets);
+  return sheets;
+}
+
+/// With a strain limit too, with stretch curves, and with both. Most triangles of a Bent sheet are beyond the
+/// limit and the curves' kinks, in one direction or in both.
+std::vector<Sheet> all_sheets(double damping) {
+  std::vector<Sheet> sheets = linear_sheets(damping);
+  Fabric fabric = kFabric;
+  fabric.damping = damping;
+  fabric.strain_limit = kLimit;
+  add_sheets(fabric, sheets);
+  fabric.stretch_warp = {{0.02, 12}, {0.05, 60}, {0.1, 240}};
+  fabric.stretch_weft = {{0.03, 90}, {0.06, 150}};
+  add_sheets(fabric, sheets);
+  fabric.strain_limit = 0;
+  add_sheets(fabric, sheets);
   return sheets;
 }
 
@@ -103,9 +122,7 @@ double norm(const std::vector<Vec3>& field) {
 }
 
 TEST(ElementPotential, IsTheSumOfTheElementsOnGridsAndMeshes) {
-  std::vector<Sheet> sheets = all_sheets(0);
-  for (const Sheet& limited : all_sheets(0, kLimit)) sheets.push_back(limited);
-  for (const Sheet& sheet : sheets) {
+  for (const Sheet& sheet : all_sheets(0)) {
     Bent bent(*sheet.model);
     const ClothElements& elements = *sheet.model->elements;
     Vec3Array force(bent.e.size());
@@ -129,9 +146,7 @@ TEST(ElementPotential, IsTheSumOfTheElementsOnGridsAndMeshes) {
 }
 
 TEST(ElementPotential, MultipliesByTheFilteredHessian) {
-  std::vector<Sheet> sheets = all_sheets(0);
-  for (const Sheet& limited : all_sheets(0, kLimit)) sheets.push_back(limited);
-  for (const Sheet& sheet : sheets) {
+  for (const Sheet& sheet : all_sheets(0)) {
     Bent bent(*sheet.model);
     const ClothElements& elements = *sheet.model->elements;
     Vec3Array force(bent.e.size()), p(bent.e.size()), q(bent.e.size());
@@ -164,7 +179,7 @@ TEST(ElementPotential, MultipliesByTheFilteredHessian) {
 }
 
 TEST(ElementPotential, DampedForceIsTheGradientOfItsEnergy) {
-  for (const Sheet& sheet : all_sheets(0.02)) {
+  for (const Sheet& sheet : linear_sheets(0.02)) {
     Bent bent(*sheet.model, 60);
     Vec3Array start(sheet.model->num_particles()), moved(sheet.model->num_particles());
     Random random(7);
@@ -210,7 +225,7 @@ double viscous_energy(const ClothModel& model, const std::vector<Vec3>& start, c
 
 TEST(ElementPotential, DampingIsTheTimeConstantTimesTheRateOfStrainAndLeavesARigidRotationAlone) {
   constexpr double kTau = 0.02, kShare = kTau * 100;
-  for (const Sheet& sheet : all_sheets(kTau)) {
+  for (const Sheet& sheet : linear_sheets(kTau)) {
     const ClothElements& elements = *sheet.model->elements;
     const TriangleMesh& mesh = sheet.model->topology->mesh;
     const auto stretched = test::mapped(mesh, [](const Vec3& p) { return Vec3(1.01 * p.x(), 0, p.z()); });
@@ -228,9 +243,7 @@ TEST(ElementPotential, DampingIsTheTimeConstantTimesTheRateOfStrainAndLeavesARig
 }
 
 TEST(ElementPotential, HasTheSameBitsForAnyNumberOfThreadsAndEveryVectorWidth) {
-  std::vector<Sheet> sheets = all_sheets(0.02);
-  for (const Sheet& limited : all_sheets(0.02, kLimit)) sheets.push_back(limited);
-  for (const Sheet& sheet : sheets) {
+  for (const Sheet& sheet : all_sheets(0.02)) {
     std::vector<double> energies;
     std::vector<std::vector<Vec3>> products;
     for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512}) {

@@ -57,6 +57,23 @@ TEST(FabricFile, TakesTheOptionalKeys) {
   EXPECT_EQ(f.strain_limit, 0.01);
 }
 
+TEST(FabricFile, TakesStretchCurves) {
+  const Fabric f = parse_fabric(kDenim + "stretch_warp = [[0.01, 4], [0.05, 40]]\n", "denim.toml").fabric;
+  ASSERT_EQ(f.stretch_warp.size(), 2u);
+  EXPECT_EQ(f.stretch_warp[1].strain, 0.05);
+  EXPECT_EQ(f.stretch_warp[1].tension, 40);
+  EXPECT_TRUE(f.stretch_weft.empty());
+}
+
+TEST(FabricFile, RefusesCurvesThatAreNone) {
+  const auto warp = [](const std::string& value) { return mistakes(kDenim + "stretch_warp = " + value); };
+  EXPECT_NE(warp("3").find("9:16: stretch_warp: expected points of strain and tension"), std::string::npos);
+  EXPECT_NE(warp("[[0.01, -4]]").find("9:24: stretch_warp[0][1]: expected a number above 0"),
+            std::string::npos);
+  EXPECT_NE(warp("[[0.02, 4], [0.01, 9]]").find("must rise from the origin"), std::string::npos);
+  EXPECT_NE(warp("[[0.1, 400], [0.2, 401]]").find("is too flat"), std::string::npos);
+}
+
 TEST(FabricFile, UnknownKeyIsAnsweredWithTheNearestOne) {
   EXPECT_EQ(mistakes(replaced(kDenim, "bend_weft", "bend_wft")),
             "mine.toml:7:1: unknown key \"bend_wft\"; did you mean \"bend_weft\"?");

@@ -54,7 +54,7 @@ Problem grid_problem(int columns, int rows, bool both_diagonals) {
   p.field_size = layout.size();
   const double inertia = 2.25 * 3600 * 0.2 / p.size;
   const auto is_pinned = [&](int i) { return i == 0 || i == columns - 1; };
-  const auto join = [&](int i, int j, double c, std::vector<float>& couplings) {
+  const auto join = [&](int i, int j, double c, AlignedFloats& couplings) {
     if (is_pinned(i) || is_pinned(j)) {
       const int other = is_pinned(i) ? j : i;
       if (is_pinned(other)) return;

@@ -34,8 +34,9 @@ using ColliderShape = std::variant<Sphere, Plane, Capsule, OrientedBox, MeshShap
 struct Collider {
   std::string name;
   ColliderShape shape;
-  double friction = 0.3;  // Coulomb's coefficient, >= 0 [1]
-  RigidMotion motion;     // turns about pivot()
+  double friction = 0.3;       // Coulomb's coefficient, >= 0 [1]
+  RigidMotion motion;          // turns about pivot()
+  double static_friction = 0;  // while nothing slides; less than `friction`: the same [1]
 };
 
 /// Signed distance from p to the shape's surface, and the normal there (geometry/shape_distance.h).

@@ -216,7 +216,7 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   const bool is_body = is_on_body(c);
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
   const Place cloth = place_of(std::min(first, last)), other = place_of(std::max(first, last));
-  c.friction = laws_[law_of(cloth, other)].friction;
+  set_friction(laws_[law_of(cloth, other)], c);
   return true;
 }
 

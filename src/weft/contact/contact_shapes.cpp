@@ -120,8 +120,8 @@ void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Tria
   c.shape = shape;
   const PairLaw& law = laws_[law_of(place_of(vertices[0]), {.collider = shape})];
   if (!law.collide) return;
-  c.friction = law.friction;
   take_plane(c);
+  set_friction(law, c);
   if (c.inverse_mass > 0) constraints_.push_back(c);
 }
 

@@ -22,8 +22,9 @@ constexpr int kRounds = 8;            // planes of round shapes are taken anew t
 constexpr int kPasses = 8;            // over all constraints between
 constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of contacts: little is left to do
 constexpr int kPassesAfterSolve = 4;
-constexpr int kSearches = 6;       // after friction, contacts are looked for anew this often
-constexpr double kSettled = 1e-6;  // corrections below end the rounds [m]
+constexpr double kSlidingSpeed = 0.01;  // slower, static friction holds [m/s]
+constexpr int kSearches = 6;            // after friction, contacts are looked for anew this often
+constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
 /// How far cloth may move before pairs are looked for anew: a share of its cells, or of its thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
@@ -75,6 +76,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   }
   place_bodies();
   set_laws();
+  remember_velocities();
   begin_momentum();
 }
 
@@ -86,14 +88,17 @@ void ContactSystem::set_laws() {
   const auto own = [&](int cloth) { return cloths_[cloth].model->material.friction; };
   for (int c = 0; c < num_cloths; ++c) {
     for (int d = 0; d < num_cloths; ++d)
-      laws_[law_of({.cloth = c}, {.cloth = d})] = {std::sqrt(own(c) * own(d))};
-    for (int s = 0; s < num_shapes; ++s)
-      laws_[law_of({.cloth = c}, {.collider = s})] = {shapes_[s].collider->friction};
+      laws_[law_of({.cloth = c}, {.cloth = d})] = {.friction = std::sqrt(own(c) * own(d))};
+    for (int s = 0; s < num_shapes; ++s) {
+      const Collider& collider = *shapes_[s].collider;
+      laws_[law_of({.cloth = c}, {.collider = s})] = {collider.friction, collider.static_friction};
+    }
   }
   for (const ContactRule& rule : step_.rules) {
     const Place cloth{.cloth = rule.cloth}, other{.cloth = rule.other_cloth, .collider = rule.collider};
     PairLaw& law = laws_[law_of(cloth, other)];
-    law = {rule.friction.value_or(law.friction), rule.collide};
+    law = {rule.friction.value_or(law.friction), rule.static_friction.value_or(law.static_friction),
+           rule.collide};
     if (rule.other_cloth >= 0) laws_[law_of(other, cloth)] = law;
   }
   set_passes();
@@ -119,6 +124,29 @@ std::size_t ContactSystem::law_of(const Place& cloth, const Place& other) const 
   const std::size_t num_cloths = cloths_.size();
   return cloth.cloth * (num_cloths + shapes_.size()) +
          (other.cloth >= 0 ? other.cloth : num_cloths + other.collider);
+}
+
+/// The static coefficient where the two were not sliding when the step began.
+void ContactSystem::set_friction(const PairLaw& law, Constraint& c) const {
+  c.friction = law.friction;
+  if (law.static_friction <= law.friction) return;
+  Vec3 slide = -c.surface_velocity;
+  for (int k = 0; k < c.num_vertices; ++k) slide += c.weight[k] * velocity_before_[c.vertex[k]];
+  slide -= slide.dot(c.normal) * c.normal;
+  if (slide.norm() < kSlidingSpeed) c.friction = law.static_friction;
+}
+
+/// Those at the start of the step, of a collider's mesh the mean over the step; only where something has
+/// static friction.
+void ContactSystem::remember_velocities() {
+  velocity_before_.clear();
+  const auto has_static = [](const PairLaw& law) { return law.static_friction > law.friction; };
+  if (std::none_of(laws_.begin(), laws_.end(), has_static)) return;
+  for (const ContactCloth& cloth : cloths_) {
+    for (int i = 0; i < cloth.model->num_particles(); ++i) velocity_before_.push_back(cloth.state->v.get(i));
+  }
+  for (std::size_t v = velocity_before_.size(); v < motion_.start.size(); ++v)
+    velocity_before_.push_back((motion_.end[v] - motion_.start[v]) / step_.step);
 }
 
 void ContactSystem::renumber(const std::vector<Collider>& colliders) {

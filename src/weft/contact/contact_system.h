@@ -32,6 +32,7 @@ struct ContactCloth {
 struct ContactRule {
   int cloth = 0, other_cloth = -1, collider = -1;  // exactly one of the last two is not -1
   std::optional<double> friction;                  // Coulomb's coefficient; empty: as they say themselves [1]
+  std::optional<double> static_friction;           // while nothing slides; likewise [1]
   bool collide = true;                             // false: they go through each other
 };
 
@@ -117,7 +118,8 @@ class ContactSystem {
   };
 
   struct PairLaw {
-    double friction = 0;  // [1]
+    double friction = 0;         // [1]
+    double static_friction = 0;  // while nothing slides, if it is more [1]
     bool collide = true;
   };
 
@@ -165,6 +167,8 @@ class ContactSystem {
   bool finish_pair(double distance, double gap, Constraint& c) const;
   void set_laws();
   void set_passes();
+  void set_friction(const PairLaw& law, Constraint& c) const;
+  void remember_velocities();
   std::size_t law_of(const Place& cloth, const Place& other) const;
   const Body& body_of(int vertex) const;
   bool is_on_body(const Constraint& c) const;
@@ -205,10 +209,11 @@ class ContactSystem {
   bool is_for_solve_ = false;  // contacts are being predicted
   double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
-  std::vector<Vec3> fallen_;          // where inertia and all of gravity would take it
-  double longest_edge_ = 0;           // of cloth, at most [m]
-  std::vector<double> inverse_mass_;  // (num_vertices) 0 where prescribed [1/kg]
-  std::vector<PairLaw> laws_;         // (cloths, cloths and then colliders)
+  std::vector<Vec3> fallen_;           // where inertia and all of gravity would take it
+  double longest_edge_ = 0;            // of cloth, at most [m]
+  std::vector<double> inverse_mass_;   // (num_vertices) 0 where prescribed [1/kg]
+  std::vector<PairLaw> laws_;          // (cloths, cloths and then colliders)
+  std::vector<Vec3> velocity_before_;  // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
   std::vector<int> found_;             // of these, those that find_contacts told of last
   std::vector<Touch> touches_;         // in this step

@@ -2,8 +2,8 @@
 /// Many 3-vectors as three arrays of floats (structure of arrays): what the fast kernels read and write.
 
 #include <cstddef>
-#include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/vec.h"
 
 namespace weft {
@@ -43,7 +43,7 @@ class Vec3Array {
 
  private:
   std::size_t size_ = 0;
-  std::vector<float> x_, y_, z_;  // (size_ + kPadding) each
+  AlignedFloats x_, y_, z_;  // (size_ + kPadding) each
 };
 
 }  // namespace weft

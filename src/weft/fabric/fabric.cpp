@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "weft/core/error.h"
+#include "weft/fabric/membrane_law.h"
 
 namespace weft {
 namespace {
@@ -82,6 +83,29 @@ void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judg
     }
     last = point;
   }
+  if (curve.size() > kMostStretchPoints)
+    judge.refuse(field, "must be at most " + std::to_string(kMostStretchPoints) + " points, are " +
+                            std::to_string(curve.size()));
+}
+
+/// The least slope of the stress along a thread [N/m].
+double least_slope(const std::vector<StretchPoint>& curve, double linear) {
+  double slope = linear, least = linear;
+  for (const StretchKink& kink : make_stretch_kinks(curve, linear)) {
+    slope += kink.slope;
+    least = std::min(least, slope);
+  }
+  return least;
+}
+
+void judge_slopes(const Fabric& f, Judge& judge) {
+  const double warp = least_slope(f.stretch_warp, f.c11), weft = least_slope(f.stretch_weft, f.c22);
+  const char* field = warp / f.c11 < weft / f.c22 ? "stretch_warp" : "stretch_weft";
+  if (warp > 0 && weft > 0 && warp * weft > f.c12 * f.c12) return;
+  judge.refuse(field,
+               "is too flat: tension over stretch must rise everywhere, and the product of both threads' "
+               "least slopes, " +
+                   text(warp) + " and " + text(weft) + " N/m, be more than c12²");
 }
 
 }  // namespace
@@ -92,6 +116,7 @@ std::vector<FabricMistake> find_mistakes(const Fabric& fabric) {
   if (judge.has_none()) judge_relations(fabric, judge);
   judge_curve(fabric.stretch_warp, "stretch_warp", judge);
   judge_curve(fabric.stretch_weft, "stretch_weft", judge);
+  if (judge.has_none()) judge_slopes(fabric, judge);
   return judge.mistakes;
 }
 

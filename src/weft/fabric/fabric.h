@@ -16,6 +16,8 @@
 
 namespace weft {
 
+inline constexpr int kMostStretchPoints = 8;
+
 /// A point of a measured stretch curve.
 struct StretchPoint {
   double strain = 0;   // extension over rest length, > 0 [1]
@@ -75,8 +77,10 @@ struct Fabric {
   /// less like rubber, and more work for the solver. `springs` do not have it [1].
   double strain_limit = 0;
 
-  /// Measured curves along warp and weft, from the origin through these points, both values rising; empty:
-  /// straight lines of slope c11 and c22. Kept with the fabric; forces do not follow them.
+  /// Measured curves along warp and weft, from the origin through these points, at most kMostStretchPoints,
+  /// both values and tension over stretch rising; empty: straight lines of slope c11 and c22, which hold in
+  /// compression in any case. The membrane stays positive definite: c12² is less than the product of their
+  /// least slopes. `springs` do not follow them.
   std::vector<StretchPoint> stretch_warp, stretch_weft;
 };
 

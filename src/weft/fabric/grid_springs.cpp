@@ -36,6 +36,9 @@ GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWar
   require_stiffer(cz, shear_z, is_first ? "c22" : "c11", fabric, name);
 
   GridSprings springs;
+  if (!fabric.stretch_warp.empty() || !fabric.stretch_weft.empty())
+    springs.warnings.push_back("fabric \"" + name +
+                               "\": springs do not follow its stretch curves; use membrane = \"triangle\"");
   const double both = fabric.g * (dx * dx + dz * dz) / (2 * dx * dz);
   springs.diagonal = diagonals == CellDiagonals::both ? both : 2 * both;
   springs.along_x = (cx - shear_x) * dz / dx;

@@ -9,6 +9,7 @@ namespace {
 constexpr double kBegin = 0.85, kFull = 1.05, kLoaded = 1.3;  // of the fabric's strain limit
 constexpr double kTimesWeight = 20;                           // that one edge bears at kLoaded
 constexpr double kGravity = 9.81;
+constexpr double kSameSlope = 0.05;  // a curve that begins within this share of the linear law begins as it
 
 /// ψ(e) of a principal Green strain e = (σ² − 1)/2, and its derivatives by e.
 struct Principal {
@@ -39,7 +40,32 @@ void add_limit(const StrainLimit& limit, const Vec3& e, MembraneResponse& respon
       p1.second * v1 * v1.transpose() + p2.second * v2 * v2.transpose() + 2 * turning * v3 * v3.transpose();
 }
 
+void add_curve(const std::vector<StretchKink>& kinks, int thread, double strain, MembraneResponse& response) {
+  for (const StretchKink& kink : kinks) {
+    const double beyond = strain - kink.strain;
+    if (beyond <= 0) return;
+    response.energy += 0.5 * kink.slope * beyond * beyond;
+    response.stress[thread] += kink.slope * beyond;
+    response.tangent(thread, thread) += kink.slope;
+  }
+}
+
 }  // namespace
+
+std::vector<StretchKink> make_stretch_kinks(const std::vector<StretchPoint>& curve, double linear) {
+  std::vector<StretchKink> kinks;
+  double strain = 0, stress = 0, slope = linear;
+  for (const StretchPoint& p : curve) {
+    const double next_strain = p.strain + p.strain * p.strain / 2, next_stress = p.tension / (1 + p.strain);
+    const double next_slope = (next_stress - stress) / (next_strain - strain);
+    const bool begins_as_line = strain == 0 && std::abs(next_slope - linear) < kSameSlope * linear;
+    if (!begins_as_line) kinks.push_back({strain, next_slope - slope});
+    slope = begins_as_line ? linear : next_slope;
+    stress = begins_as_line ? linear * next_strain : next_stress;
+    strain = next_strain;
+  }
+  return kinks;
+}
 
 LimitResponse limit_response(const StrainLimit& limit, double strain) {
   const double u = strain - limit.begin, w = limit.full - limit.begin, k = limit.stiffness;
@@ -59,6 +85,8 @@ StrainLimit make_strain_limit(const Fabric& fabric, double cloth_area, double ed
 MembraneResponse membrane_response(const MembraneLaw& law, const Vec3& e) {
   MembraneResponse response{0, law.stiffness * e, law.stiffness};
   response.energy = 0.5 * e.dot(response.stress);
+  add_curve(law.warp, 0, e[0], response);
+  add_curve(law.weft, 1, e[1], response);
   if (law.limit.stiffness > 0) add_limit(law.limit, e, response);
   return response;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a membrane answers to a strain: the fabric's linear law, and its strain limit.
+/// What a membrane answers to a strain: the fabric's linear law, its stretch curves, and its strain limit.
 ///
 ///     tension                   A principal stretch σ (the length of a direction over that at rest) beyond
 ///     the
@@ -10,6 +10,9 @@
 ///        0   begin full
 ///                               The energy is convex in the positions for any such law that only pulls, and
 ///                               smooth (C²), so that Newton's method follows it.
+
+#include <utility>
+#include <vector>
 
 #include "weft/core/vec.h"
 #include "weft/fabric/fabric.h"
@@ -40,12 +43,27 @@ LimitResponse limit_response(const StrainLimit& limit, double strain);
 /// strain_limit = 0.
 StrainLimit make_strain_limit(const Fabric& fabric, double cloth_area, double edge_length);
 
+/// From a Green strain along a thread on, the stress along it rises more steeply than before.
+struct StretchKink {
+  double strain = 0;  // >= 0 [1]
+  double slope = 0;   // by so much; negative: less steeply [N/m]
+};
+
+/// What a measured curve is beyond a straight line of slope `linear` [N/m]: kinks by ascending strain, none for
+/// no curve. Stress is tension over stretch, T/(1 + ε) at the Green strain ε + ε²/2; it is straight between the
+/// points and goes on beyond the last one. It is that of `linear` in compression, and up to the first point if
+/// it begins within 5 % of that.
+std::vector<StretchKink> make_stretch_kinks(const std::vector<StretchPoint>& curve, double linear);
+
 struct MembraneLaw {
   Mat3 stiffness = Mat3::Zero();  // C [N/m]
   StrainLimit limit;
+  std::vector<StretchKink> warp, weft;
 
   MembraneLaw() = default;
-  MembraneLaw(const Mat3& c, const StrainLimit& l = {}) : stiffness(c), limit(l) {}
+  MembraneLaw(const Mat3& c, const StrainLimit& l = {}, std::vector<StretchKink> along_warp = {},
+              std::vector<StretchKink> along_weft = {})
+      : stiffness(c), limit(l), warp(std::move(along_warp)), weft(std::move(along_weft)) {}
 };
 
 /// At the Green strain e = (ε11, ε22, 2 ε12).

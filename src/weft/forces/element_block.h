@@ -63,7 +63,7 @@ struct LimitPrincipal {
 };
 
 template <int W>
-WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const LimitNumbers& n, Pack<W> stretch) {
+WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const StiffeningNumbers& n, Pack<W> stretch) {
   const Pack<W> zero = broadcast<W>(0), u = larger((stretch - 1.0f) - n.begin, zero),
                 m = smaller(u, broadcast<W>(n.width)), over = u - m, inverse = 1.0f / stretch;
   const float k = n.stiffness, per_width = k / n.width;
@@ -72,16 +72,16 @@ WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const LimitNumbers& n, Pack
           (per_width * m - tension) * inverse * inverse};
 }
 
-/// What the limit adds at the strain e, as membrane_response() does it.
+/// What limit and curves add at the strain e, as membrane_response() does it.
 template <int W>
-struct LimitAnswer {
+struct StiffeningAnswer {
   Pack<W> energy, peak;  // peak: the larger principal strain
   Stress<W> stress;
   Tangent<W> tangent;
 };
 
 template <int W>
-WEFT_ALWAYS_INLINE LimitAnswer<W> limit_answer(const LimitNumbers& n, const Three<W>& e) {
+WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const StiffeningNumbers& n, const Three<W>& e) {
   constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below, the axes are noise
   const Pack<W> mean = 0.5f * (e.x + e.y), half = 0.5f * (e.x - e.y), shear = 0.5f * e.z;
   const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kLeastRadius);
@@ -102,6 +102,27 @@ WEFT_ALWAYS_INLINE LimitAnswer<W> limit_answer(const LimitNumbers& n, const Thre
           {p1.second * a * a + p2.second * b * b + t * h * h, (p1.second + p2.second) * a * b - t * h * h,
            (p1.second * a - p2.second * b) * h - t * h * g, p1.second * b * b + p2.second * a * a + t * h * h,
            (p1.second * b - p2.second * a) * h + t * h * g, (p1.second + p2.second) * h * h + t * g * g}};
+}
+
+/// Adds a thread's curve at its strain.
+template <int W>
+WEFT_ALWAYS_INLINE void add_curve(const CurveNumbers& curve, Pack<W> strain, Pack<W>& energy, Pack<W>& stress,
+                                  Pack<W>& tangent) {
+  for (int k = 0; k < curve.count; ++k) {
+    const Pack<W> beyond = larger(strain - curve.strain[k], broadcast<W>(0)), rise = curve.slope[k] * beyond;
+    energy += 0.5f * rise * beyond;
+    stress += rise;
+    tangent += select_less(broadcast<W>(0), beyond, broadcast<W>(curve.slope[k]), broadcast<W>(0));
+  }
+}
+
+template <int W>
+WEFT_ALWAYS_INLINE StiffeningAnswer<W> stiffening_answer(const StiffeningNumbers& n, const Three<W>& e) {
+  StiffeningAnswer<W> answer{};
+  if (n.has_limit()) answer = limit_answer<W>(n, e);
+  add_curve<W>(n.along_1, e.x, answer.energy, answer.stress.s1, answer.tangent.d11);
+  add_curve<W>(n.along_2, e.y, answer.energy, answer.stress.s2, answer.tangent.d22);
+  return answer;
 }
 
 /// A 3×3 block of the Hessian, with the sign of a coupling: q_i = Σ_j N_ij (p_i − p_j).

@@ -80,7 +80,7 @@ WEFT_ALWAYS_INLINE Rows strain_planes(const GridElements& g, float* planes, int 
   return {g.plane(planes, first), g.plane(planes, first + 1), g.plane(planes, first + 2)};
 }
 
-/// The limit's tangents of tops (plane 0) or bottoms (plane 3).
+/// Stiffening's tangents of tops (plane 0) or bottoms (plane 3).
 WEFT_ALWAYS_INLINE float* tangent_of(const GridElements& g, int plane) {
   return g.plane(g.tangent, 2 * plane);
 }
@@ -125,19 +125,20 @@ WEFT_ALWAYS_INLINE void membrane_row(const GridElements& g, int j, LaneSums<W>& 
       e = times<W>(cells.exists(), e);
       Stress<W> s = stress_of<W>(g.membrane, e);
       energy.add(part, quarter * twice_energy<W>(e, s));
-      if (g.limit.is_set()) {
-        const LimitAnswer<W> limit = limit_answer<W>(g.limit, times<W>(cells.exists(), strain_of<W>(frame)));
-        energy.add(part, 2 * quarter * limit.energy);
-        s = {s.s1 + limit.stress.s1, s.s2 + limit.stress.s2, s.s3 + limit.stress.s3};
-        store_tangent<W>(tangent_of(g, plane) + cells.at(), g.plane_pitch(), limit.tangent);
-        peak = larger(peak, widest<W>(limit.peak));
+      if (g.stiffening.is_set()) {
+        const StiffeningAnswer<W> more =
+            stiffening_answer<W>(g.stiffening, times<W>(cells.exists(), strain_of<W>(frame)));
+        energy.add(part, 2 * quarter * more.energy);
+        s = {s.s1 + more.stress.s1, s.s2 + more.stress.s2, s.s3 + more.stress.s3};
+        store_tangent<W>(tangent_of(g, plane) + cells.at(), g.plane_pitch(), more.tangent);
+        peak = larger(peak, widest<W>(more.peak));
       }
       store3<W>(strain_planes(g, g.stress, plane), cells.at(), {s.s1, s.s2, s.s3});
     };
     add(cells.top(g), 0);
     add(cells.bottom(g), 3);
   });
-  if (g.limit.is_set()) g.peak[j] = peak;
+  if (g.stiffening.is_set()) g.peak[j] = peak;
 }
 
 template <int W>
@@ -204,11 +205,12 @@ WEFT_ALWAYS_INLINE Mixed<W> mixed(const GridElements& g, const C& cells, bool ma
   return {cells.exists() * m.x12, cells.exists() * m.x21};
 }
 
-/// What the limit of a cell's triangle gives to its edge across or down: α D11 + γ D13 in place of α C11, and
-/// likewise; X has α D13 (or β D23) besides.
+/// What the stiffening of a cell's triangle gives to its edge across or down: α D11 + γ D13 in place of α
+/// C11, and likewise; X has α D13 (or β D23) besides.
 template <int W, class C>
-WEFT_ALWAYS_INLINE void add_limit(const GridElements& g, const C& cells, const Frame<W>& f,
-                                  const Tangent<W>& d, bool is_across, bool main_is_plain, EdgeSum<W>& sum) {
+WEFT_ALWAYS_INLINE void add_stiffening(const GridElements& g, const C& cells, const Frame<W>& f,
+                                       const Tangent<W>& d, bool is_across, bool main_is_plain,
+                                       EdgeSum<W>& sum) {
   const float own = is_across ? 0.5f * g.dz / g.dx : 0.5f * g.dx / g.dz;
   const Pack<W> sign = cells.choose(-0.5f, 0.5f), turned = own * (is_across ? d.d13 : d.d23);
   const Pack<W> p1 = own * (is_across ? d.d11 : d.d33) + sign * d.d13;
@@ -246,7 +248,7 @@ WEFT_ALWAYS_INLINE void add_diagonal(const GridElements& g, const C& cells, floa
   const Pack<W> c12 = half * g.membrane.c12, shear = half * g.membrane.g;
   sum.block.add(cells.top(g), zero, zero, c12, shear);
   sum.block.add(cells.bottom(g), zero, zero, shear, c12);
-  if (g.limit.is_set()) {
+  if (g.stiffening.is_set()) {
     const Tangent<W> t = cells.top_tangent(g), b = cells.bottom_tangent(g);
     sum.block.add(cells.top(g), half * t.d13, half * t.d23, half * t.d12, half * t.d33);
     sum.block.add(cells.bottom(g), half * b.d13, half * b.d23, half * b.d33, half * b.d12);
@@ -261,12 +263,14 @@ WEFT_ALWAYS_INLINE EdgeSum<W> across_edge(const GridElements& g, std::ptrdiff_t 
   if (j + 1 < g.rows.num_rows) {
     const Cells<W, kAlternates> below(g, i, j);
     add_across<W>(g, below, below.top(g), below.top_stress(g), mixed<W>(g, below, true), sum);
-    if (g.limit.is_set()) add_limit<W>(g, below, below.top(g), below.top_tangent(g), true, true, sum);
+    if (g.stiffening.is_set())
+      add_stiffening<W>(g, below, below.top(g), below.top_tangent(g), true, true, sum);
   }
   if (j > 0) {
     const Cells<W, kAlternates> above(g, i, j - 1);
     add_across<W>(g, above, above.bottom(g), above.bottom_stress(g), mixed<W>(g, above, false), sum);
-    if (g.limit.is_set()) add_limit<W>(g, above, above.bottom(g), above.bottom_tangent(g), true, false, sum);
+    if (g.stiffening.is_set())
+      add_stiffening<W>(g, above, above.bottom(g), above.bottom_tangent(g), true, false, sum);
   }
   return sum;
 }
@@ -281,11 +285,11 @@ WEFT_ALWAYS_INLINE void add_side(const GridElements& g, const C& cells, bool is_
   const Three<W> s = pick({above.s1, above.s2, above.s3}, {below.s1, below.s2, below.s3});
   const Frame<W> frame{pick(top.f1, bottom.f1), pick(top.f2, bottom.f2)};
   add_down<W>(g, cells, frame, {s.x, s.y, s.z}, mixed<W>(g, cells, !is_left), sum);
-  if (!g.limit.is_set()) return;
+  if (!g.stiffening.is_set()) return;
   const Tangent<W> t = cells.top_tangent(g), b = cells.bottom_tangent(g);
   const Three<W> high = pick({t.d11, t.d12, t.d13}, {b.d11, b.d12, b.d13}),
                  low = pick({t.d22, t.d23, t.d33}, {b.d22, b.d23, b.d33});
-  add_limit<W>(g, cells, frame, {high.x, high.y, high.z, low.x, low.y, low.z}, false, !is_left, sum);
+  add_stiffening<W>(g, cells, frame, {high.x, high.y, high.z, low.x, low.y, low.z}, false, !is_left, sum);
 }
 
 template <int W>

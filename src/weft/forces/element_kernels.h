@@ -2,6 +2,7 @@
 /// Private to forces/: what element_potential.cpp hands to the kernels of grids and meshes.
 
 #include "weft/core/padded_rows.h"
+#include "weft/fabric/fabric.h"
 #include "weft/forces/increments_kernels.h"
 
 namespace weft::kernels {
@@ -11,14 +12,22 @@ struct MembraneNumbers {
   float c11 = 0, c22 = 0, c12 = 0, g = 0;
 };
 
-/// StrainLimit in floats.
-struct LimitNumbers {
-  float begin = 0, width = 1, stiffness = 0;
-
-  bool is_set() const { return stiffness > 0; }
+/// The kinks of a stretch curve, in floats.
+struct CurveNumbers {
+  int count = 0;
+  float strain[kMostStretchPoints] = {}, slope[kMostStretchPoints] = {};
 };
 
-/// Numbers of a limit's tangent: its upper triangle, D11 D12 D13 D22 D23 D33.
+/// What a membrane's law has beyond the linear one: its strain limit, and its stretch curves.
+struct StiffeningNumbers {
+  float begin = 0, width = 1, stiffness = 0;  // StrainLimit
+  CurveNumbers along_1, along_2;
+
+  bool has_limit() const { return stiffness > 0; }
+  bool is_set() const { return has_limit() || along_1.count > 0 || along_2.count > 0; }
+};
+
+/// Numbers of what stiffening adds to the tangent: its upper triangle, D11 D12 D13 D22 D23 D33.
 inline constexpr int kTangentSize = 6;
 
 /// Numbers of a Hessian's block: row by row, from the particle that owns it.
@@ -41,8 +50,8 @@ struct GridElements {
   float dx = 1, dz = 1;      // [m]
   MembraneNumbers membrane;  // with C11 along x
   float damping = 0;         // η
-  LimitNumbers limit;
-  float* tangent = nullptr;        // the limit's, of tops and bottoms (12), if there is one [N/m]
+  StiffeningNumbers stiffening;
+  float* tangent = nullptr;        // that of stiffening, of tops and bottoms (12), if there is any [N/m]
   float* peak = nullptr;           // likewise: largest principal strain of each row [1]
   const float* bending = nullptr;  // of every family: coupling b_ij at the owner [N/m]
   float* past = nullptr;           // strain that damping pulls to, of tops and bottoms (6)
@@ -92,8 +101,8 @@ struct MeshElements {
   int first = 0;  // index of particle 0
   MembraneNumbers membrane;
   float damping = 0;  // η
-  LimitNumbers limit;
-  float* tangent = nullptr;          // the limit's, of each triangle, if there is one [N/m]
+  StiffeningNumbers stiffening;
+  float* tangent = nullptr;          // that of stiffening, of each triangle, if there is any [N/m]
   float* peak = nullptr;             // likewise: largest principal strain of each slice [1]
   const int* corner = nullptr;       // three of each triangle
   const float* shape = nullptr;      // of each triangle

@@ -66,20 +66,20 @@ WEFT_ALWAYS_INLINE void membranes_body(const MeshElements& m, int slice_begin, i
       Stress<W> s = stress_of<W>(m.membrane, e);
       const Pack<W> area = load<W>(m.shape + place(slice, MeshElements::kShapeSize, 4, lane));
       sum.add(part, 0.5f * area * twice_energy<W>(e, s));
-      if (m.limit.is_set()) {
-        const LimitAnswer<W> limit = limit_answer<W>(m.limit, strain_of<W>(f));
-        sum.add(part, area * limit.energy);
-        s = {s.s1 + limit.stress.s1, s.s2 + limit.stress.s2, s.s3 + limit.stress.s3};
-        store_tangent<W>(m.tangent + place(slice, kTangentSize, 0, lane), kLanes, limit.tangent);
+      if (m.stiffening.is_set()) {
+        const StiffeningAnswer<W> more = stiffening_answer<W>(m.stiffening, strain_of<W>(f));
+        sum.add(part, area * more.energy);
+        s = {s.s1 + more.stress.s1, s.s2 + more.stress.s2, s.s3 + more.stress.s3};
+        store_tangent<W>(m.tangent + place(slice, kTangentSize, 0, lane), kLanes, more.tangent);
         const Pack<W> is_there = select_less(broadcast<W>(0), area, broadcast<W>(1), broadcast<W>(0));
-        peak = larger(peak, widest<W>(is_there * limit.peak));
+        peak = larger(peak, widest<W>(is_there * more.peak));
       }
       float* frame = m.frame + place(slice, MeshElements::kFrameSize, 0, lane);
       store3<W>(three_rows(frame), 0, f.f1);
       store3<W>(three_rows(frame + 3 * kLanes), 0, f.f2);
       store3<W>(three_rows(frame + 6 * kLanes), 0, {s.s1, s.s2, s.s3});
     }
-    if (m.limit.is_set()) m.peak[slice] = peak;
+    if (m.stiffening.is_set()) m.peak[slice] = peak;
     energy[slice] = sum.total();
   }
 }
@@ -121,10 +121,10 @@ WEFT_ALWAYS_INLINE void bending_body(const MeshElements& m, int slice_begin, int
 WEFT_MULTIVERSION_PACKS(bending, (const MeshElements& m, int slice_begin, int slice_end, double* energy),
                         (m, slice_begin, slice_end, energy))
 
-/// The limit's part of a triangle's block, of gradients i and j: a = i1 j1, b = i2 j2, c = i1 j2, d = i2 j1.
+/// Stiffening's part of a triangle's block, of gradients i and j: a = i1 j1, b = i2 j2, c = i1 j2, d = i2 j1.
 template <int W>
-WEFT_ALWAYS_INLINE void add_limit(const MeshElements& m, const int* triangle, const Frame<W>& f, Pack<W> a,
-                                  Pack<W> b, Pack<W> c, Pack<W> d, Block<W>& block) {
+WEFT_ALWAYS_INLINE void add_stiffening(const MeshElements& m, const int* triangle, const Frame<W>& f,
+                                       Pack<W> a, Pack<W> b, Pack<W> c, Pack<W> d, Block<W>& block) {
   int at[W];
   for (int l = 0; l < W; ++l) at[l] = triangle[l] / kLanes * (kTangentSize * kLanes) + triangle[l] % kLanes;
   const auto number = [&](int k) WEFT_INLINE_LAMBDA { return gather<W>(m.tangent + k * kLanes, at); };
@@ -156,7 +156,7 @@ WEFT_ALWAYS_INLINE void add_triangle(const MeshElements& m, int row, int lane, i
   const MembraneNumbers& n = m.membrane;
   block.add(f, 0.0f - (n.c11 * a + n.g * b), 0.0f - (n.c22 * b + n.g * a), 0.0f - (n.c12 * c + n.g * d),
             0.0f - (n.c12 * d + n.g * c));
-  if (m.limit.is_set()) add_limit<W>(m, triangle, f, a, b, c, d, block);
+  if (m.stiffening.is_set()) add_stiffening<W>(m, triangle, f, a, b, c, d, block);
 }
 
 template <int W>

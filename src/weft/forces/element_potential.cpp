@@ -66,7 +66,7 @@ void ElementPotential::fit_grid(const ClothModel& model) {
       }
     }
   }
-  fit_limit(2 * kernels::kTangentSize * plane + kPackLanes, rows_.num_rows);
+  fit_stiffening(2 * kernels::kTangentSize * plane + kPackLanes, rows_.num_rows);
   past_.assign(6 * plane + kPackLanes, 0.0f);
   stress_.assign(6 * plane + kPackLanes, 0.0f);
   slope_.assign(4 * plane + kPackLanes, 0.0f);
@@ -78,7 +78,7 @@ void ElementPotential::fit_grid(const ClothModel& model) {
 void ElementPotential::fit_mesh(const ClothModel& model) {
   tables_ = build_element_tables(*elements_, model.num_particles());
   const std::size_t triangles = static_cast<std::size_t>(tables_.num_triangle_slices()) * kPackLanes;
-  fit_limit(kernels::kTangentSize * triangles, tables_.num_triangle_slices());
+  fit_stiffening(kernels::kTangentSize * triangles, tables_.num_triangle_slices());
   past_.assign(3 * triangles, 0.0f);
   stress_.assign(MeshElements::kFrameSize * triangles, 0.0f);
   hessian_.assign(static_cast<std::size_t>(tables_.num_entry_rows()) * kernels::kBlockSize * kPackLanes,
@@ -86,11 +86,11 @@ void ElementPotential::fit_mesh(const ClothModel& model) {
   parts_.assign(tables_.num_triangle_slices() + tables_.num_slices(), 0.0);
 }
 
-void ElementPotential::fit_limit(std::size_t num_tangents, std::size_t num_peaks) {
-  tangent_.assign(has_limit() ? num_tangents : 0, 0.0f);
-  peak_.assign(has_limit() ? num_peaks : 0, 0.0f);
-  limit_couplings_.clear();
-  if (!has_limit()) return;
+void ElementPotential::fit_stiffening(std::size_t num_tangents, std::size_t num_peaks) {
+  tangent_.assign(stiffens() ? num_tangents : 0, 0.0f);
+  peak_.assign(stiffens() ? num_peaks : 0, 0.0f);
+  triangle_couplings_.clear();
+  if (!stiffens()) return;
   std::map<std::pair<int, int>, int> index;
   for (const Coupling& c : elements_->couplings)
     index.emplace(std::pair(c.i, c.j), static_cast<int>(index.size()));
@@ -100,7 +100,7 @@ void ElementPotential::fit_limit(std::size_t num_tangents, std::size_t num_peaks
       const int b = (a + 1) % 3;
       const auto found = index.find(std::minmax(vertices[a], vertices[b]));
       if (found == index.end()) continue;
-      limit_couplings_.push_back({found->second, t, -rest.area * rest.gradient[a].dot(rest.gradient[b])});
+      triangle_couplings_.push_back({found->second, t, -rest.area * rest.gradient[a].dot(rest.gradient[b])});
     }
   }
 }
@@ -110,7 +110,7 @@ double ElementPotential::peak_strain() const {
 }
 
 /// Half the trace of a triangle's tangent for stretching, as (C11 + C22)/2 [N/m].
-double ElementPotential::limit_rate(int triangle) const {
+double ElementPotential::stiffening_rate(int triangle) const {
   constexpr int kD11 = 0, kD22 = 3;
   std::ptrdiff_t first = 0, pitch = kPackLanes;
   if (is_grid_) {
@@ -126,19 +126,33 @@ double ElementPotential::limit_rate(int triangle) const {
   return 0.5 * (static_cast<double>(tangent_[first + kD11 * pitch]) + tangent_[first + kD22 * pitch]);
 }
 
-bool ElementPotential::compute_limit_couplings(std::vector<double>& added) const {
+bool ElementPotential::compute_stiffer_couplings(std::vector<double>& added) const {
   added.assign(elements_->couplings.size(), 0.0);
-  if (peak_strain() <= elements_->limit.begin) return false;
-  for (const LimitCoupling& c : limit_couplings_) added[c.coupling] += c.share * limit_rate(c.triangle);
+  if (!elements_->has_curves() && peak_strain() <= elements_->limit.begin) return false;
+  for (const TriangleCoupling& c : triangle_couplings_)
+    added[c.coupling] += c.share * stiffening_rate(c.triangle);
   for (double& stiffness : added) stiffness = std::max(stiffness, 0.0);
-  return true;
+  return std::any_of(added.begin(), added.end(), [](double stiffness) { return stiffness > 0; });
 }
 
-/// In floats.
-static kernels::LimitNumbers numbers_of(const StrainLimit& limit) {
-  if (limit.stiffness == 0) return {};
-  return {static_cast<float>(limit.begin), static_cast<float>(limit.full - limit.begin),
-          static_cast<float>(limit.stiffness)};
+static kernels::CurveNumbers numbers_of(const std::vector<StretchKink>& kinks) {
+  kernels::CurveNumbers curve;
+  for (const StretchKink& kink : kinks) {
+    curve.strain[curve.count] = static_cast<float>(kink.strain);
+    curve.slope[curve.count++] = static_cast<float>(kink.slope);
+  }
+  return curve;
+}
+
+static kernels::StiffeningNumbers stiffening_of(const StrainLimit& limit,
+                                                const std::vector<StretchKink>& along_1,
+                                                const std::vector<StretchKink>& along_2) {
+  kernels::StiffeningNumbers numbers{.along_1 = numbers_of(along_1), .along_2 = numbers_of(along_2)};
+  if (limit.stiffness == 0) return numbers;
+  numbers.begin = static_cast<float>(limit.begin);
+  numbers.width = static_cast<float>(limit.full - limit.begin);
+  numbers.stiffness = static_cast<float>(limit.stiffness);
+  return numbers;
 }
 
 GridElements ElementPotential::grid_view() {
@@ -155,7 +169,9 @@ GridElements ElementPotential::grid_view() {
           .membrane = {stiffening * along_x, stiffening * along_z, stiffening * static_cast<float>(c(0, 1)),
                        stiffening * static_cast<float>(c(2, 2))},
           .damping = damping_,
-          .limit = numbers_of(elements_->limit),
+          .stiffening =
+              stiffening_of(elements_->limit, is_along_x ? elements_->stretch_warp : elements_->stretch_weft,
+                            is_along_x ? elements_->stretch_weft : elements_->stretch_warp),
           .tangent = tangent_.data(),
           .peak = peak_.data(),
           .bending = bending_.data(),
@@ -172,7 +188,7 @@ MeshElements ElementPotential::mesh_view() {
           .membrane = {stiffening * static_cast<float>(c(0, 0)), stiffening * static_cast<float>(c(1, 1)),
                        stiffening * static_cast<float>(c(0, 1)), stiffening * static_cast<float>(c(2, 2))},
           .damping = damping_,
-          .limit = numbers_of(elements_->limit),
+          .stiffening = stiffening_of(elements_->limit, elements_->stretch_warp, elements_->stretch_weft),
           .tangent = tangent_.data(),
           .peak = peak_.data(),
           .corner = tables_.corner.data(),

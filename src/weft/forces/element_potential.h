@@ -19,6 +19,7 @@
 #include <memory>
 #include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
@@ -33,7 +34,7 @@ struct MeshElements;
 }  // namespace kernels
 
 /// What a triangle's stiffness gives to a coupling: `share` of it.
-struct LimitCoupling {
+struct TriangleCoupling {
   int coupling = 0, triangle = 0;
   double share = 0;  // cotangent weight [1]
 };
@@ -47,13 +48,14 @@ class ElementPotential {
   bool empty() const { return elements_ == nullptr; }
   bool is_damped() const { return damping_ > 0; }
   bool has_limit() const { return elements_ != nullptr && elements_->limit.stiffness > 0; }
+  bool stiffens() const { return has_limit() || (elements_ != nullptr && elements_->has_curves()); }
 
   /// The largest principal stretch less one, where energy() or linearise() were last; with a limit only [1].
   double peak_strain() const;
 
-  /// What the limit adds to the stiffness of each of the elements' couplings, at the place of linearise(), as
-  /// C does to theirs; all zero, and false returned, where no stretch comes near the limit [N/m].
-  bool compute_limit_couplings(std::vector<double>& added) const;
+  /// What limit and curves add to the stiffness of each of the elements' couplings, at the place of
+  /// linearise(), as C does to theirs; false: nothing [N/m].
+  bool compute_stiffer_couplings(std::vector<double>& added) const;
 
   /// Takes the strains e₀ and e₋₁ before the step and the one before it; δe = e − e₀ − memory (e₀ − e₋₁).
   /// Positions are laid out by the rows. To be called before a damped step.
@@ -80,18 +82,18 @@ class ElementPotential {
   std::shared_ptr<const ClothTopology> topology_;
   PaddedRows rows_;
   bool is_grid_ = true;
-  void fit_limit(std::size_t num_tangents, std::size_t num_peaks);
-  double limit_rate(int triangle) const;
+  void fit_stiffening(std::size_t num_tangents, std::size_t num_peaks);
+  double stiffening_rate(int triangle) const;
 
-  float damping_ = 0;           // η
-  std::vector<float> bending_;  // on a grid, couplings of each family [N/m]
-  ElementTables tables_;        // on a mesh
-  std::vector<float> past_;     // η/(1 + η) times the strain without δe: e*
-  std::vector<float> stress_;   // on a grid; on a mesh frames too
-  std::vector<float> slope_;
-  std::vector<float> tangent_, peak_;  // of the limit
-  std::vector<LimitCoupling> limit_couplings_;
-  std::vector<float> hessian_;
+  float damping_ = 0;      // η
+  AlignedFloats bending_;  // on a grid, couplings of each family [N/m]
+  ElementTables tables_;   // on a mesh
+  AlignedFloats past_;     // η/(1 + η) times the strain without δe: e*
+  AlignedFloats stress_;   // on a grid; on a mesh frames too
+  AlignedFloats slope_;
+  AlignedFloats tangent_, peak_;  // of stiffening
+  std::vector<TriangleCoupling> triangle_couplings_;
+  AlignedFloats hessian_;
   Vec3Array bent_;             // x + η z
   std::vector<double> parts_;  // sums of rows or slices
 };

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/pack.h"
 #include "weft/model/cloth_model.h"
 
@@ -11,11 +12,11 @@ namespace weft {
 
 struct ElementTables {
   std::vector<int> corner;
-  std::vector<float> shape;
+  AlignedFloats shape;
   std::vector<int> slice_begin, neighbour, triangle;
-  std::vector<float> entry;
+  AlignedFloats entry;
   std::vector<int> far_begin, far_neighbour;
-  std::vector<float> far_bending;
+  AlignedFloats far_bending;
 
   int num_triangle_slices() const { return static_cast<int>(corner.size()) / (3 * kPackLanes); }
   int num_slices() const { return slice_begin.empty() ? 0 : static_cast<int>(slice_begin.size()) - 1; }

@@ -24,12 +24,18 @@ void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
   damping_ = static_cast<float>(model.material.damping * damping_rate);
   damping_time_ = static_cast<float>(model.material.damping_time * damping_rate);
   is_projected_ = model.material.damping_kind == DampingKind::projected;
-  if (model.id == model_id_) return elements_.fit(model, rows_, damping_rate);
+  if (model.id != model_id_) lay_out(model);
+  elements_.fit(model, rows_, damping_rate);
+  if (is_damped() && lag.size() == 0) lag = damped_ = Vec3Array(rows_.size());
+}
+
+void IncrementalPotential::lay_out(const ClothModel& model) {
   if (model.topology != topology_) {
     topology_ = model.topology;
     rows_ = padded_rows_of(*topology_);
     weight.assign(rows_.size(), 0.0f);
-    for (Vec3Array* field : {&target, &lag, &x_, &damped_}) *field = Vec3Array(rows_.size());
+    for (Vec3Array* field : {&target, &x_}) *field = Vec3Array(rows_.size());
+    lag = damped_ = Vec3Array();
     hessian_.clear();
     slope_.clear();
   }
@@ -41,7 +47,6 @@ void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
   } else {
     fit_mesh(model);
   }
-  elements_.fit(model, rows_, damping_rate);
 }
 
 void IncrementalPotential::fit_grid(const ClothModel& model) {

@@ -18,6 +18,7 @@
 #include <memory>
 #include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
@@ -63,6 +64,7 @@ class IncrementalPotential {
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
 
  private:
+  void lay_out(const ClothModel& model);
   void fit_grid(const ClothModel& model);
   void spread_grid_stiffness(const ClothModel& model);
   void fit_mesh(const ClothModel& model);
@@ -86,12 +88,12 @@ class IncrementalPotential {
   float damping_time_ = 0;             // c of a spring, over its stiffness, besides [1]
   bool is_projected_ = true;
 
-  std::vector<float> hessian_;  // t, wx, wy, wz of each spring
-  std::vector<float> slope_;    // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
-  Vec3Array x_;                 // y + e
-  Vec3Array damped_;            // z
-  std::vector<double> parts_;   // sums of rows or slices
-  NeighbourTable no_springs_;   // on a mesh whose springs have no stiffness
+  AlignedFloats hessian_;      // t, wx, wy, wz of each spring
+  AlignedFloats slope_;        // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
+  Vec3Array x_;                // y + e
+  Vec3Array damped_;           // z
+  std::vector<double> parts_;  // sums of rows or slices
+  NeighbourTable no_springs_;  // on a mesh whose springs have no stiffness
   bool has_springs_ = true;
   bool has_soft_border_ = false;  // on a grid
   ElementPotential elements_;

@@ -50,7 +50,6 @@ class NewtonIntegrator final : public Integrator {
     fit(model, environment.pins);
     contacts_.begin(environment.contacts, model, environment.pins, step, step * step * environment.gravity);
     if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
-    if (scratch_.x.size() != state.x.size()) scratch_ = state;
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
     model_ = &model;
     prepare_matrices(model, environment.wind, scheme, jobs);
@@ -155,7 +154,7 @@ class NewtonIntegrator final : public Integrator {
     key_ = key;
     set_weights(model, wind, 1 / scheme.step);
     least_weight_ = potential_.weight;
-    has_limit_couplings_ = false;
+    has_stiffer_couplings_ = false;
     if (!same_springs) {
       preconditioner_.set_springs(model, rows_, scheme.step, potential_.weight, pinned_);
       has_stiff_springs_ = false;
@@ -229,7 +228,7 @@ class NewtonIntegrator final : public Integrator {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     int more = 1;  // times as many iterations, where the guard asks for another Newton step
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
-      const double before = linearise(jobs);
+      const double before = linearise(report.iterations == 0, jobs);
       if (is_in_contact_) asked = std::max(asked, kNewtonStepsInContact);
       const CgReport linear = solve(effort, more, jobs);
       *report.linear_iterations += linear.iterations;
@@ -258,34 +257,35 @@ class NewtonIntegrator final : public Integrator {
   }
 
   /// The potential with its force and Hessian, and the preconditioner that goes with it.
-  double linearise(JobSystem& jobs) {
+  double linearise(bool is_first, JobSystem& jobs) {
     double energy = potential_.linearise(correction_, jobs, force_);
     energy += contacts_.linearise(positions(correction_), force_);
     energy += air_.linearise(rows_, correction_, force_);
-    update_limit_couplings(jobs);
+    update_stiffer_couplings(is_first, jobs);
     update_for_contacts(jobs);
     set_at_pins(Vec3::Zero(), force_);
     return energy;
   }
 
-  /// Where the strain limit pulls, the preconditioner is as stiff as it.
-  void update_limit_couplings(JobSystem& jobs) {
-    if (!potential_.elements().has_limit()) return;
-    const bool any = potential_.elements().compute_limit_couplings(limit_couplings_);
-    if (!any && !has_limit_couplings_) return;
-    if (has_limit_couplings_ && any && !has_changed_much()) return;
-    built_limit_ = limit_couplings_;
-    preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_, limit_couplings_);
+  /// Where strain limit or stretch curves make cloth stiffer, so they make the preconditioner. At the first
+  /// linearisation of a step always: what it was made for in the step before must not show in the result.
+  void update_stiffer_couplings(bool is_first, JobSystem& jobs) {
+    if (!potential_.elements().stiffens()) return;
+    const bool any = potential_.elements().compute_stiffer_couplings(stiffer_couplings_);
+    if (!any && !has_stiffer_couplings_) return;
+    if (has_stiffer_couplings_ && any && !is_first && !has_changed_much()) return;
+    built_stiffer_ = stiffer_couplings_;
+    preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_, stiffer_couplings_);
     preconditioner_.set_diagonal(potential_.weight, jobs);
-    has_limit_couplings_ = any;
+    has_stiffer_couplings_ = any;
     has_stiff_springs_ = false;
   }
 
   /// Whether some coupling is several times as stiff as the preconditioner's, or the other way round.
   bool has_changed_much() const {
-    for (std::size_t k = 0; k < limit_couplings_.size(); ++k) {
+    for (std::size_t k = 0; k < stiffer_couplings_.size(); ++k) {
       const double own = model_->elements->couplings[k].stiffness;
-      const double is = own + limit_couplings_[k], was = own + built_limit_[k];
+      const double is = own + stiffer_couplings_[k], was = own + built_stiffer_[k];
       if (is > kMuchStiffer * was || was > kMuchStiffer * is) return true;
     }
     return false;
@@ -314,7 +314,7 @@ class NewtonIntegrator final : public Integrator {
     if (!is_in_contact_) return;
     if (!has_stiff_springs_)
       stiff_preconditioner_.set_springs(*model_, rows_, key_.step, least_weight_, pinned_,
-                                        has_limit_couplings_ ? built_limit_ : std::vector<double>());
+                                        has_stiffer_couplings_ ? built_stiffer_ : std::vector<double>());
     has_stiff_springs_ = true;
     stiff_preconditioner_.set_diagonal(stiff_diagonal_, jobs);
   }
@@ -395,11 +395,12 @@ class NewtonIntegrator final : public Integrator {
   AirTerms air_;
   bool coasts_ = false;  // the step started from x + h v
   bool is_in_contact_ = false;
-  std::vector<float> diagonal_, stiff_diagonal_;       // of the preconditioners [N/m]
-  const ClothModel* model_ = nullptr;                  // of the step being taken
-  std::vector<float> least_weight_;                    // D for the longest memory [N/m]
-  std::vector<double> limit_couplings_, built_limit_;  // as they should be, as the preconditioner has them
-  bool has_limit_couplings_ = false;                   // in the preconditioner
+  std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
+  const ClothModel* model_ = nullptr;             // of the step being taken
+  std::vector<float> least_weight_;               // D for the longest memory [N/m]
+  std::vector<double> stiffer_couplings_,
+      built_stiffer_;                   // as they should be, as the preconditioner has them
+  bool has_stiffer_couplings_ = false;  // in the preconditioner
   PinMotion pin_motion_;
   double noise_ = 0;  // of energies, from the rounding of positions [J]
   Vec3Array force_, direction_, trial_;

@@ -151,9 +151,9 @@ void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double st
     if (spring.kind == SpringKind::bend) continue;
     const bool is_structural = spring.kind == SpringKind::structural;
     const int offset = spring.j - spring.i;
-    std::vector<float>& across = is_structural ? level.right : level.down_right;
-    std::vector<float>& down = is_structural ? level.down : level.down_left;
-    std::vector<float>& family = offset == (is_structural ? 1 : columns + 1) ? across : down;
+    AlignedFloats& across = is_structural ? level.right : level.down_right;
+    AlignedFloats& down = is_structural ? level.down : level.down_left;
+    AlignedFloats& family = offset == (is_structural ? 1 : columns + 1) ? across : down;
     const bool is_along_z = is_structural && offset == columns;
     const double was = is_along_z ? m.structural_z.value_or(m.structural) : model.stiffness(spring.kind);
     const double more = model.stiffness(static_cast<int>(s)) - was;
@@ -167,11 +167,11 @@ void ScalarPreconditioner::fill_grid_by_elements(const ClothElements& elements, 
   const std::vector<double> stiffness = coupling_stiffness(elements, step, added);
   const int columns = level.rows.row_length;
   level.has_down_left = false;
-  for (std::vector<float>* family : {&level.right, &level.down, &level.down_right, &level.down_left})
+  for (AlignedFloats* family : {&level.right, &level.down, &level.down_right, &level.down_left})
     std::fill(family->begin(), family->end(), 0.0f);
   for (std::size_t k = 0; k < stiffness.size(); ++k) {
     const Coupling& c = elements.couplings[k];
-    std::vector<float>& family = c.j == c.i + 1 ? level.right : level.down;
+    AlignedFloats& family = c.j == c.i + 1 ? level.right : level.down;
     if (c.j == c.i + 1 || c.j == c.i + columns)
       family[level.rows.index(c.i)] = static_cast<float>(stiffness[k]);
   }

@@ -36,6 +36,8 @@ ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, con
   elements.stiffness = membrane_stiffness(fabric);
   elements.membranes = build_membranes(mesh, warp);
   elements.limit = find_limit(elements.membranes, fabric);
+  elements.stretch_warp = make_stretch_kinks(fabric.stretch_warp, fabric.c11);
+  elements.stretch_weft = make_stretch_kinks(fabric.stretch_weft, fabric.c22);
   elements.damping = fabric.damping;
   elements.couplings = find_couplings(elements);
   if (bending == BendingModel::hinges) elements.hinges = build_hinges(mesh, warp, fabric);

@@ -17,18 +17,20 @@ struct Coupling {
 };
 
 struct ClothElements {
-  Mat3 stiffness = Mat3::Zero();           // of every membrane [N/m]
-  StrainLimit limit;                       // of every membrane
-  std::vector<MembraneElement> membranes;  // one per triangle
-  BendingRows bending;                     // curvature stencils; none if there are hinges
-  std::vector<HingeElement> hinges;        // flat at rest; none if there are stencils
-  double damping = 0;                      // time constant τ of all of them [s]
-  std::optional<GridWarp> grid_warp;       // set: the triangles are a grid's, with warp along one of its axes
+  Mat3 stiffness = Mat3::Zero();                        // of every membrane [N/m]
+  StrainLimit limit;                                    // of every membrane
+  std::vector<StretchKink> stretch_warp, stretch_weft;  // likewise
+  std::vector<MembraneElement> membranes;               // one per triangle
+  BendingRows bending;                                  // curvature stencils; none if there are hinges
+  std::vector<HingeElement> hinges;                     // flat at rest; none if there are stencils
+  double damping = 0;                                   // time constant τ of all of them [s]
+  std::optional<GridWarp> grid_warp;  // set: the triangles are a grid's, with warp along one of its axes
   /// The membranes' Hessian at rest, roughly, as the paper's constant matrix (Eq. 11) is for springs: the
   /// positive cotangent weights times (C11 + C22)/2, by ascending i and j.
   std::vector<Coupling> couplings;
 
-  MembraneLaw law() const { return {stiffness, limit}; }
+  MembraneLaw law() const { return {stiffness, limit, stretch_warp, stretch_weft}; }
+  bool has_curves() const { return !stretch_warp.empty() || !stretch_weft.empty(); }
 };
 
 enum class BendingModel {

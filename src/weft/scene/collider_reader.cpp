@@ -151,12 +151,18 @@ std::vector<KeyFrame> read_motion(TomlTable& owner) {
   return frames;
 }
 
+void read_static_friction(TomlTable& table, double friction, double& static_friction) {
+  if (table.read("static_friction", static_friction, not_negative()) && static_friction < friction)
+    table.get("static_friction").mistake("must not be below friction, " + std::to_string(friction));
+}
+
 ColliderSceneDesc read_collider(TomlTable table, int number, const std::filesystem::path& folder) {
   ColliderSceneDesc collider;
   collider.name = number == 1 ? "collider" : "collider " + std::to_string(number);
   collider.shape = read_shape(table, folder);
   table.read("name", collider.name);
   table.read("friction", collider.friction, not_negative());
+  read_static_friction(table, collider.friction, collider.static_friction);
   collider.motion = RigidMotion(read_motion(table));
   return collider;
 }

@@ -1,7 +1,9 @@
 #include "weft/scene/fabric_reader.h"
 
+#include <array>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <system_error>
 
 #include "weft/core/error.h"
@@ -26,6 +28,18 @@ FabricSources make_sources(const TomlTable& table, const fs::path& file) {
 
 [[noreturn]] void fail(const fs::path& file, const std::string& message) {
   throw SceneError({{file.generic_string(), 0, 0, message}});
+}
+
+/// Points of a stretch curve.
+void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& curve) {
+  constexpr std::string_view kForm = "points of strain and tension in N/m, as in [[0.01, 20], [0.02, 60]]";
+  const TomlValue value = table.get(key);
+  if (!value) return;
+  for (const TomlValue& point : value.elements(kForm)) {
+    std::array<double, 2> numbers = {};
+    if (point.read(std::span<double>(numbers), above_zero(), "[0.01, 20]"))
+      curve.push_back({numbers[0], numbers[1]});
+  }
 }
 
 /// Mistakes that only all numbers together show, each at the number that is named. A number that could not be
@@ -56,6 +70,8 @@ Fabric read_fabric_numbers(TomlTable& table, bool needs_all) {
   table.read("thickness", f.thickness, above_zero("m"));
   table.read("friction", f.friction, not_negative());
   table.read("strain_limit", f.strain_limit, not_negative());
+  read_curve(table, "stretch_warp", f.stretch_warp);
+  read_curve(table, "stretch_weft", f.stretch_weft);
   judge_together(table, f);
   return f;
 }

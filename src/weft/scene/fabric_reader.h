@@ -13,7 +13,8 @@
 ///     thickness = 0.0008     # may be left out [m]
 ///     friction  = 0.5        # of the fabric on itself, may be left out [1]
 ///
-/// `strain_limit` may be given as well. What each number does is said at Fabric, where the defaults are too.
+/// `strain_limit` and the curves `stretch_warp` and `stretch_weft` ([[strain, tension], …]) may be given as
+/// well. What each number does is said at Fabric, where the defaults are too.
 
 #include <filesystem>
 #include <string>

@@ -64,6 +64,7 @@ struct ColliderSceneDesc {
   std::string name;  // default: "collider", "collider 2", …
   std::variant<Sphere, Plane, Capsule, OrientedBox, PlacedMesh> shape;
   double friction = Collider().friction;  // Coulomb's coefficient, >= 0 [1]
+  double static_friction = 0;             // while nothing slides; less than `friction`: the same [1]
   RigidMotion motion;
 };
 
@@ -101,6 +102,7 @@ struct ClothSceneDesc {
 struct ContactDesc {
   std::array<std::string, 2> between;  // cloths and colliders, one cloth at least; a cloth twice: with itself
   std::optional<double> friction;      // Coulomb's coefficient, >= 0 [1]
+  double static_friction = 0;          // while nothing slides; only with `friction` [1]
   bool collide = true;                 // false: they go through each other
 };
 

@@ -144,7 +144,8 @@ Collider make_collider(const ColliderSceneDesc& desc, std::vector<std::string>& 
   return {.name = desc.name,
           .shape = std::visit(ShapeMaker{owner, warnings}, desc.shape),
           .friction = desc.friction,
-          .motion = desc.motion};
+          .motion = desc.motion,
+          .static_friction = desc.static_friction};
 }
 
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points) {

@@ -117,6 +117,9 @@ ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
   table.read("collide", contact.collide);
   const TomlValue friction = table.get("friction");
   if (double number = 0; friction && friction.read(number, not_negative())) contact.friction = number;
+  read_static_friction(table, contact.friction.value_or(0), contact.static_friction);
+  if (contact.static_friction > 0 && !friction)
+    table.get("static_friction").mistake("only together with friction");
   const TomlValue between = table.get("between");
   if (!between) return contact;
   const std::vector<TomlValue> names = between.elements(kForm);

@@ -22,6 +22,9 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFi
 /// Where a cloth's springs are stiffer or softer; `shape` as for pins.
 std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
 
+/// The key "static_friction": not less than `friction`.
+void read_static_friction(TomlTable& table, double friction, double& static_friction);
+
 /// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 

@@ -285,9 +285,10 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
                                         .velocity = desc.velocity});
     world.set_pins(id, make_pins(desc, loaded, positions));
   }
-  for (const auto& [between, friction, collide] : scene.contacts) {
-    if (friction) world.set_friction(between[0], between[1], *friction);
-    world.set_collision(between[0], between[1], collide);
+  for (const ContactDesc& rule : scene.contacts) {
+    const auto& [a, b] = rule.between;
+    if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction);
+    world.set_collision(a, b, rule.collide);
   }
   scene.untangle ? untangle(world, result.warnings) : warn_about_start(world, result.warnings);
   return result;

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/job_system.h"
 #include "weft/core/vec3_array.h"
 #include "weft/solvers/sparse_matrix.h"
@@ -21,7 +22,7 @@ namespace weft {
 struct SlicedMatrix {
   std::vector<int> slice_begin;  // (num_slices + 1) first entry row of each slice
   std::vector<int> column;       // (num_entry_rows · 16), 0 where unused
-  std::vector<float> value;      // likewise, 0 where unused
+  AlignedFloats value;      // likewise, 0 where unused
 
   int num_slices() const { return slice_begin.empty() ? 0 : static_cast<int>(slice_begin.size()) - 1; }
 };
@@ -51,7 +52,7 @@ class AggregationMultigrid {
     SparseMatrix spread;                // `restriction`, for add_excess()
     double largest_eigenvalue = 1;      // of D⁻¹A
     std::vector<double> built_diagonal;
-    std::vector<float> diagonal, inverse;  // Jacobi's weight / diagonal, 0 where that is 0
+    AlignedFloats diagonal, inverse;  // Jacobi's weight / diagonal, 0 where that is 0
     Vec3Array right_side, value, residual, smoothed;
   };
 

@@ -33,6 +33,7 @@ void GridMultigrid::resize(const PaddedRows& rows) {
   if (!levels_.empty() && levels_.front().rows == rows) return;
   levels_.clear();
   levels_.emplace_back(rows);
+  levels_.front().right_side = levels_.front().smoothed = Vec3Array();  // those of whoever calls apply()
   narrowed_.clear();
   while (levels_.back().rows.num_particles() > kCoarsest) {
     const PaddedRows fine = levels_.back().rows;

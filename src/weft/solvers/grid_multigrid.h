@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "weft/core/aligned.h"
 #include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
@@ -25,9 +26,9 @@ static_assert(coarse_length(1) == 1 && coarse_length(5) == 3 && coarse_length(6)
 /// A matrix, laid out by `rows`, with zeros where no particle is.
 struct GridMatrix {
   PaddedRows rows;
-  std::vector<float> right, down, down_right, down_left;  // c_ij with the neighbour on that side [N/m]
-  std::vector<float> excess;                              // [N/m]; particles without any entry stay at zero
-  std::vector<float> diagonal;                            // excess + Σ c [N/m]
+  AlignedFloats right, down, down_right, down_left;  // c_ij with the neighbour on that side [N/m]
+  AlignedFloats excess;                              // [N/m]; particles without any entry stay at zero
+  AlignedFloats diagonal;                            // excess + Σ c [N/m]
 
   explicit GridMatrix(const PaddedRows& rows);
 };
@@ -35,7 +36,7 @@ struct GridMatrix {
 /// One grid of the hierarchy.
 struct GridLevel : GridMatrix {
   bool has_down_left = true;   // false: `down_left` is zero everywhere
-  std::vector<float> inverse;  // Jacobi's weight / diagonal, 0 where that is 0 [m/N]
+  AlignedFloats inverse;  // Jacobi's weight / diagonal, 0 where that is 0 [m/N]
   Vec3Array right_side, value, smoothed;
 
   explicit GridLevel(const PaddedRows& rows);

@@ -24,8 +24,9 @@ double compute_elastic_energy(const ClothElements& elements, const ClothState& s
   std::vector<Vec3> x;
   for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.x.get(i));
   double energy = bending_energy(elements.bending, x);
+  const MembraneLaw law = elements.law();
   for (const auto& [v, rest] : elements.membranes)
-    energy += membrane_energy(rest, elements.law(), {x[v[0]], x[v[1]], x[v[2]]});
+    energy += membrane_energy(rest, law, {x[v[0]], x[v[1]], x[v[2]]});
   for (const HingeElement& h : elements.hinges) {
     const auto& v = h.vertices;
     energy += hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]});

@@ -183,13 +183,17 @@ ContactRule& World::rule_for(const std::string& a, const std::string& b) {
   };
   const auto known = std::find_if(rules_.begin(), rules_.end(), is_theirs);
   if (known != rules_.end()) return *known;
-  return rules_.emplace_back(ContactRule{cloth.cloth, other.cloth, other.collider, {}, true});
+  return rules_.emplace_back(ContactRule{cloth.cloth, other.cloth, other.collider, {}, {}, true});
 }
 
-void World::set_friction(const std::string& a, const std::string& b, double friction) {
-  require(std::isfinite(friction) && friction >= 0,
-          "the friction of \"" + a + "\" and \"" + b + "\" must be 0 or more");
-  rule_for(a, b).friction = friction;
+void World::set_friction(const std::string& a, const std::string& b, double friction,
+                         double static_friction) {
+  for (const double number : {friction, static_friction})
+    require(std::isfinite(number) && number >= 0,
+            "the friction of \"" + a + "\" and \"" + b + "\" must be 0 or more");
+  ContactRule& rule = rule_for(a, b);
+  rule.friction = friction;
+  rule.static_friction = static_friction;
 }
 
 void World::set_collision(const std::string& a, const std::string& b, bool collide) {

@@ -86,9 +86,10 @@ class World {
   /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
   void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
-  /// Coulomb's coefficient of two things by their names, of which one at least is a cloth (a cloth twice: with
-  /// itself), in place of what they say themselves. Throws InputError for unknown names and below 0.
-  void set_friction(const std::string& a, const std::string& b, double friction);
+  /// Coulomb's coefficient of two things by their names, of which one at least is a cloth (a cloth twice:
+  /// with itself), in place of what they say themselves; and the one that holds while they do not slide
+  /// (slower than 1 cm/s), if that is more. Throws InputError for unknown names and below 0.
+  void set_friction(const std::string& a, const std::string& b, double friction, double static_friction = 0);
   /// Whether two things, named as above, collide or go through each other.
   void set_collision(const std::string& a, const std::string& b, bool collide);
   void track_contacts(bool enabled) {

@@ -1,0 +1,28 @@
+#pragma once
+/// Arrays whose first element begins a line of the cache: a full vector register read from such a place
+/// touches one line, from anywhere else two.
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace weft {
+
+template <class T>
+struct AlignedAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};  // bytes
+
+  AlignedAllocator() = default;
+  template <class U>
+  AlignedAllocator(const AlignedAllocator<U>&) {}
+
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+
+  bool operator==(const AlignedAllocator&) const = default;
+};
+
+using AlignedFloats = std::vector<float, AlignedAllocator<float>>;
+
+}  // namespace weft
