@@ -2,13 +2,14 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help demo test scenes pictures study docs build asan tsan fuzz format clean
+.PHONY: help demo test scenes pictures videos study docs build asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
 	@echo "make test    install what is missing, build, run all tests"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
+	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
 	@echo "make study   every claim tested: docs/study.md anew (most of an hour)"
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
@@ -32,6 +33,9 @@ scenes: build
 
 pictures: build
 	@tools/make_pictures.sh build/release/bin/weft docs/images
+
+videos: build
+	@tools/make_videos.sh build/release/bin/weft out/videos
 
 study: build
 	@tools/make_study.sh build/release/bin/weft docs
