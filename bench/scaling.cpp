@@ -53,6 +53,60 @@ Cost measure(int size, const ScalingBenchOptions& options) {
   return cost;
 }
 
+/// Where a sheet is, frame by frame of a second.
+struct Motion {
+  int size = 0;                           // particles per side
+  std::vector<std::vector<Vec3>> frames;  // (size², row by row) [m]
+
+  /// At the shares (u, v) of the sheet's width and length.
+  Vec3 at(std::size_t frame, double u, double v) const {
+    const double x = u * (size - 1), z = v * (size - 1);
+    const int i = std::min(static_cast<int>(x), size - 2), j = std::min(static_cast<int>(z), size - 2);
+    const auto particle = [&](int di, int dj) { return frames[frame][(j + dj) * size + i + di]; };
+    const double s = x - i, t = z - j;
+    return (1 - t) * ((1 - s) * particle(0, 0) + s * particle(1, 0)) +
+           t * ((1 - s) * particle(0, 1) + s * particle(1, 1));
+  }
+};
+
+Motion move(int size, const ScalingBenchOptions& options) {
+  HungCloth cloth = make_hung_sheet(size, options.model, {});
+  const auto integrator = make_newton({.iterations = options.iterations});
+  const auto jobs = make_jobs(options.threads.back());
+  Motion motion{size, {}};
+  for (int frame = 0; frame < 60; ++frame) {
+    integrator->advance(*cloth.model, cloth.environment, kReferenceFrame, *jobs, cloth.state);
+    motion.frames.push_back(positions_of(cloth.state));
+  }
+  return motion;
+}
+
+/// RMS over the coarser sheet's particles, mean over the frames [m].
+double distance(const Motion& coarse, const Motion& fine) {
+  double mean = 0;
+  for (std::size_t f = 0; f < coarse.frames.size(); ++f) {
+    double sum = 0;
+    for (int p = 0; p < coarse.size * coarse.size; ++p) {
+      const double u = p % coarse.size / (coarse.size - 1.0), v = p / coarse.size / (coarse.size - 1.0);
+      sum += (coarse.frames[f][p] - fine.at(f, u, v)).squaredNorm();
+    }
+    mean += std::sqrt(sum) / coarse.size / static_cast<double>(coarse.frames.size());
+  }
+  return mean;
+}
+
+void print_motion(const ScalingBenchOptions& options) {
+  Motion before;
+  for (const int size : options.sizes) {
+    Motion motion = move(size, options);
+    if (before.size > 0)
+      fmt::print("{}² moves {:.4f} m from {}² (RMS, mean over a second)\n", size, distance(before, motion),
+                 before.size);
+    std::fflush(stdout);
+    before = std::move(motion);
+  }
+}
+
 }  // namespace
 
 void bench_scaling(const ScalingBenchOptions& options) {
@@ -82,6 +136,7 @@ void bench_scaling(const ScalingBenchOptions& options) {
     fmt::print("{} thread{}: time grows like n^{:.2f}\n", options.threads[t],
                options.threads[t] > 1 ? "s" : "", fit_exponent(ms[t]));
   }
+  if (options.motion) print_motion(options);
 }
 
 }  // namespace weft::bench

@@ -169,6 +169,7 @@ void add_scaling(CLI::App& bench) {
   command->add_option("--steps", options->steps, "Per measurement")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
+  command->add_flag("--motion", options->motion, "Tell how far each size moves from the one before it");
   command->callback([options] { bench::bench_scaling(*options); });
 }
 

@@ -7,6 +7,7 @@
 
 #include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
+#include "weft/fabric/grid_springs.h"
 #include "weft/fabric/presets.h"
 #include "weft/forces/membrane.h"
 #include "weft/world/measures.h"
@@ -69,6 +70,65 @@ TEST(StrainLimit, HoldsWhileClothSwingsFromTwoCornersOnEveryMesh) {
   swing(*model, *make_newton({}), 20, 60,
         [&](const ClothState& state) { free = std::max(free, worst(*model, state)); });
   EXPECT_GT(free, 0.3) << "what the limit holds back";
+}
+
+/// A fabric whose membranes are a grid's springs.
+std::shared_ptr<const ClothModel> springs_on(const Grid& grid, double strain_limit) {
+  const Fabric fabric = {.density = 0.2,
+                         .c11 = 250,
+                         .c22 = 200,
+                         .c12 = 30,
+                         .g = 30,
+                         .bend_warp = 1e-5,
+                         .bend_weft = 1e-5,
+                         .bend_bias = 1e-5,
+                         .damping = 2e-3,
+                         .strain_limit = strain_limit,
+                         .stretch_warp = {},
+                         .stretch_weft = {}};
+  const GridSprings springs =
+      make_grid_springs(grid, CellDiagonals::alternating, GridWarp::first_axis, fabric, "test");
+  const ClothMaterial material{.density = fabric.density,
+                               .structural = springs.along_x,
+                               .shear = springs.diagonal,
+                               .bend = 0,
+                               .structural_z = springs.along_z,
+                               .damping_time = fabric.damping,
+                               .spring_factors = {}};
+  return build_cloth_model(build_grid_topology(grid, SpringModel::alternating), material,
+                           build_grid_bending_elements(grid, GridWarp::first_axis, fabric));
+}
+
+TEST(StrainLimit, HoldsForSpringsThatAreTheMembranes) {
+  for (const int cells : {10, 20, 40}) {
+    const auto model = springs_on(square(cells), kLimit);
+    double most = 0;
+    swing(*model, *make_newton({}), cells, 60,
+          [&](const ClothState& state) { most = std::max(most, compute_strain(*model, state).max); });
+    EXPECT_LT(most, kMost) << cells;
+    EXPECT_GT(most, 0.9 * kLimit) << "it does give in to as much";
+  }
+  const auto limited = springs_on(square(12), kLimit), free = springs_on(square(12), 0);
+  double with = 0, without = 0;
+  swing(*limited, *make_implicit_euler({}), 12, 45,
+        [&](const ClothState& state) { with = std::max(with, compute_strain(*limited, state).max); });
+  swing(*free, *make_newton({}), 12, 45,
+        [&](const ClothState& state) { without = std::max(without, compute_strain(*free, state).max); });
+  EXPECT_LT(with, kMost) << "implicit_euler";
+  EXPECT_GT(without, 0.05) << "what the limit holds back";
+}
+
+TEST(StrainLimit, OfSpringsIsTheSameInFloatsAndInDoubles) {
+  const auto model = springs_on(square(10), kLimit);
+  ClothState fast = make_state(model->topology->mesh.positions), exact = fast;
+  const Environment environment = hung_by(*model, {0, 10});
+  const auto in_doubles = make_integrator({.integrator = "newton", .is_double = true});
+  const auto in_floats = make_newton({.quality = NewtonQuality::high});
+  for (int frame = 0; frame < 20; ++frame) {
+    test::advance(*in_floats, *model, environment, 1.0 / 240, 4, fast);
+    test::advance(*in_doubles, *model, environment, 1.0 / 240, 4, exact);
+  }
+  EXPECT_LT(test::rms_distance(fast, exact), 2e-3);
 }
 
 TEST(StrainLimit, HoldsWithImplicitEuler) {

@@ -74,7 +74,7 @@ struct Fabric {
 
   /// Greatest stretch that the fabric gives in to in any direction, 0.01 for 1 %; 0: none. From 0.85 of it on
   /// a tension grows that stops at about 1.25 of it what no prescribed motion forces (membrane_law.h). Less:
-  /// less like rubber, and more work for the solver. `springs` do not have it [1].
+  /// less like rubber, and more work for the solver. `springs` hold to it along each spring [1].
   double strain_limit = 0;
 
   /// Measured curves along warp and weft, from the origin through these points, at most kMostStretchPoints,

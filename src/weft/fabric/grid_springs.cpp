@@ -29,9 +29,6 @@ GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWar
   const double cx = is_first ? fabric.c11 : fabric.c22, cz = is_first ? fabric.c22 : fabric.c11;
   const double dx = grid.spacing_x(), dz = grid.spacing_z();
   const double shear_x = fabric.g * (dx * dx) / (dz * dz), shear_z = fabric.g * (dz * dz) / (dx * dx);
-  if (fabric.strain_limit > 0)
-    throw InputError("fabric \"" + name +
-                     "\": springs have no strain_limit; use membrane = \"triangle\", or leave it out");
   require_stiffer(cx, shear_x, is_first ? "c11" : "c22", fabric, name);
   require_stiffer(cz, shear_z, is_first ? "c22" : "c11", fabric, name);
 

@@ -48,6 +48,7 @@ class ElementPotential {
   bool empty() const { return elements_ == nullptr; }
   bool is_damped() const { return damping_ > 0; }
   bool has_limit() const { return elements_ != nullptr && elements_->limit.stiffness > 0; }
+  const StrainLimit& limit() const { return elements_->limit; }
   bool stiffens() const { return has_limit() || (elements_ != nullptr && elements_->has_curves()); }
 
   /// The largest principal stretch less one, where energy() or linearise() were last; with a limit only [1].

@@ -1,5 +1,6 @@
 #include "weft/forces/potential.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -63,6 +64,8 @@ void IncrementalPotential::fit_grid(const ClothModel& model) {
     stiffness_[f] = static_cast<float>(stiffness[f]);
     rest_length_[f] = static_cast<float>(rest_length[f]);
   }
+  spring_limit_ = model.elements ? model.elements->spring_limit : StrainLimit();
+  peak_.assign(has_spring_limit() ? rows_.num_rows : 0, 0.0f);
   grid_stiffness_.clear();
   if (!model.has_equal_springs()) spread_grid_stiffness(model);
   if (!hessian_.empty()) return;
@@ -95,6 +98,25 @@ void IncrementalPotential::fit_mesh(const ClothModel& model) {
   hessian_.assign(4 * table.neighbour.size(), 0.0f);
   parts_.assign(table.num_slices(), 0.0);
   no_springs_.slice_begin.assign(table.slice_begin.size(), 0);
+}
+
+bool IncrementalPotential::compute_stiffening(std::vector<double>& added) const {
+  if (!has_spring_limit()) return elements_.compute_stiffer_couplings(added);
+  const std::vector<Spring>& springs = topology_->springs;
+  added.assign(springs.size(), 0.0);
+  if (*std::max_element(peak_.begin(), peak_.end()) <= spring_limit_.begin) return false;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const Spring& spring = springs[s];
+    if (spring.kind == SpringKind::bend) continue;
+    const double length = (x_.get(rows_.index(spring.j)) - x_.get(rows_.index(spring.i))).norm();
+    added[s] = limit_response(spring_limit_, length / spring.rest_length - 1).stiffness / spring.rest_length;
+  }
+  return true;
+}
+
+bool IncrementalPotential::is_beyond_limit() const {
+  if (has_spring_limit()) return *std::max_element(peak_.begin(), peak_.end()) > spring_limit_.allowed();
+  return elements_.has_limit() && elements_.peak_strain() > elements_.limit().allowed();
 }
 
 void IncrementalPotential::remember(const Vec3Array& x, const Vec3Array& displacement, double memory,
@@ -143,6 +165,10 @@ kernels::GridPotential IncrementalPotential::grid_view(const Vec3Array& e) {
           .own_stiffness = grid_stiffness_.empty() ? nullptr : grid_stiffness_.data(),
           .rest_length = rest_length_,
           .has_soft_border = has_soft_border_,
+          .limit = {static_cast<float>(spring_limit_.begin),
+                    static_cast<float>(spring_limit_.full - spring_limit_.begin),
+                    static_cast<float>(spring_limit_.stiffness)},
+          .peak = peak_.data(),
           .damping = damping_,
           .damping_time = damping_time_,
           .is_projected = is_projected_,

@@ -58,12 +58,22 @@ class IncrementalPotential {
   /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
   double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
 
-  const ElementPotential& elements() const { return elements_; }
+  /// Whether anything makes cloth stiffer than C or its springs are: a strain limit, stretch curves.
+  bool stiffens() const { return has_spring_limit() || elements_.stiffens(); }
+
+  /// By how much, at the place of linearise(), for each of the elements' couplings, or each spring where
+  /// springs are the membranes; false: for none [N/m].
+  bool compute_stiffening(std::vector<double>& added) const;
+
+  /// Whether a stretch is further beyond a strain limit than a solver may leave it, where energy() or
+  /// linearise() were last.
+  bool is_beyond_limit() const;
 
   /// q = A p with the Hessian A of linearise(), and p·q. p must be zero where no particle is.
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
 
  private:
+  bool has_spring_limit() const { return spring_limit_.stiffness > 0; }
   void lay_out(const ClothModel& model);
   void fit_grid(const ClothModel& model);
   void spread_grid_stiffness(const ClothModel& model);
@@ -90,6 +100,8 @@ class IncrementalPotential {
 
   AlignedFloats hessian_;      // t, wx, wy, wz of each spring
   AlignedFloats slope_;        // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
+  StrainLimit spring_limit_;   // on a grid
+  std::vector<float> peak_;    // with it: largest strain of each row's springs [1]
   Vec3Array x_;                // y + e
   Vec3Array damped_;           // z
   std::vector<double> parts_;  // sums of rows or slices

@@ -1,5 +1,7 @@
 /// The incremental potential on a grid: springs as stencils, family by family and row by row.
 
+#include <algorithm>
+
 #include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
@@ -27,9 +29,26 @@ WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std:
   return 0.5f + 0.5f * (count_below<W>(g.rows.row_length - 1, i) - count_below<W>(1, i));
 }
 
+/// What the strain limit adds to springs.
+template <int W>
+struct LimitPull {
+  Pack<W> energy, tension, stiffness;  // [J], [N], along the spring [N/m]
+};
+
+/// limit_response() of springs.
+template <int W>
+WEFT_ALWAYS_INLINE LimitPull<W> limit_pull(const SpringLimitNumbers& n, float rest_length, Pack<W> strain) {
+  const Pack<W> u = larger(strain - n.begin, broadcast<W>(0)), m = smaller(u, broadcast<W>(n.width)),
+                over = u - m;
+  const float k = n.stiffness, per_width = k / n.width;
+  return {rest_length * (per_width * m * m * m * (1.0f / 6) + over * (0.5f * k) * (m + over)),
+          0.5f * per_width * m * m + k * over, (1.0f / rest_length) * (per_width * m)};
+}
+
 /// The springs of one family that start in row j.
 template <int W, bool kStore, bool kDamped, bool kOwn>
-WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy) {
+WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy,
+                                   float& peak) {
   using V = Pack<W>;
   const FamilyOffset o = kFamilyOffsets[family];
   const int offset = o.rows * g.rows.stride() + o.columns, first = g.rows.row(j);
@@ -38,6 +57,7 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
   float* slope_out = g.slope + g.slope_row(j, family);
   const float* own = kOwn ? g.own_stiffness + g.slope_row(j, family) : nullptr;
   const int pitch = g.rows.stride();
+  const bool is_bending = family == 3 || family == 4, is_limited = g.limit.is_set() && !is_bending;
   for_packs<W>(g.rows.row_length, [&](std::ptrdiff_t i, int part) WEFT_INLINE_LAMBDA {
     const std::ptrdiff_t p = first + i, q = p + offset;
     const V dx = load<W>(g.x.x + q) - load<W>(g.x.x + p);
@@ -50,7 +70,16 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     const V extension = length - rest_length;
     V slope = k * extension * inverse;
     energy.add(part, 0.5f * k * extension * extension);
-    V axial = broadcast<W>(0), plain = broadcast<W>(0);
+    V axial = broadcast<W>(0), plain = broadcast<W>(0), across = broadcast<W>(0);
+    if (is_limited) {
+      const V strain = exists * extension * (1.0f / rest_length);
+      const LimitPull<W> pull = limit_pull<W>(g.limit, rest_length, strain);
+      energy.add(part, pull.energy);
+      across = pull.tension * inverse;
+      slope += across;
+      axial = pull.stiffness - across;
+      peak = std::max(peak, widest<W>(strain));
+    }
     if (kDamped) {
       const V c = g.damping * exists + g.damping_time * k;
       const V zx = load<W>(g.damped.x + q) - load<W>(g.damped.x + p);
@@ -60,7 +89,7 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
         const V along = (zx * dx + zy * dy + zz * dz) * inverse;
         energy.add(part, 0.5f * c * along * along);
         slope += c * along * inverse;
-        axial = c;
+        axial += c;
       } else {
         energy.add(part, 0.5f * c * (zx * zx + zy * zy + zz * zz));
         plain = c;
@@ -69,7 +98,7 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     if (kStore) {
       const V t = smaller(k, magnitude(k * extension * inverse));
       const V w = square_root((k - t) + axial) * inverse;
-      store(t_out + i, t + plain);
+      store(t_out + i, t + plain + across);
       store(t_out + pitch + i, w * dx);
       store(t_out + 2 * pitch + i, w * dy);
       store(t_out + 3 * pitch + i, w * dz);
@@ -93,12 +122,14 @@ template <int W, bool kStore, bool kDamped, bool kOwn>
 WEFT_ALWAYS_INLINE void springs_of_rows(const GridPotential& g, int row_begin, int row_end, double* energy) {
   for (int j = row_begin; j < row_end; ++j) {
     LaneSums<W> sum;
+    float peak = 0;
     inertia_row<W>(g, j, sum);
     for (int family = 0; family < g.num_families; ++family) {
       const bool starts_here = j + kFamilyOffsets[family].rows < g.rows.num_rows;
-      if (starts_here) spring_row<W, kStore, kDamped, kOwn>(g, family, j, sum);
+      if (starts_here) spring_row<W, kStore, kDamped, kOwn>(g, family, j, sum, peak);
     }
     energy[j] = sum.total();
+    if (g.limit.is_set()) g.peak[j] = peak;
   }
 }
 

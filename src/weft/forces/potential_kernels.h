@@ -18,6 +18,13 @@ struct FamilyOffset {
 };
 inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2}, {2, 0}, {1, -1}};
 
+/// StrainLimit of springs, in floats.
+struct SpringLimitNumbers {
+  float begin = 0, width = 1, stiffness = 0;
+
+  bool is_set() const { return stiffness > 0; }
+};
+
 /// Everything that the kernels of a grid read and write.
 struct GridPotential {
   PaddedRows rows;
@@ -27,6 +34,8 @@ struct GridPotential {
   const float* own_stiffness = nullptr;  // of each spring, as slope_row has them; null: its family's
   const float* rest_length = nullptr;    // of each family
   bool has_soft_border = false;          // structural springs on it have half their stiffness
+  SpringLimitNumbers limit;              // of structural and shear springs
+  float* peak = nullptr;                 // with a limit: largest strain of each row's springs [1]
   float damping = 0;
   float damping_time = 0;  // damping that every spring has more, over its stiffness
   bool is_projected = true;

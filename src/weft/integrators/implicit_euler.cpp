@@ -255,7 +255,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       const double share = search_line();
       const double moved = share * largest(direction_);
       const double tolerance = settings_.tolerance * step_;
-      const bool is_held = !model_->elements || !elements_.is_beyond_limit(x_);
+      const bool is_held = !is_beyond_limit();
       if (share == 0 || moved < kFinest * tolerance || (moved < tolerance && is_held))
         return {.converged = moved < tolerance, .iterations = iteration};
       use_true_hessian = share == 1;
@@ -276,6 +276,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     for (int k = 0; k < num_springs(); ++k) {
       const Spring& s = spring(k);
       energy += spring_energy(model_->stiffness(k), s.rest_length, x[s.j] - x[s.i]);
+      if (is_limited(s)) energy += s.rest_length * limit_of(s, x).energy;
       if (is_damped()) {
         energy += 0.5 * step_ * relative_velocity(s, x).dot(damping_force(k, relative_velocity(s, x)));
       }
@@ -352,10 +353,19 @@ class ImplicitEulerIntegrator final : public Integrator {
     return contact.stiffness * contact.depth(x_) * contact.normal - friction * s;
   }
 
+  bool is_limited(const Spring& s) const {
+    return model_->elements && model_->elements->spring_limit.stiffness > 0 && s.kind != SpringKind::bend;
+  }
+
+  LimitResponse limit_of(const Spring& s, const std::vector<Vec3>& x) const {
+    return limit_response(model_->elements->spring_limit, (x[s.j] - x[s.i]).norm() / s.rest_length - 1);
+  }
+
   void add_spring_gradient(const std::vector<Vec3>& x) {
     for (int k = 0; k < num_springs(); ++k) {
       const Spring& s = spring(k);
-      const Vec3 force = spring_force(model_->stiffness(k), s.rest_length, x[s.j] - x[s.i]);
+      Vec3 force = spring_force(model_->stiffness(k), s.rest_length, x[s.j] - x[s.i]);
+      if (is_limited(s)) force += limit_of(s, x).tension * (x[s.j] - x[s.i]).normalized();
       gradient_[s.i] -= force;
       gradient_[s.j] += force;
     }
@@ -403,6 +413,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       Mat3 block =
           true_hessian ? spring_jacobian(k, s.rest_length, d) : spring_jacobian_clamped(k, s.rest_length, d);
       if (is_damped()) block += damping_jacobian(p) / step_;
+      if (is_limited(s)) block += limit_jacobian(s);
       matrix_.diagonal[s.i] += block;
       matrix_.diagonal[s.j] += block;
       const bool pinned = is_pinned_[s.i] || is_pinned_[s.j];
@@ -414,6 +425,25 @@ class ImplicitEulerIntegrator final : public Integrator {
       add_contact_blocks(environment_->contacts[c], contact_hessian(c));
     }
     for (const int i : environment_->pins.particle) matrix_.diagonal[i].setIdentity();
+  }
+
+  /// Tension only pulls: positive semidefinite as it is.
+  Mat3 limit_jacobian(const Spring& s) const {
+    const Vec3 d = x_[s.j] - x_[s.i];
+    const LimitResponse r = limit_of(s, x_);
+    if (r.tension == 0) return Mat3::Zero();
+    const Mat3 along = d * d.transpose() / d.squaredNorm();
+    return r.stiffness / s.rest_length * along + r.tension / d.norm() * (Mat3::Identity() - along);
+  }
+
+  bool is_beyond_limit() const {
+    if (!model_->elements) return false;
+    const double most = 1 + model_->elements->spring_limit.allowed();
+    const auto is_beyond = [&](const Spring& s) {
+      return is_limited(s) && (x_[s.j] - x_[s.i]).norm() > most * s.rest_length;
+    };
+    const std::vector<Spring>& springs = model_->topology->springs;
+    return elements_.is_beyond_limit(x_) || std::any_of(springs.begin(), springs.end(), is_beyond);
   }
 
   void add_element_blocks(StressFilter filter) {

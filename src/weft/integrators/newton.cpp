@@ -245,7 +245,7 @@ class NewtonIntegrator final : public Integrator {
       // The first step's decrease tells nothing: most of it is what the prediction had ignored.
       const bool is_falling = effort.newton_steps > 1 && report.iterations > 0 && !is_in_contact_ &&
                               before - after > kFallingShare * after + noise_;
-      const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * after + noise_;
+      const bool is_beyond = potential_.is_beyond_limit() && before - after > kLimitFalling * after + noise_;
       const int most = is_beyond ? kMostStepsBeyondLimit : effort.most_newton_steps;
       if ((missed || is_falling || is_beyond) && asked < most && report.iterations + 1 == asked) {
         ++asked;
@@ -270,8 +270,8 @@ class NewtonIntegrator final : public Integrator {
   /// Where strain limit or stretch curves make cloth stiffer, so they make the preconditioner. At the first
   /// linearisation of a step always: what it was made for in the step before must not show in the result.
   void update_stiffer_couplings(bool is_first, JobSystem& jobs) {
-    if (!potential_.elements().stiffens()) return;
-    const bool any = potential_.elements().compute_stiffer_couplings(stiffer_couplings_);
+    if (!potential_.stiffens()) return;
+    const bool any = potential_.compute_stiffening(stiffer_couplings_);
     if (!any && !has_stiffer_couplings_) return;
     if (has_stiffer_couplings_ && any && !is_first && !has_changed_much()) return;
     built_stiffer_ = stiffer_couplings_;
@@ -284,16 +284,12 @@ class NewtonIntegrator final : public Integrator {
   /// Whether some coupling is several times as stiff as the preconditioner's, or the other way round.
   bool has_changed_much() const {
     for (std::size_t k = 0; k < stiffer_couplings_.size(); ++k) {
-      const double own = model_->elements->couplings[k].stiffness;
+      const double own = model_->elements->couplings.empty() ? model_->stiffness(static_cast<int>(k))
+                                                             : model_->elements->couplings[k].stiffness;
       const double is = own + stiffer_couplings_[k], was = own + built_stiffer_[k];
       if (is > kMuchStiffer * was || was > kMuchStiffer * is) return true;
     }
     return false;
-  }
-
-  bool is_beyond_limit() const {
-    return potential_.elements().has_limit() &&
-           potential_.elements().peak_strain() > model_->elements->limit.allowed();
   }
 
   /// What the preconditioners know of contacts.

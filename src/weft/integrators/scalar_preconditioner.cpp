@@ -66,7 +66,7 @@ void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows
     fill_grid_by_elements(*model.elements, step, added);
   } else {
     fill_grid_by_springs(model, step);
-    if (!model.has_equal_springs()) scale_grid_springs(model, step);
+    if (!model.has_equal_springs() || !added.empty()) scale_grid_springs(model, step, added);
   }
   pin_grid();
 }
@@ -141,7 +141,8 @@ void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double 
 
 /// Structural springs and diagonals as stiff as they are each; bending springs, which are lumped into the
 /// former, as they are without factors.
-void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double step) {
+void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double step,
+                                              const std::vector<double>& added) {
   GridLevel& level = grid_.finest();
   const ClothMaterial& m = model.material;
   const std::vector<Spring>& springs = model.topology->springs;
@@ -156,8 +157,8 @@ void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double st
     AlignedFloats& family = offset == (is_structural ? 1 : columns + 1) ? across : down;
     const bool is_along_z = is_structural && offset == columns;
     const double was = is_along_z ? m.structural_z.value_or(m.structural) : model.stiffness(spring.kind);
-    const double more = model.stiffness(static_cast<int>(s)) - was;
-    family[level.rows.index(spring.i)] += static_cast<float>((1 + m.damping_time / step) * more);
+    const double more = (1 + m.damping_time / step) * (model.stiffness(static_cast<int>(s)) - was);
+    family[level.rows.index(spring.i)] += static_cast<float>(more + (added.empty() ? 0.0 : added[s]));
   }
 }
 

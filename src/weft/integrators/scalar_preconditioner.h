@@ -21,7 +21,8 @@ class ScalarPreconditioner {
  public:
   /// Takes springs or elements, with their damping in steps of length `step`. Pinned particles drop out of
   /// the matrix. `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must
-  /// follow. `added` is more stiffness of each of the elements' couplings (couplings, or empty) [N/m].
+  /// follow. `added` is more stiffness of each of the elements' couplings, on a grid without
+  /// membranes of each spring, or empty [N/m].
   void set_springs(const ClothModel& model, const PaddedRows& rows, double step,
                    const std::vector<float>& least, const std::vector<int>& pinned,
                    const std::vector<double>& added = {});
@@ -35,7 +36,7 @@ class ScalarPreconditioner {
  private:
   void build_mesh(const ClothModel& model, double step, const std::vector<double>& added);
   void fill_grid_by_springs(const ClothModel& model, double step);
-  void scale_grid_springs(const ClothModel& model, double step);
+  void scale_grid_springs(const ClothModel& model, double step, const std::vector<double>& added);
   void fill_grid_by_elements(const ClothElements& elements, double step, const std::vector<double>& added);
   void pin_grid();
 

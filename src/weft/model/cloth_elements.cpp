@@ -59,6 +59,8 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
 std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
                                                                  const Fabric& fabric) {
   ClothElements elements;
+  // Per unit of length, a tension per width is one edge's force.
+  elements.spring_limit = make_strain_limit(fabric, grid.size_x * grid.size_z, 1);
   elements.bending = build_grid_bending(grid, warp, fabric);
   elements.damping = fabric.damping;
   elements.grid_warp = warp;

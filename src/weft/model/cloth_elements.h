@@ -17,8 +17,9 @@ struct Coupling {
 };
 
 struct ClothElements {
-  Mat3 stiffness = Mat3::Zero();                        // of every membrane [N/m]
-  StrainLimit limit;                                    // of every membrane
+  Mat3 stiffness = Mat3::Zero();  // of every membrane [N/m]
+  StrainLimit limit;              // of every membrane
+  StrainLimit spring_limit;       // of structural and shear springs, where they are the membranes
   std::vector<StretchKink> stretch_warp, stretch_weft;  // likewise
   std::vector<MembraneElement> membranes;               // one per triangle
   BendingRows bending;                                  // curvature stencils; none if there are hinges
@@ -43,7 +44,7 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 
-/// The grid's bending alone, beside springs that stand for the membranes.
+/// The grid's bending alone, beside springs that stand for the membranes, and their strain limit.
 std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
                                                                  const Fabric& fabric);
 

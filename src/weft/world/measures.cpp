@@ -39,9 +39,13 @@ double compute_elastic_energy(const ClothElements& elements, const ClothState& s
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
   double energy = model.elements ? compute_elastic_energy(*model.elements, state) : 0;
   const std::vector<Spring>& springs = model.topology->springs;
+  const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
   for (std::size_t s = 0; s < springs.size(); ++s) {
-    energy += spring_energy(model.stiffness(static_cast<int>(s)), springs[s].rest_length,
-                            state.x.get(springs[s].j) - state.x.get(springs[s].i));
+    const auto& [i, j, kind, rest_length] = springs[s];
+    const Vec3 d = state.x.get(j) - state.x.get(i);
+    energy += spring_energy(model.stiffness(static_cast<int>(s)), rest_length, d);
+    if (kind != SpringKind::bend)
+      energy += rest_length * limit_response(limit, d.norm() / rest_length - 1).energy;
   }
   return energy;
 }
