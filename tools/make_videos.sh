@@ -13,10 +13,11 @@ video() {
   "$weft" render "contact/$scene" --size 640x400 --every 2 --out "$videos/$scene.mp4" "$@"
 }
 
-for scene in needle knife_edge crossed_strips bullet wall funnel table_cloth squeeze crumple garment_body self_crossing_body \
+for scene in needle knife_edge crossed_strips bullet wall funnel table_cloth squeeze garment_body self_crossing_body \
              folded_fall ball_and_floor rotating_ball; do
   video "$scene"
 done
+video crumple --camera 25,62
 # Of those that take long, the beginning.
 video stack --frame 40
 video twisted_tube --frame 300
