@@ -14,6 +14,14 @@
 namespace weft {
 namespace {
 
+/// Of the test that runs: tests run side by side.
+std::filesystem::path own_folder() {
+  const std::filesystem::path folder =
+      std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
 SceneDesc scene_with(const std::string& keys, const Overrides& overrides = {},
                      const std::filesystem::path& folder = {}) {
   return parse_scene("[scene]\nformat = 1\n[[cloth]]\ngrid = { size = [1, 0.8], cells = [10, 8] }\n" + keys,
@@ -47,8 +55,7 @@ TEST(FabricScenes, ChangeTheirFabricByAnOverride) {
 }
 
 TEST(FabricScenes, TakeAFabricFileFromTheSceneFolder) {
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "fabric_scenes";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = own_folder();
   std::ofstream(folder / "mine.toml") << "density = 0.3\nc11 = 100\nc22 = 200\nc12 = 5\ng = 20\n"
                                          "bend_warp = 1e-5\nbend_weft = 1e-5\nbend_bias = 1e-5\n";
   const SceneDesc scene = scene_with("fabric = \"mine.toml\"\n", {}, folder);
@@ -132,8 +139,7 @@ TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
 
 /// A square of two triangles whose u runs along the direction (c, s) of its plane, and v sheared against it.
 SceneWorld built_with_uv(double c, double s, double shear, const std::string& keys = "") {
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "fabric_scenes";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = own_folder();
   std::ofstream obj(folder / "square.obj");
   const double corners[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
   for (const auto& [x, z] : corners) obj << "v " << x << " 0 " << z << "\n";
