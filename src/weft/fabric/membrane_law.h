@@ -49,10 +49,10 @@ struct StretchKink {
   double slope = 0;   // by so much; negative: less steeply [N/m]
 };
 
-/// What a measured curve is beyond a straight line of slope `linear` [N/m]: kinks by ascending strain, none for
-/// no curve. Stress is tension over stretch, T/(1 + ε) at the Green strain ε + ε²/2; it is straight between the
-/// points and goes on beyond the last one. It is that of `linear` in compression, and up to the first point if
-/// it begins within 5 % of that.
+/// What a measured curve is beyond a straight line of slope `linear` [N/m]: kinks by ascending strain, none
+/// for no curve. Stress is tension over stretch, T/(1 + ε) at the Green strain ε + ε²/2; it is straight
+/// between the points and goes on beyond the last one. It is that of `linear` in compression, and up to the
+/// first point if it begins within 5 % of that.
 std::vector<StretchKink> make_stretch_kinks(const std::vector<StretchPoint>& curve, double linear);
 
 struct MembraneLaw {

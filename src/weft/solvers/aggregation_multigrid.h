@@ -22,7 +22,7 @@ namespace weft {
 struct SlicedMatrix {
   std::vector<int> slice_begin;  // (num_slices + 1) first entry row of each slice
   std::vector<int> column;       // (num_entry_rows · 16), 0 where unused
-  AlignedFloats value;      // likewise, 0 where unused
+  AlignedFloats value;           // likewise, 0 where unused
 
   int num_slices() const { return slice_begin.empty() ? 0 : static_cast<int>(slice_begin.size()) - 1; }
 };

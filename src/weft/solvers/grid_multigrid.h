@@ -35,8 +35,8 @@ struct GridMatrix {
 
 /// One grid of the hierarchy.
 struct GridLevel : GridMatrix {
-  bool has_down_left = true;   // false: `down_left` is zero everywhere
-  AlignedFloats inverse;  // Jacobi's weight / diagonal, 0 where that is 0 [m/N]
+  bool has_down_left = true;  // false: `down_left` is zero everywhere
+  AlignedFloats inverse;      // Jacobi's weight / diagonal, 0 where that is 0 [m/N]
   Vec3Array right_side, value, smoothed;
 
   explicit GridLevel(const PaddedRows& rows);
