@@ -24,7 +24,7 @@ WEFT_MULTIVERSION(stream, (float* x, int count), (x, count))
 
 constexpr int kLoaded = 2048;  // floats, in the first-level cache
 
-/// Sixteen registers, each added up from its own sixteenth of the values: as many loads as additions.
+/// The largest in each lane, in four chains: as many loads as comparisons.
 template <int W>
 WEFT_ALWAYS_INLINE void load_many_body(const float* values, int rounds, float* sum) {
   for (int round = 0; round < rounds; ++round) {

@@ -146,7 +146,7 @@ void ContactSystem::remember_velocities() {
     for (int i = 0; i < cloth.model->num_particles(); ++i) velocity_before_.push_back(cloth.state->v.get(i));
   }
   for (std::size_t v = velocity_before_.size(); v < motion_.start.size(); ++v)
-    velocity_before_.push_back((motion_.end[v] - motion_.start[v]) / step_.step);
+    velocity_before_.push_back(velocity_[v]);
 }
 
 void ContactSystem::renumber(const std::vector<Collider>& colliders) {

@@ -63,13 +63,10 @@ struct LimitPrincipal {
 };
 
 template <int W>
-WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const StiffeningNumbers& n, Pack<W> stretch) {
-  const Pack<W> zero = broadcast<W>(0), u = larger((stretch - 1.0f) - n.begin, zero),
-                m = smaller(u, broadcast<W>(n.width)), over = u - m, inverse = 1.0f / stretch;
-  const float k = n.stiffness, per_width = k / n.width;
-  const Pack<W> tension = inverse * (0.5f * per_width * m * m + k * over);
-  return {per_width * m * m * m * (1.0f / 6) + over * (0.5f * k) * (m + over), tension,
-          (per_width * m - tension) * inverse * inverse};
+WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const LimitNumbers& n, Pack<W> stretch) {
+  const LimitPull<W> pull = limit_pull<W>(n, stretch - 1.0f);
+  const Pack<W> inverse = 1.0f / stretch, tension = inverse * pull.tension;
+  return {pull.energy, tension, (pull.stiffness - tension) * inverse * inverse};
 }
 
 /// What limit and curves add at the strain e, as membrane_response() does it.
@@ -81,7 +78,7 @@ struct StiffeningAnswer {
 };
 
 template <int W>
-WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const StiffeningNumbers& n, const Three<W>& e) {
+WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const LimitNumbers& n, const Three<W>& e) {
   constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below, the axes are noise
   const Pack<W> mean = 0.5f * (e.x + e.y), half = 0.5f * (e.x - e.y), shear = 0.5f * e.z;
   const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kLeastRadius);
@@ -119,7 +116,7 @@ WEFT_ALWAYS_INLINE void add_curve(const CurveNumbers& curve, Pack<W> strain, Pac
 template <int W>
 WEFT_ALWAYS_INLINE StiffeningAnswer<W> stiffening_answer(const StiffeningNumbers& n, const Three<W>& e) {
   StiffeningAnswer<W> answer{};
-  if (n.has_limit()) answer = limit_answer<W>(n, e);
+  if (n.limit.is_set()) answer = limit_answer<W>(n.limit, e);
   add_curve<W>(n.along_1, e.x, answer.energy, answer.stress.s1, answer.tangent.d11);
   add_curve<W>(n.along_2, e.y, answer.energy, answer.stress.s2, answer.tangent.d22);
   return answer;

@@ -4,6 +4,7 @@
 #include "weft/core/padded_rows.h"
 #include "weft/fabric/fabric.h"
 #include "weft/forces/increments_kernels.h"
+#include "weft/forces/limit_pull.h"
 
 namespace weft::kernels {
 
@@ -20,11 +21,10 @@ struct CurveNumbers {
 
 /// What a membrane's law has beyond the linear one: its strain limit, and its stretch curves.
 struct StiffeningNumbers {
-  float begin = 0, width = 1, stiffness = 0;  // StrainLimit
+  LimitNumbers limit;
   CurveNumbers along_1, along_2;
 
-  bool has_limit() const { return stiffness > 0; }
-  bool is_set() const { return has_limit() || along_1.count > 0 || along_2.count > 0; }
+  bool is_set() const { return limit.is_set() || along_1.count > 0 || along_2.count > 0; }
 };
 
 /// Numbers of what stiffening adds to the tangent: its upper triangle, D11 D12 D13 D22 D23 D33.

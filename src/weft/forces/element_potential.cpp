@@ -147,12 +147,7 @@ static kernels::CurveNumbers numbers_of(const std::vector<StretchKink>& kinks) {
 static kernels::StiffeningNumbers stiffening_of(const StrainLimit& limit,
                                                 const std::vector<StretchKink>& along_1,
                                                 const std::vector<StretchKink>& along_2) {
-  kernels::StiffeningNumbers numbers{.along_1 = numbers_of(along_1), .along_2 = numbers_of(along_2)};
-  if (limit.stiffness == 0) return numbers;
-  numbers.begin = static_cast<float>(limit.begin);
-  numbers.width = static_cast<float>(limit.full - limit.begin);
-  numbers.stiffness = static_cast<float>(limit.stiffness);
-  return numbers;
+  return {kernels::LimitNumbers(limit), numbers_of(along_1), numbers_of(along_2)};
 }
 
 GridElements ElementPotential::grid_view() {

@@ -29,22 +29,6 @@ WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std:
   return 0.5f + 0.5f * (count_below<W>(g.rows.row_length - 1, i) - count_below<W>(1, i));
 }
 
-/// What the strain limit adds to springs.
-template <int W>
-struct LimitPull {
-  Pack<W> energy, tension, stiffness;  // [J], [N], along the spring [N/m]
-};
-
-/// limit_response() of springs.
-template <int W>
-WEFT_ALWAYS_INLINE LimitPull<W> limit_pull(const SpringLimitNumbers& n, float rest_length, Pack<W> strain) {
-  const Pack<W> u = larger(strain - n.begin, broadcast<W>(0)), m = smaller(u, broadcast<W>(n.width)),
-                over = u - m;
-  const float k = n.stiffness, per_width = k / n.width;
-  return {rest_length * (per_width * m * m * m * (1.0f / 6) + over * (0.5f * k) * (m + over)),
-          0.5f * per_width * m * m + k * over, (1.0f / rest_length) * (per_width * m)};
-}
-
 /// The springs of one family that start in row j.
 template <int W, bool kStore, bool kDamped, bool kOwn>
 WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, LaneSums<W>& energy,
@@ -73,11 +57,11 @@ WEFT_ALWAYS_INLINE void spring_row(const GridPotential& g, int family, int j, La
     V axial = broadcast<W>(0), plain = broadcast<W>(0), across = broadcast<W>(0);
     if (is_limited) {
       const V strain = exists * extension * (1.0f / rest_length);
-      const LimitPull<W> pull = limit_pull<W>(g.limit, rest_length, strain);
-      energy.add(part, pull.energy);
+      const LimitPull<W> pull = limit_pull<W>(g.limit, strain);  // energy per rest length
+      energy.add(part, rest_length * pull.energy);
       across = pull.tension * inverse;
       slope += across;
-      axial = pull.stiffness - across;
+      axial = (1.0f / rest_length) * pull.stiffness - across;
       peak = std::max(peak, widest<W>(strain));
     }
     if (kDamped) {

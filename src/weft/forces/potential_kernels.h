@@ -3,6 +3,7 @@
 
 #include "weft/core/padded_rows.h"
 #include "weft/forces/increments_kernels.h"
+#include "weft/forces/limit_pull.h"
 
 namespace weft::kernels {
 
@@ -18,13 +19,6 @@ struct FamilyOffset {
 };
 inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2}, {2, 0}, {1, -1}};
 
-/// StrainLimit of springs, in floats.
-struct SpringLimitNumbers {
-  float begin = 0, width = 1, stiffness = 0;
-
-  bool is_set() const { return stiffness > 0; }
-};
-
 /// Everything that the kernels of a grid read and write.
 struct GridPotential {
   PaddedRows rows;
@@ -34,7 +28,7 @@ struct GridPotential {
   const float* own_stiffness = nullptr;  // of each spring, as slope_row has them; null: its family's
   const float* rest_length = nullptr;    // of each family
   bool has_soft_border = false;          // structural springs on it have half their stiffness
-  SpringLimitNumbers limit;              // of structural and shear springs
+  LimitNumbers limit;                    // of structural and shear springs
   float* peak = nullptr;                 // with a limit: largest strain of each row's springs [1]
   float damping = 0;
   float damping_time = 0;  // damping that every spring has more, over its stiffness
