@@ -15,14 +15,14 @@ constexpr int kRings = 30;
 constexpr double kPi = 3.141592653589793;
 constexpr double kCrease = 2e-4;       // of the specimens at the start [m]
 constexpr double kCrookedness = 0.25;  // of random meshes, as a share of the rings' distance [1]
-constexpr double kFps = 480,
+constexpr double kFps = 960,
                  kMostSeconds = 8;   // so many steps, for how folds form decides where they come to rest
 constexpr double kAirRate = 10;      // at which air brakes the fabric: about half of critical [1/s]
 constexpr double kRestSpeed = 1e-3;  // [m/s]
 constexpr double kPixel = 5e-4;      // of the shadow [m]
 
-/// A specimen on its plates: as cloth is clamped up to halfway to the first free ring, the plates' edge lies
-/// between two rings.
+/// A specimen on its plates: the stencils of the last held ring bend the cloth half a ring around it, so that
+/// the plates' edge lies half a ring inside.
 struct Disc {
   TriangleMesh mesh;
   std::vector<char> is_held;  // (num_vertices)
@@ -32,19 +32,20 @@ struct Disc {
 Disc make_disc(const SpecimenSettings& settings) {
   const int rings = settings.resolution > 0 ? settings.resolution : kRings;
   const int held = static_cast<int>(std::lround(rings * kPlateRadius / kSpecimenRadius));
-  const double outside = (kSpecimenRadius - kPlateRadius) / (rings - held - 0.5);
-  const double inside = (kPlateRadius - outside / 2) / held;
+  const double outside = (kSpecimenRadius - kPlateRadius) / (rings - held + 0.5);
+  const double inside = (kPlateRadius + outside / 2) / held;
   Disc disc{.mesh = build_disc_mesh(rings, rings), .is_held = {}, .num_hem = 6 * rings};
   for (Vec3& p : disc.mesh.positions) {
     const double ring = p.norm();
     const bool is_held = ring < held + 0.5;
     disc.is_held.push_back(is_held);
-    if (ring > 0) p *= (is_held ? inside * ring : kPlateRadius + outside * (ring - held - 0.5)) / ring;
+    if (ring > 0) p *= (is_held ? inside * ring : kPlateRadius + outside * (ring - held + 0.5)) / ring;
   }
   if (settings.mesh == SpecimenMesh::grid) return disc;
   Random random(1);
+  const int num_held = static_cast<int>(std::count(disc.is_held.begin(), disc.is_held.end(), 1));
   const double size = kCrookedness * kSpecimenRadius / rings;
-  for (int i = 0; i < disc.mesh.num_vertices() - disc.num_hem; ++i)
+  for (int i = num_held; i < disc.mesh.num_vertices() - disc.num_hem; ++i)  // cloth bends over a round edge
     disc.mesh.positions[i] += Vec3(random.uniform(-size, size), 0, random.uniform(-size, size));
   return disc;
 }

@@ -30,7 +30,7 @@ struct MeshCase {
 };
 
 std::vector<MeshCase> five_meshes(bool quick) {
-  if (quick) return {{"grid 17", 16, SpecimenMesh::grid}, {"random, coarse", 12, SpecimenMesh::random}};
+  if (quick) return {{"grid 25²", 24, SpecimenMesh::grid}, {"random, coarse", 24, SpecimenMesh::random}};
   return {{"grid 33²", 32, SpecimenMesh::grid},
           {"grid 65²", 64, SpecimenMesh::grid},
           {"grid 129²", 128, SpecimenMesh::grid},

@@ -36,7 +36,8 @@ void stop(ClothState& state) {
 
 }  // namespace
 
-Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg) {
+Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg,
+                        int straight_column) {
   const bool is_square = std::fmod(warp_deg, 90) == 0;
   std::shared_ptr<const ClothTopology> topology;
   std::shared_ptr<const ClothElements> elements;
@@ -45,9 +46,13 @@ Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mes
     topology = build_grid_topology(grid, SpringModel::alternating);
     elements = build_grid_elements(grid, topology->mesh, warp, fabric);
   } else {
-    topology =
-        build_mesh_topology(mesh == SpecimenMesh::grid ? build_grid_mesh(grid, GridDiagonals::alternating)
-                                                       : build_random_mesh(grid, kMeshSeed));
+    TriangleMesh triangles = mesh == SpecimenMesh::grid ? build_grid_mesh(grid, GridDiagonals::alternating)
+                                                        : build_random_mesh(grid, kMeshSeed);
+    for (int j = 0; j < grid.num_rows(); ++j) {
+      const int i = grid.index(straight_column, j);
+      triangles.positions[i].x() = straight_column * grid.spacing_x();
+    }
+    topology = build_mesh_topology(std::move(triangles));
     const auto [s, c] = sin_cos_deg(warp_deg);
     elements = build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, {c, 0, s}), fabric);
   }

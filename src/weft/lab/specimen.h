@@ -29,8 +29,10 @@ struct Specimen {
 };
 
 /// A rectangle in the x–z plane. Warp is turned from x by `warp_deg`; a multiple of 90° on a grid makes a
-/// model of stencils.
-Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg);
+/// model of stencils. Of a random mesh, this column of the grid stays in line, for the specimen to be clamped
+/// up to and bend over; 0, as it is: none.
+Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg,
+                        int straight_column = 0);
 
 /// Holds every particle for which `place` gives a place, by its position at rest [m].
 void clamp(Specimen& specimen, const std::function<std::optional<Vec3>(const Vec3&)>& place);

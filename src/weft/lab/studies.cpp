@@ -12,8 +12,8 @@ constexpr double kGravity = 9.81;
 constexpr double kDegree = 3.141592653589793 / 180;
 constexpr double kPeirceLoad = 8.004;  // ρ g L³/B at which the elastica's chord sinks by 41.5°
 constexpr int kStripCells = 25, kStripWidth = 4;
-constexpr double kClampedCells = 1.31;  // the second column of vertices too, crooked as it may be
-constexpr double kSheetSize = 0.1;      // of what is stretched and sheared [m]
+constexpr int kClampedColumn = 1;   // the last one that is held; the clamp's edge is half a cell before
+constexpr double kSheetSize = 0.1;  // of what is stretched and sheared [m]
 constexpr int kSheetCells = 10;
 constexpr double kStrain = 1e-3;
 
@@ -58,10 +58,10 @@ Strip make_strip(const Fabric& fabric, const SpecimenSettings& settings, double 
                   .size_z = kStripWidth * strip.cell,
                   .cells_x = strip.cells,
                   .cells_z = kStripWidth};
-  strip.specimen = make_rectangle(fabric, grid, settings.mesh, warp_deg);
+  strip.specimen = make_rectangle(fabric, grid, settings.mesh, warp_deg, kClampedColumn);
   strip.specimen.environment.gravity = {0, -kGravity, 0};
   clamp(strip.specimen, [&](const Vec3& p) -> std::optional<Vec3> {
-    if (p.x() > kClampedCells * strip.cell) return {};
+    if (p.x() > (kClampedColumn + 0.01) * strip.cell) return {};
     return p;
   });
   return strip;
@@ -161,14 +161,14 @@ StudyResult study_buckling(const Fabric& fabric, const SpecimenSettings& setting
   const double gravity_per_load = fabric.bend_warp / (fabric.density * std::pow(kLength, 3));
   StudyResult result;
   const auto tips = [&](double load) {
-    Specimen specimen = make_rectangle(fabric, grid, settings.mesh, 0);
+    Specimen specimen = make_rectangle(fabric, grid, settings.mesh, 0, kClampedColumn);
     specimen.environment.gravity = {0, 0, load * gravity_per_load};
     for (int i = 0; i < specimen.model->num_particles(); ++i) {
       const Vec3& p = specimen.rest()[i];
       specimen.state.set_position(i, p + Vec3(0, kLean * p.x() * p.x() / kLength, 0));
     }
     clamp(specimen, [&](const Vec3& p) -> std::optional<Vec3> {
-      if (p.x() > kClampedCells * cell) return {};
+      if (p.x() > (kClampedColumn + 0.01) * cell) return {};
       return p;
     });
     settle(specimen, kLength);
