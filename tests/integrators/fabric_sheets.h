@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/forces/sheets.h"
+#include "weft/fabric/grid_springs.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft::test {
@@ -20,6 +21,33 @@ inline std::shared_ptr<const ClothModel> on_mesh(const Grid& grid, const Fabric&
   return build_cloth_model(
       topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0},
       build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, Vec3::UnitX()), fabric));
+}
+
+/// A fabric whose membranes are a grid's springs.
+inline std::shared_ptr<const ClothModel> springs_on(const Grid& grid, double strain_limit) {
+  const Fabric fabric = {.density = 0.2,
+                         .c11 = 250,
+                         .c22 = 200,
+                         .c12 = 30,
+                         .g = 30,
+                         .bend_warp = 1e-5,
+                         .bend_weft = 1e-5,
+                         .bend_bias = 1e-5,
+                         .damping = 2e-3,
+                         .strain_limit = strain_limit,
+                         .stretch_warp = {},
+                         .stretch_weft = {}};
+  const GridSprings springs =
+      make_grid_springs(grid, CellDiagonals::alternating, GridWarp::first_axis, fabric, "test");
+  const ClothMaterial material{.density = fabric.density,
+                               .structural = springs.along_x,
+                               .shear = springs.diagonal,
+                               .bend = 0,
+                               .structural_z = springs.along_z,
+                               .damping_time = fabric.damping,
+                               .spring_factors = {}};
+  return build_cloth_model(build_grid_topology(grid, SpringModel::alternating), material,
+                           build_grid_bending_elements(grid, GridWarp::first_axis, fabric));
 }
 
 /// Held where the given particles are at rest.

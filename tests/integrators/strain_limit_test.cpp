@@ -7,7 +7,6 @@
 
 #include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/grid_springs.h"
 #include "weft/fabric/presets.h"
 #include "weft/forces/membrane.h"
 #include "weft/world/measures.h"
@@ -16,6 +15,7 @@ namespace weft {
 namespace {
 
 using test::hung_by;
+using test::springs_on;
 using test::on_grid;
 using test::on_mesh;
 using test::square;
@@ -70,33 +70,6 @@ TEST(StrainLimit, HoldsWhileClothSwingsFromTwoCornersOnEveryMesh) {
   swing(*model, *make_newton({}), 20, 60,
         [&](const ClothState& state) { free = std::max(free, worst(*model, state)); });
   EXPECT_GT(free, 0.3) << "what the limit holds back";
-}
-
-/// A fabric whose membranes are a grid's springs.
-std::shared_ptr<const ClothModel> springs_on(const Grid& grid, double strain_limit) {
-  const Fabric fabric = {.density = 0.2,
-                         .c11 = 250,
-                         .c22 = 200,
-                         .c12 = 30,
-                         .g = 30,
-                         .bend_warp = 1e-5,
-                         .bend_weft = 1e-5,
-                         .bend_bias = 1e-5,
-                         .damping = 2e-3,
-                         .strain_limit = strain_limit,
-                         .stretch_warp = {},
-                         .stretch_weft = {}};
-  const GridSprings springs =
-      make_grid_springs(grid, CellDiagonals::alternating, GridWarp::first_axis, fabric, "test");
-  const ClothMaterial material{.density = fabric.density,
-                               .structural = springs.along_x,
-                               .shear = springs.diagonal,
-                               .bend = 0,
-                               .structural_z = springs.along_z,
-                               .damping_time = fabric.damping,
-                               .spring_factors = {}};
-  return build_cloth_model(build_grid_topology(grid, SpringModel::alternating), material,
-                           build_grid_bending_elements(grid, GridWarp::first_axis, fabric));
 }
 
 TEST(StrainLimit, HoldsForSpringsThatAreTheMembranes) {

@@ -175,19 +175,5 @@ TEST(Xpbd, CutsAStepOfTheWorldIntoItsSubsteps) {
   EXPECT_EQ(world.step(1.0 / 60).substeps, 7);
 }
 
-TEST(Xpbd, RefusesMembranesByName) {
-  const Grid grid = square(4);
-  const auto topology = build_grid_topology(grid, SpringModel::simplified);
-  const auto model =
-      build_cloth_model(topology, {}, build_grid_elements(grid, topology->mesh, GridWarp::first_axis, {}));
-  ClothState state = make_state(topology->mesh.positions);
-  try {
-    test::advance(*test::integrator("xpbd"), *model, {}, 1e-3, 1, state);
-    FAIL() << "no error";
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("xpbd"), std::string::npos) << e.what();
-  }
-}
-
 }  // namespace
 }  // namespace weft

@@ -11,12 +11,14 @@ const std::vector<std::string_view>& integrator_names() {
 }
 
 bool moves_elements(std::string_view integrator) {
+  return integrator == "implicit_euler" || integrator == "newton" || integrator == "xpbd";
+}
+
+bool feels_air(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton";
 }
 
-bool feels_air(std::string_view integrator) { return moves_elements(integrator); }
-
-bool has_double_precision(std::string_view integrator) { return moves_elements(integrator); }
+bool has_double_precision(std::string_view integrator) { return feels_air(integrator); }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;

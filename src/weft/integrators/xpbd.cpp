@@ -1,7 +1,6 @@
 /// XPBD with small steps, as most engines have it: the peer that `newton` is measured against. The method and
-/// its source are in xpbd_projection.h.
+/// its source are in xpbd_projection.h, that of fabrics in xpbd_elements.h.
 
-#include "weft/core/error.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/xpbd_projection.h"
 
@@ -21,30 +20,43 @@ class XpbdIntegrator final : public Integrator {
     fit(model, environment.pins);
     const XpbdSubstep substep = make_substep(model, environment, step);
     pin_motion_.prepare(environment.pins, step, state);
-    springs_->predict(substep, jobs, state);
+    cloth_->predict(substep, jobs, state);
     for (std::size_t p = 0; p < pinned_.size(); ++p) {
-      springs_->move_to(pinned_[p], environment.pins.position[p] - state.origin,
-                        step * pin_motion_.velocity()[p]);
+      cloth_->move_to(pinned_[p], environment.pins.position[p] - state.origin,
+                      step * pin_motion_.velocity()[p]);
     }
-    springs_->project(substep, jobs);
-    springs_->finish(substep, jobs, state);
+    cloth_->project(substep, jobs);
+    cloth_->finish(substep, jobs, state);
     pin_motion_.finish(environment.pins, state);
     return {};
   }
 
  private:
+  /// What a projection is made for; numbers may change without a new one.
+  struct Layout {
+    std::shared_ptr<const ClothTopology> topology;
+    std::shared_ptr<const ClothElements> elements;
+    bool is_grid = false;
+
+    bool operator==(const Layout&) const = default;
+  };
+
+  /// Whether the springs of each kind are all equal, and alone.
+  static bool is_grid_of_equals(const ClothModel& model) {
+    return model.has_equal_springs() && !model.elements && !model.material.structural_z &&
+           model.material.damping_time == 0;
+  }
+
   void fit(const ClothModel& model, const PinTargets& pins) {
     if (model.id == model_id_ && pins.particle == pinned_) return;
-    if (model.elements)
-      throw InputError("xpbd knows springs alone, no membranes: use newton or implicit_euler");
-    if (model.topology != topology_ || model.has_equal_springs() != has_equal_springs_) {
-      topology_ = model.topology;
-      has_equal_springs_ = model.has_equal_springs();
-      springs_ = has_equal_springs_ ? make_grid_projection(*topology_) : make_mesh_projection(*topology_);
+    const Layout layout{model.topology, model.elements, is_grid_of_equals(model)};
+    if (layout != layout_) {
+      layout_ = layout;
+      cloth_ = layout.is_grid ? make_grid_projection(*model.topology) : make_mesh_projection(model);
     }
     model_id_ = model.id;
     pinned_ = pins.particle;
-    springs_->set_numbers(model, pinned_);
+    cloth_->set_numbers(model, pinned_);
   }
 
   static XpbdSubstep make_substep(const ClothModel& model, const Environment& environment, double step) {
@@ -53,16 +65,14 @@ class XpbdIntegrator final : public Integrator {
     return {.step = static_cast<float>(step),
             .keep = static_cast<float>(keep),
             .gain = gain.cast<float>(),
-            .damping = static_cast<float>(model.material.damping),
             .is_projected = model.material.damping_kind == DampingKind::projected};
   }
 
   XpbdSettings settings_;
   std::uint64_t model_id_ = 0;
-  std::shared_ptr<const ClothTopology> topology_;
-  bool has_equal_springs_ = false;
+  Layout layout_;
   std::vector<int> pinned_;
-  std::unique_ptr<SpringProjection> springs_;
+  std::unique_ptr<ClothProjection> cloth_;
   PinMotion pin_motion_;
 };
 

@@ -197,7 +197,7 @@ WEFT_ALWAYS_INLINE void finish_row_body(const FinishedRow& a, const float* c, fl
 
 WEFT_MULTIVERSION(finish_row, (const FinishedRow& a, const float* c, float* x, float* v), (a, c, x, v))
 
-class GridProjection final : public SpringProjection {
+class GridProjection final : public ClothProjection {
  public:
   explicit GridProjection(const ClothTopology& topology)
       : grid_(*topology.grid),
@@ -222,6 +222,7 @@ class GridProjection final : public SpringProjection {
       inv_mass_[place(i)] = static_cast<float>(1 / model.mass[i]);
     for (const int i : pinned) inv_mass_[place(i)] = 0;
     make_strips(model.material);
+    damping_ = static_cast<float>(model.material.damping);
   }
 
   void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
@@ -245,7 +246,7 @@ class GridProjection final : public SpringProjection {
 
   void project(const XpbdSubstep& substep, JobSystem& jobs) override {
     const GridPass pass{
-        {pitch_, y_, c_, motion_, inv_mass_, substep.is_projected}, &strips_, substep.step, substep.damping};
+        {pitch_, y_, c_, motion_, inv_mass_, substep.is_projected}, &strips_, substep.step, damping_};
     const int num_blocks = divide_up(plane_rows_, kBlockRows);
     const int grain = std::max(1, kGrain / (kClasses * kBlockRows * grid_.num_columns()));
     for (const bool leaving : {false, true}) {
@@ -365,11 +366,12 @@ class GridProjection final : public SpringProjection {
   float* inv_mass_ = nullptr;
   std::vector<float> masks_[4][kClasses];
   std::vector<Strip> strips_;
+  float damping_ = 0;  // b of every spring [N·s/m]
 };
 
 }  // namespace
 
-std::unique_ptr<SpringProjection> make_grid_projection(const ClothTopology& topology) {
+std::unique_ptr<ClothProjection> make_grid_projection(const ClothTopology& topology) {
   return std::make_unique<GridProjection>(topology);
 }
 

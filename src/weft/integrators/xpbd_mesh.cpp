@@ -1,10 +1,11 @@
-/// The springs of a mesh, coloured greedily: a colour takes every spring, in the mesh's order, that shares no
-/// particle with one it has already. Sixteen springs at a time are gathered, computed side by side, and put
-/// back.
+/// The springs of any cloth, coloured greedily. Sixteen springs at a time are gathered, computed side by
+/// side, and put back.
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <optional>
 
+#include "weft/integrators/xpbd_elements.h"
 #include "weft/integrators/xpbd_projection.h"
 
 namespace weft {
@@ -12,29 +13,17 @@ namespace {
 
 constexpr int kParticleGrain = 4096, kSpringGrain = 2048;  // per chunk of work
 
-/// All that a spring needs to know of one end, in half a cache line.
-struct alignas(32) Particle {
-  float y[4] = {0, 0, 0, 0};  // the last one is 1/m
-  float c[4] = {0, 0, 0, 0};  // the last one means nothing
-
-  float& inv_mass() { return y[3]; }
-};
-
-struct alignas(16) Motion {
-  float by[4] = {0, 0, 0, 0};
-};
-
 struct Ends {
   int i, j;
 };
 
 struct MeshPass {
-  Particle* particles;
-  const Motion* motion;
+  XpbdParticle* particles;
+  const XpbdMotion* motion;
   const Ends* ends;
-  const float *stiffness, *rest_length;
-  float step, damping;
-  bool is_projected;
+  const float *stiffness, *damping, *rest_length;
+  float step;
+  bool is_damped, is_projected;
 };
 
 /// W springs of one colour from the s-th on: vectors spring by spring, roots and quotients side by side.
@@ -48,7 +37,7 @@ WEFT_ALWAYS_INLINE void project_springs(const MeshPass& pass, int s) {
   float length_sq[W], approach[W], inv_mass[W];
   for (int l = 0; l < W; ++l) {
     const Ends ends = pass.ends[s + l];
-    Particle &p = pass.particles[ends.i], &q = pass.particles[ends.j];
+    const XpbdParticle &p = pass.particles[ends.i], &q = pass.particles[ends.j];
     const Vector moved = load<4>(q.c) - load<4>(p.c);
     d[l] = (load<4>(q.y) - load<4>(p.y)) + moved;
     length_sq[l] = dot(d[l], d[l]);
@@ -58,12 +47,12 @@ WEFT_ALWAYS_INLINE void project_springs(const MeshPass& pass, int s) {
     approach[l] = dot(d[l], r[l]);
   }
   const SpringPush<V> push = spring_push<kDamped, V>(
-      pass.step * pass.step * load<W>(pass.stiffness + s), broadcast<W>(pass.step * pass.damping),
+      pass.step * pass.step * load<W>(pass.stiffness + s), pass.step * load<W>(pass.damping + s),
       load<W>(pass.rest_length + s), pass.is_projected, load<W>(length_sq), kDamped ? load<W>(approach) : V{},
       load<W>(inv_mass));
   for (int l = 0; l < W; ++l) {
     const Ends ends = pass.ends[s + l];
-    Particle &p = pass.particles[ends.i], &q = pass.particles[ends.j];
+    XpbdParticle &p = pass.particles[ends.i], &q = pass.particles[ends.j];
     Vector by = push.along_d[l] * d[l];
     if (kDamped) by += push.along_r[l] * r[l];
     store(p.c, load<4>(p.c) + p.inv_mass() * by);
@@ -80,80 +69,68 @@ WEFT_ALWAYS_INLINE void project_range(const MeshPass& pass, int begin, int end) 
 
 template <int W>
 WEFT_ALWAYS_INLINE void project_colour_body(const MeshPass& pass, int begin, int end) {
-  if (pass.damping > 0) return project_range<W, true>(pass, begin, end);
+  if (pass.is_damped) return project_range<W, true>(pass, begin, end);
   project_range<W, false>(pass, begin, end);
 }
 
 WEFT_MULTIVERSION_PACKS(project_colour, (const MeshPass& pass, int begin, int end), (pass, begin, end))
 
-/// Indices of the springs, colour by colour; `colour_begin` gets where each begins, and the end.
-std::vector<int> sort_by_colour(const ClothTopology& topology, std::vector<int>& colour_begin) {
-  std::vector<int> left(topology.springs.size()), sorted, last_colour(topology.num_particles(), -1);
-  for (std::size_t s = 0; s < left.size(); ++s) left[s] = static_cast<int>(s);
-  colour_begin = {0};
-  for (int colour = 0; !left.empty(); ++colour) {
-    const auto is_left = [&](int s) {
-      const Spring& spring = topology.springs[s];
-      if (last_colour[spring.i] == colour || last_colour[spring.j] == colour) return true;
-      last_colour[spring.i] = last_colour[spring.j] = colour;
-      sorted.push_back(s);
-      return false;
-    };
-    left.erase(std::stable_partition(left.begin(), left.end(), is_left), left.end());
-    colour_begin.push_back(static_cast<int>(sorted.size()));
-  }
-  return sorted;
-}
-
-class MeshProjection final : public SpringProjection {
+class MeshProjection final : public ClothProjection {
  public:
-  explicit MeshProjection(const ClothTopology& topology)
-      : springs_(sort_by_colour(topology, colour_begin_)),
-        particles_(topology.num_particles()),
-        motion_(topology.num_particles()) {
-    for (const int s : springs_) {
-      const Spring& spring = topology.springs[s];
-      ends_.push_back({spring.i, spring.j});
-      rest_length_.push_back(static_cast<float>(spring.rest_length));
+  explicit MeshProjection(const ClothModel& model) {
+    const std::vector<Spring>& springs = model.topology->springs;
+    springs_ = colour_items(static_cast<int>(springs.size()), model.num_particles(), [&](int s) {
+      return std::array{springs[s].i, springs[s].j};
+    });
+    for (const int s : springs_.item) {
+      ends_.push_back({springs[s].i, springs[s].j});
+      rest_length_.push_back(static_cast<float>(springs[s].rest_length));
     }
+    if (model.elements) elements_.emplace(model);
+    particles_.particle.resize(model.num_particles());
+    particles_.motion.resize(model.num_particles());
   }
 
   void set_numbers(const ClothModel& model, const std::vector<int>& pinned) override {
     stiffness_.clear();
-    for (const int s : springs_) stiffness_.push_back(static_cast<float>(model.stiffness(s)));
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-      particles_[i].inv_mass() = static_cast<float>(1 / model.mass[i]);
-    for (const int i : pinned) particles_[i].inv_mass() = 0;
+    damping_.clear();
+    for (const int s : springs_.item) {
+      stiffness_.push_back(static_cast<float>(model.stiffness(s)));
+      damping_.push_back(static_cast<float>(model.damping(s)));
+    }
+    const auto is_set = [](float number) { return number > 0; };
+    is_damped_ = std::any_of(damping_.begin(), damping_.end(), is_set);
+    has_springs_ = is_damped_ || std::any_of(stiffness_.begin(), stiffness_.end(), is_set);
+    for (int i = 0; i < particles_.size(); ++i)
+      particles_.particle[i].inv_mass() = static_cast<float>(1 / model.mass[i]);
+    for (const int i : pinned) particles_.particle[i].inv_mass() = 0;
   }
 
   void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
     const float* x[] = {state.x.x(), state.x.y(), state.x.z()};
     float* v[] = {state.v.x(), state.v.y(), state.v.z()};
     for_particles(jobs, [&](int i) {
+      XpbdParticle& particle = particles_.particle[i];
+      XpbdMotion& motion = particles_.motion[i];
       for (int c = 0; c < 3; ++c) {
         v[c][i] = substep.keep * v[c][i] + substep.gain[c];
-        motion_[i].by[c] = substep.step * v[c][i];
-        particles_[i].y[c] = x[c][i] + motion_[i].by[c];
+        motion.by[c] = substep.step * v[c][i];
+        particle.y[c] = x[c][i] + motion.by[c];
       }
-      std::fill_n(particles_[i].c, 4, 0.0f);
+      std::fill_n(particle.c, 4, 0.0f);
     });
   }
 
   void move_to(int particle, const Vec3& y, const Vec3& motion) override {
     for (int c = 0; c < 3; ++c) {
-      particles_[particle].y[c] = static_cast<float>(y[c]);
-      motion_[particle].by[c] = static_cast<float>(motion[c]);
+      particles_.particle[particle].y[c] = static_cast<float>(y[c]);
+      particles_.motion[particle].by[c] = static_cast<float>(motion[c]);
     }
   }
 
   void project(const XpbdSubstep& substep, JobSystem& jobs) override {
-    const MeshPass pass{particles_.data(),   motion_.data(), ends_.data(),    stiffness_.data(),
-                        rest_length_.data(), substep.step,   substep.damping, substep.is_projected};
-    for (std::size_t colour = 0; colour + 1 < colour_begin_.size(); ++colour) {
-      const int first = colour_begin_[colour], count = colour_begin_[colour + 1] - first;
-      parallel_for(jobs, count, kSpringGrain,
-                   [&](int begin, int end) { project_colour(pass, first + begin, first + end); });
-    }
+    if (has_springs_) project_colours(substep, jobs);
+    if (elements_) elements_->project(substep.step, jobs, particles_);
   }
 
   void finish(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
@@ -161,32 +138,49 @@ class MeshProjection final : public SpringProjection {
     const float rate = 1 / substep.step;
     for_particles(jobs, [&](int i) {
       for (int c = 0; c < 3; ++c) {
-        v[c][i] += rate * particles_[i].c[c];
+        v[c][i] += rate * particles_.particle[i].c[c];
         x[c][i] += substep.step * v[c][i];
       }
     });
   }
 
  private:
+  void project_colours(const XpbdSubstep& substep, JobSystem& jobs) {
+    const MeshPass pass{.particles = particles_.particle.data(),
+                        .motion = particles_.motion.data(),
+                        .ends = ends_.data(),
+                        .stiffness = stiffness_.data(),
+                        .damping = damping_.data(),
+                        .rest_length = rest_length_.data(),
+                        .step = substep.step,
+                        .is_damped = is_damped_,
+                        .is_projected = substep.is_projected};
+    for (std::size_t colour = 0; colour + 1 < springs_.begin.size(); ++colour) {
+      const int first = springs_.begin[colour], count = springs_.begin[colour + 1] - first;
+      parallel_for(jobs, count, kSpringGrain,
+                   [&](int begin, int end) { project_colour(pass, first + begin, first + end); });
+    }
+  }
+
   template <class Body>
   void for_particles(JobSystem& jobs, const Body& body) const {
-    parallel_for(jobs, static_cast<int>(particles_.size()), kParticleGrain, [&](int begin, int end) {
+    parallel_for(jobs, particles_.size(), kParticleGrain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) body(i);
     });
   }
 
-  std::vector<int> colour_begin_;  // (colours + 1)
-  std::vector<int> springs_;       // colour by colour
-  std::vector<Ends> ends_;         // likewise, as all below
-  std::vector<float> rest_length_, stiffness_;
-  std::vector<Particle> particles_;
-  std::vector<Motion> motion_;
+  Colours springs_;
+  std::vector<Ends> ends_;  // of springs_.item, as all below
+  std::vector<float> rest_length_, stiffness_, damping_;
+  bool has_springs_ = false, is_damped_ = false;
+  std::optional<XpbdElements> elements_;
+  XpbdParticles particles_;
 };
 
 }  // namespace
 
-std::unique_ptr<SpringProjection> make_mesh_projection(const ClothTopology& topology) {
-  return std::make_unique<MeshProjection>(topology);
+std::unique_ptr<ClothProjection> make_mesh_projection(const ClothModel& model) {
+  return std::make_unique<MeshProjection>(model);
 }
 
 }  // namespace weft

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: a cloth during a substep of `xpbd`, and the pass over its springs.
+/// Private to integrators/: a cloth during a substep of `xpbd`, and the pass over its springs and elements.
 ///
 /// A substep moves particles to y = x + h v as if there were no springs; then every spring once moves its two
 /// ends by what its own implicit Euler step would, with d = x_j − x_i, l = |d|, r the motion of j relative to
@@ -13,6 +13,7 @@
 ///
 /// Springs are coloured: those of a colour share no particle and go side by side, through vector registers
 /// and threads. Order and colours depend on the mesh alone, so the result has the same bits for any of them.
+/// A fabric's elements come after the springs, in the same way: see xpbd_elements.h.
 
 #include <memory>
 #include <vector>
@@ -29,13 +30,12 @@ struct XpbdSubstep {
   float step = 0;                                  // h [s]
   float keep = 1;                                  // share of velocity that wind leaves [1]
   Eigen::Vector3f gain = Eigen::Vector3f::Zero();  // from gravity and wind [m/s]
-  float damping = 0;                               // b of every spring [N·s/m]
   bool is_projected = true;                        // damping along the springs only
 };
 
-class SpringProjection {
+class ClothProjection {
  public:
-  virtual ~SpringProjection() = default;
+  virtual ~ClothProjection() = default;
 
   /// Takes masses and stiffness from a model of this topology; `pinned` particles do not give way.
   virtual void set_numbers(const ClothModel& model, const std::vector<int>& pinned) = 0;
@@ -46,15 +46,18 @@ class SpringProjection {
   /// Puts a particle's y elsewhere; `motion` is how far it comes in the substep [m].
   virtual void move_to(int particle, const Vec3& y, const Vec3& motion) = 0;
 
-  /// Every spring once.
+  /// Every spring and element once.
   virtual void project(const XpbdSubstep& substep, JobSystem& jobs) = 0;
 
   /// v += c/h, then x += h v.
   virtual void finish(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) = 0;
 };
 
-std::unique_ptr<SpringProjection> make_grid_projection(const ClothTopology& topology);
-std::unique_ptr<SpringProjection> make_mesh_projection(const ClothTopology& topology);
+/// Of grids whose springs of a kind are all equal, without elements: no index arrays.
+std::unique_ptr<ClothProjection> make_grid_projection(const ClothTopology& topology);
+
+/// Of any cloth.
+std::unique_ptr<ClothProjection> make_mesh_projection(const ClothModel& model);
 
 /// Of springs with the same numbers.
 struct SpringNumbers {

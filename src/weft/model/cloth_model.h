@@ -34,7 +34,7 @@ struct ClothMaterial {
   double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
   double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
 
-  // Of a grid whose springs stand for a fabric (see make_grid_springs); `newton` and `implicit_euler` know
+  // Of a grid whose springs stand for a fabric (see make_grid_springs); integrators that move elements know
   // them.
   std::optional<double> structural_z;  // of structural springs along the second axis; those on the border, of
                                        // both axes, then have half their stiffness [N/m]
@@ -66,7 +66,7 @@ struct ClothModel {
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
   /// A fabric's membranes and bending, or bending alone where springs stand for the membranes; null: none.
-  /// `newton` and `implicit_euler` know them.
+  /// `newton`, `implicit_euler` and `xpbd` know them.
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
   std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]

@@ -153,7 +153,7 @@ void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
     if (!cloth.fabric) continue;
     solver.get("integrator")
         .mistake("knows springs alone, and cloth \"" + cloth.name +
-                 "\" is of a fabric; use \"newton\" or \"implicit_euler\", or give "
+                 "\" is of a fabric; use \"newton\", \"implicit_euler\" or \"xpbd\", or give "
                  "spring_structural, spring_shear and spring_bend instead of the fabric");
     return;
   }

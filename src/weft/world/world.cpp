@@ -30,8 +30,8 @@ void validate(const ClothMaterial& m, const std::string& cloth) {
 
 void require_elements_move(const std::string& integrator, const std::string& cloth) {
   require(moves_elements(integrator), "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
-                                          " cannot move, for it knows springs alone; use newton or "
-                                          "implicit_euler, or give spring_structural, spring_shear and "
+                                          " cannot move, for it knows springs alone; use newton, "
+                                          "implicit_euler or xpbd, or give spring_structural, spring_shear and "
                                           "spring_bend instead of the fabric");
 }
 

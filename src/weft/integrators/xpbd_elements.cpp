@@ -1,0 +1,153 @@
+#include "weft/integrators/xpbd_elements.h"
+
+#include <array>
+#include <span>
+
+#include "weft/forces/hinge.h"
+#include "weft/forces/membrane.h"
+
+namespace weft {
+namespace {
+
+constexpr int kGrain = 256;  // elements per chunk of work
+
+struct Step {
+  double h = 0;        // [s]
+  double damping = 0;  // τ/h [1]
+};
+
+/// An element with one strain of gradient ∂e/∂x_c at each of its particles.
+struct Scalar {
+  double force = 0;      // ∂W/∂e
+  double stiffness = 0;  // ∂²W/∂e²
+};
+
+/// λ of a strain whose gradients have Σ |g_c|²/m_c = `compliance` and have grown by `grown` in the substep.
+double multiplier(const Step& step, const Scalar& response, double compliance, double grown) {
+  const double h2 = step.h * step.h, k = h2 * response.stiffness;
+  return (h2 * response.force + step.damping * k * grown) / (1 + (1 + step.damping) * k * compliance);
+}
+
+void project_membrane(const MembraneElement& m, const MembraneLaw& law, const Step& step,
+                      XpbdParticles& particles) {
+  TriangleCorners x;
+  for (int c = 0; c < 3; ++c) x[c] = particles.position(m.vertices[c]);
+  const MembraneResponse response = membrane_response(law, membrane_strain(m.rest, x));
+  const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, x);
+  Mat3 compliance = Mat3::Zero();
+  Vec3 grown = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) {
+    const int i = m.vertices[c];
+    compliance += particles.particle[i].inv_mass() * derivative[c] * derivative[c].transpose();
+    grown += derivative[c] * particles.moved(i);
+  }
+  const double h2_area = step.h * step.h * m.rest.area;
+  const Mat3 k = h2_area * response.tangent;
+  const Mat3 system = Mat3::Identity() + (1 + step.damping) * k * compliance;
+  const Vec3 lambda = system.inverse() * (h2_area * response.stress + step.damping * (k * grown));
+  for (int c = 0; c < 3; ++c) {
+    const int i = m.vertices[c];
+    particles.move(i, -particles.particle[i].inv_mass() * (derivative[c].transpose() * lambda));
+  }
+}
+
+void project_stencil(const BendingRows& rows, int row, const Step& step, XpbdParticles& particles) {
+  Vec3 curvature = Vec3::Zero(), grown = Vec3::Zero();
+  double compliance = 0;
+  for (int k = rows.begin[row]; k < rows.begin[row + 1]; ++k) {
+    const int i = rows.vertex[k];
+    const double w = rows.weight[k];
+    curvature += w * particles.position(i);
+    grown += w * particles.moved(i);
+    compliance += w * w * particles.particle[i].inv_mass();
+  }
+  const double length = curvature.norm();
+  if (length == 0) return;
+  const Vec3 direction = curvature / length;
+  const Scalar response{rows.stiffness[row] * length, rows.stiffness[row]};
+  const double lambda = multiplier(step, response, compliance, direction.dot(grown));
+  for (int k = rows.begin[row]; k < rows.begin[row + 1]; ++k) {
+    const int i = rows.vertex[k];
+    particles.move(i, -particles.particle[i].inv_mass() * lambda * rows.weight[k] * direction);
+  }
+}
+
+/// One whose gradient is worked out for `N` particles.
+template <std::size_t N>
+void project_scalar(const std::array<int, N>& vertices, const std::array<Vec3, N>& gradient,
+                    const Scalar& response, const Step& step, XpbdParticles& particles) {
+  double compliance = 0, grown = 0;
+  for (std::size_t c = 0; c < N; ++c) {
+    compliance += particles.particle[vertices[c]].inv_mass() * gradient[c].squaredNorm();
+    grown += gradient[c].dot(particles.moved(vertices[c]));
+  }
+  const double lambda = multiplier(step, response, compliance, grown);
+  for (std::size_t c = 0; c < N; ++c)
+    particles.move(vertices[c], -particles.particle[vertices[c]].inv_mass() * lambda * gradient[c]);
+}
+
+void project_hinge(const HingeElement& hinge, const Step& step, XpbdParticles& particles) {
+  HingeCorners x;
+  for (int c = 0; c < 4; ++c) x[c] = particles.position(hinge.vertices[c]);
+  const Scalar response{hinge.stiffness * hinge_angle(x), hinge.stiffness};
+  project_scalar(hinge.vertices, hinge_angle_gradient(x), response, step, particles);
+}
+
+/// Its strain is that of the spring, its energy per rest length.
+void project_limit(const Spring& spring, const StrainLimit& limit, double h, XpbdParticles& particles) {
+  const Vec3 d = particles.position(spring.j) - particles.position(spring.i);
+  const double length = d.norm();
+  const LimitResponse response = limit_response(limit, length / spring.rest_length - 1);
+  if (response.tension == 0) return;
+  const Vec3 along = d / length;
+  project_scalar(std::array<int, 2>{spring.i, spring.j}, std::array<Vec3, 2>{-along, along},
+                 {response.tension, response.stiffness / spring.rest_length}, {.h = h}, particles);
+}
+
+/// body(item) for all, a colour after the other.
+template <class Body>
+void for_colours(const Colours& colours, JobSystem& jobs, const Body& body) {
+  for (std::size_t colour = 0; colour + 1 < colours.begin.size(); ++colour) {
+    const int first = colours.begin[colour];
+    parallel_for(jobs, colours.begin[colour + 1] - first, kGrain, [&](int begin, int end) {
+      for (int k = begin; k < end; ++k) body(colours.item[first + k]);
+    });
+  }
+}
+
+}  // namespace
+
+XpbdElements::XpbdElements(const ClothModel& model)
+    : topology_(model.topology), elements_(model.elements), law_(elements_->law()) {
+  const int num_particles = model.num_particles();
+  const ClothElements& e = *elements_;
+  membranes_ = colour_items(static_cast<int>(e.membranes.size()), num_particles,
+                            [&](int k) -> const Triangle& { return e.membranes[k].vertices; });
+  stencils_ = colour_items(e.bending.num_rows(), num_particles, [&](int r) {
+    return std::span(e.bending.vertex)
+        .subspan(e.bending.begin[r], e.bending.begin[r + 1] - e.bending.begin[r]);
+  });
+  hinges_ = colour_items(static_cast<int>(e.hinges.size()), num_particles,
+                         [&](int k) -> const std::array<int, 4>& { return e.hinges[k].vertices; });
+  if (e.spring_limit.stiffness == 0) return;
+  const std::vector<Spring>& springs = topology_->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    if (springs[s].kind != SpringKind::bend) limited_.push_back(static_cast<int>(s));
+  }
+  limits_ = colour_items(static_cast<int>(limited_.size()), num_particles, [&](int k) {
+    return std::array<int, 2>{springs[limited_[k]].i, springs[limited_[k]].j};
+  });
+}
+
+void XpbdElements::project(double step, JobSystem& jobs, XpbdParticles& particles) const {
+  const ClothElements& e = *elements_;
+  const Step damped{step, e.damping / step};
+  for_colours(stencils_, jobs, [&](int r) { project_stencil(e.bending, r, damped, particles); });
+  for_colours(hinges_, jobs, [&](int k) { project_hinge(e.hinges[k], damped, particles); });
+  for_colours(membranes_, jobs, [&](int k) { project_membrane(e.membranes[k], law_, damped, particles); });
+  for_colours(limits_, jobs, [&](int k) {
+    project_limit(topology_->springs[limited_[k]], e.spring_limit, step, particles);
+  });
+}
+
+}  // namespace weft
