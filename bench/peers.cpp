@@ -129,7 +129,7 @@ HungCloth make_hung_membrane(int side) {
                       .bend_bias = 0,
                       .damping = 0};
   const Specimen sheet =
-      make_rectangle(fabric, {.cells_x = side - 1, .cells_z = side - 1}, SpecimenMesh::grid, 0);
+      make_rectangle(fabric, {.cells_x = side - 1, .cells_z = side - 1}, SpecimenMesh::grid);
   HungCloth cloth{"membrane", sheet.model, sheet.state, {}};
   for (const int p : {0, side - 1}) {
     cloth.environment.pins.particle.push_back(p);

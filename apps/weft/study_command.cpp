@@ -88,6 +88,15 @@ void add_threads_option(CLI::App& command, StudyOptions& options) {
       ->check(CLI::Range(1, 1024));
 }
 
+void add_membrane_option(CLI::App& command, StudyOptions& options) {
+  static const std::map<std::string, SpecimenMembrane> membranes = {{"triangle", SpecimenMembrane::triangle},
+                                                                    {"springs", SpecimenMembrane::springs}};
+  command
+      .add_option("--membrane", options.specimen.membrane,
+                  "Elements or springs that stand for them: triangle (default) or springs")
+      ->transform(CLI::CheckedTransformer(membranes));
+}
+
 std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOptions>(); }
 
 CLI::App* add(CLI::App& studies, const std::string& name, const std::string& about,
@@ -128,14 +137,17 @@ void add_study_command(CLI::App& app, int&) {
       ->add_option("--direction", strip->direction,
                    "Which way the strip is cut: warp (default), weft or bias")
       ->transform(CLI::CheckedTransformer(directions));
-  add(*studies, "tensile", "c11, c22 and c12 between clamps that draw apart", make_options(),
-      [](const Fabric& fabric, const StudyOptions& options) {
-        return study_tensile(fabric, options.specimen);
-      });
-  add(*studies, "shear", "g between clamps that slide", make_options(),
-      [](const Fabric& fabric, const StudyOptions& options) {
-        return study_shear(fabric, options.specimen);
-      });
+  const auto pulled = make_options(), sheared = make_options();
+  CLI::App* tensile = add(*studies, "tensile", "c11, c22 and c12 between clamps that draw apart", pulled,
+                          [](const Fabric& fabric, const StudyOptions& options) {
+                            return study_tensile(fabric, options.specimen);
+                          });
+  add_membrane_option(*tensile, *pulled);
+  CLI::App* shear = add(*studies, "shear", "g between clamps that slide", sheared,
+                        [](const Fabric& fabric, const StudyOptions& options) {
+                          return study_shear(fabric, options.specimen);
+                        });
+  add_membrane_option(*shear, *sheared);
   add(*studies, "buckling", "Load at which an upright strip tips over", make_options(),
       [](const Fabric& fabric, const StudyOptions& options) {
         return study_buckling(fabric, options.specimen);

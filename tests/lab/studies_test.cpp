@@ -41,6 +41,19 @@ TEST(Studies, RecoverStretchAndShearStiffness) {
   }
 }
 
+TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
+  const Fabric& fabric = find_fabric("denim").fabric;
+  SpecimenSettings settings{.membrane = SpecimenMembrane::springs};
+  EXPECT_NEAR(figure(study_tensile(fabric, settings), "c11") / fabric.c11, 1, 0.01);
+  EXPECT_NEAR(figure(study_tensile(fabric, settings), "c22") / fabric.c22, 1, 0.01);
+  EXPECT_NEAR(figure(study_shear(fabric, settings), "g") / fabric.g, 1, 0.01);
+  // A finding: edges every way cannot be stiff along the threads and loose in shear.
+  settings.mesh = SpecimenMesh::random;
+  const double c11 = figure(study_tensile(fabric, settings), "c11") / fabric.c11;
+  EXPECT_GT(c11, 0.3);
+  EXPECT_LT(c11, 0.8);
+}
+
 TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
   constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
   for (const char* name : {"silk", "leather", "11oz_black_denim"}) {

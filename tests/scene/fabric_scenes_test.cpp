@@ -178,6 +178,25 @@ TEST(FabricScenes, LayWarpAlongUOnAMeshTurnedOrSheared) {
   EXPECT_LT((warp_of(given, 0) - Vec3::UnitZ()).norm(), 1e-9) << "a direction goes before";
 }
 
+TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
+  const SceneWorld scene = built_with_uv(1, 0, 0, "membrane = \"springs\"\n");
+  const ClothModel& model = scene.world.model({0});
+  EXPECT_TRUE(model.elements->membranes.empty());
+  EXPECT_EQ(model.material.damping_time, find_fabric("denim").fabric.damping);
+  for (std::size_t s = 0; s < model.topology->springs.size(); ++s) {
+    if (model.topology->springs[s].kind == SpringKind::structural) continue;
+    EXPECT_EQ(model.stiffness(static_cast<int>(s)), 0) << "bending is the fabric's own";
+  }
+  EXPECT_GT(model.stiffness_sum[0], 100) << "[N/m], of a fabric of 2000";
+  const auto is_told = [](const std::string& w) { return w.find("on average") != std::string::npos; };
+  EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
+  // Regions multiply what the edges have.
+  const SceneWorld stiffer = built_with_uv(1, 0, 0,
+                                           "membrane = \"springs\"\nstiffen = [{ select = { sphere = { "
+                                           "center = [0, 0, 0], radius = 9 } }, factor = 3 }]\n");
+  EXPECT_NEAR(stiffer.world.model({0}).stiffness_sum[0], 3 * model.stiffness_sum[0], 1e-6);
+}
+
 TEST(FabricScenes, SayWhatToDoWhereAMeshHasNoTextureCoordinates) {
   try {
     built_with_uv(1, 0, 0, "no uv");

@@ -1,23 +1,17 @@
 #include "weft/fabric/grid_springs.h"
 
-#include <charconv>
-
 #include "weft/core/error.h"
+#include "weft/fabric/spring_warnings.h"
 
 namespace weft {
 namespace {
 
-std::string text(double number) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, 4).ptr};
-}
-
 void require_stiffer(double c, double shear, const char* key, const Fabric& fabric, const std::string& name) {
   if (c > shear) return;
   const std::string why =
-      shear == fabric.g ? "" : " times the cells' (length/width)², " + text(shear) + " N/m";
-  throw InputError("fabric \"" + name + "\": springs cannot be it: " + key + " = " + text(c) +
-                   " N/m must be above g = " + text(fabric.g) + " N/m" + why +
+      shear == fabric.g ? "" : " times the cells' (length/width)², " + short_text(shear) + " N/m";
+  throw InputError("fabric \"" + name + "\": springs cannot be it: " + key + " = " + short_text(c) +
+                   " N/m must be above g = " + short_text(fabric.g) + " N/m" + why +
                    "; use membrane = \"triangle\", a smaller g, or a larger " + key);
 }
 
@@ -33,23 +27,16 @@ GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWar
   require_stiffer(cz, shear_z, is_first ? "c22" : "c11", fabric, name);
 
   GridSprings springs;
-  if (!fabric.stretch_warp.empty() || !fabric.stretch_weft.empty())
-    springs.warnings.push_back("fabric \"" + name +
-                               "\": springs do not follow its stretch curves; use membrane = \"triangle\"");
+  springs.warnings = warn_of_springs(fabric, name);
   const double both = fabric.g * (dx * dx + dz * dz) / (2 * dx * dz);
   springs.diagonal = diagonals == CellDiagonals::both ? both : 2 * both;
   springs.along_x = (cx - shear_x) * dz / dx;
   springs.along_z = (cz - shear_z) * dx / dz;
-  if (fabric.c12 != fabric.g) {
-    springs.warnings.push_back("fabric \"" + name + "\": springs make c12 = g: c12 is " + text(fabric.g) +
-                               " N/m instead of " + text(fabric.c12) +
-                               " N/m (membrane = \"triangle\" keeps it)");
-  }
   if (diagonals == CellDiagonals::parallel) {
     springs.warnings.push_back(
         "fabric \"" + name +
         "\": with one diagonal per cell, all the same way, stretch turns into shear (c16 = " +
-        text(fabric.g * dx / dz) + " N/m, c26 = " + text(fabric.g * dz / dx) +
+        short_text(fabric.g * dx / dz) + " N/m, c26 = " + short_text(fabric.g * dz / dx) +
         " N/m); alternating diagonals do not");
   }
   return springs;

@@ -184,6 +184,7 @@ kernels::MeshPotential IncrementalPotential::mesh_view(const Vec3Array& e) {
           .num_particles = topology_->num_particles(),
           .stiffness = mesh_stiffness_.data(),
           .damping = damping_,
+          .damping_time = damping_time_,
           .is_projected = is_projected_,
           .weight = weight.data(),
           .x = kernels::rows(std::as_const(x_)),

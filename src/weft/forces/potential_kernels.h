@@ -70,6 +70,7 @@ struct MeshPotential {
   int num_particles = 0;
   const float* stiffness = nullptr;  // of each entry
   float damping = 0;
+  float damping_time = 0;  // as on a grid
   bool is_projected = true;
   const float* weight = nullptr;
   ConstRows x{}, offset{}, damped{};

@@ -37,7 +37,8 @@ WEFT_ALWAYS_INLINE void springs_of_pack(const MeshPotential& m, int slice, int l
     if (kDamped) {
       const Three<W> z = minus<W>(gather3<W>(m.damped, m.first, neighbour), load3<W>(m.damped, p));
       const V c = select_less(broadcast<W>(0), load<W>(m.table->rest_length.data() + entry),
-                              broadcast<W>(m.damping), broadcast<W>(0));
+                              broadcast<W>(m.damping), broadcast<W>(0)) +
+                  m.damping_time * k;
       if (m.is_projected) {
         const V along = dot<W>(z, d) * inverse;
         energy.add(part, 0.25f * c * along * along);
@@ -80,7 +81,7 @@ WEFT_ALWAYS_INLINE void springs_of_slices(const MeshPotential& m, int slice_begi
 template <int W>
 WEFT_ALWAYS_INLINE void springs_body(const MeshPotential& m, bool store, int slice_begin, int slice_end,
                                      double* energy) {
-  if (m.damping > 0) {
+  if (m.damping > 0 || m.damping_time > 0) {
     if (store) return springs_of_slices<W, true, true>(m, slice_begin, slice_end, energy);
     return springs_of_slices<W, false, true>(m, slice_begin, slice_end, energy);
   }

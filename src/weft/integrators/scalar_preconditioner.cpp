@@ -9,7 +9,7 @@ namespace {
 /// The particles that each one is coupled to, and how stiffly [N/m].
 using Lists = std::vector<std::vector<std::pair<int, double>>>;
 
-Lists springs_of_mesh(const ClothModel& model, double damping) {
+Lists springs_of_mesh(const ClothModel& model, double step) {
   constexpr int kLanes = NeighbourTable::kLanes;
   const NeighbourTable& table = model.topology->table;
   Lists lists(model.num_particles());
@@ -18,7 +18,7 @@ Lists springs_of_mesh(const ClothModel& model, double damping) {
     for (int row = table.slice_begin[slice]; row < table.slice_begin[slice + 1]; ++row) {
       const int entry = row * kLanes + i % kLanes, spring = table.spring[entry];
       if (spring < 0 || model.topology->springs[spring].kind == SpringKind::bend) continue;
-      lists[i].emplace_back(table.neighbour[entry], model.stiffness(spring) + damping);
+      lists[i].emplace_back(table.neighbour[entry], model.stiffness(spring) + model.damping(spring) / step);
     }
   }
   return lists;
@@ -90,7 +90,7 @@ void ScalarPreconditioner::build_mesh(const ClothModel& model, double step,
                                       const std::vector<double>& added) {
   const Lists lists = has_membranes(model)
                           ? elements_of_mesh(model, coupling_stiffness(*model.elements, step, added))
-                          : springs_of_mesh(model, model.material.damping / step);
+                          : springs_of_mesh(model, step);
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
   for (const int p : pinned_) is_pinned[p] = 1;

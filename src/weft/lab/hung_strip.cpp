@@ -26,7 +26,7 @@ double bessel(double x) {
 
 /// At rest, hung by the edge x = 0 so that x grows downwards.
 Specimen hang_strip(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh) {
-  Specimen specimen = make_rectangle(fabric, grid, mesh, 0);
+  Specimen specimen = make_rectangle(fabric, grid, mesh);
   specimen.environment.gravity = {0, -kGravity, 0};
   const auto hang = [](const Vec3& p) { return Vec3(0, -p.x(), p.z()); };
   clamp(specimen, [&](const Vec3& p) -> std::optional<Vec3> {
@@ -49,7 +49,7 @@ double edge_x(const Specimen& specimen, const Grid& grid) {
 }  // namespace
 
 Specimen make_hammock(const Fabric& fabric, int cells, SpecimenMesh mesh) {
-  Specimen specimen = make_rectangle(fabric, strip_grid(cells), mesh, 0);
+  Specimen specimen = make_rectangle(fabric, strip_grid(cells), mesh);
   specimen.environment.gravity = {0, -kGravity, 0};
   clamp(specimen, [](const Vec3& p) -> std::optional<Vec3> {
     if (p.x() > 1e-9 && p.x() < 1 - 1e-9) return {};

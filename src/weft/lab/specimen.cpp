@@ -3,7 +3,10 @@
 #include <cmath>
 
 #include "weft/core/angle.h"
+#include "weft/fabric/grid_springs.h"
+#include "weft/fabric/mesh_springs.h"
 #include "weft/forces/membrane.h"
+#include "weft/forces/spring.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/world/measures.h"
 
@@ -29,6 +32,14 @@ double largest_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return largest;
 }
 
+TriangleMesh make_triangles(const Grid& grid, SpecimenMesh mesh, int straight_column) {
+  TriangleMesh triangles = mesh == SpecimenMesh::grid ? build_grid_mesh(grid, GridDiagonals::alternating)
+                                                      : build_random_mesh(grid, kMeshSeed);
+  for (int j = 0; j < grid.num_rows(); ++j)
+    triangles.positions[grid.index(straight_column, j)].x() = straight_column * grid.spacing_x();
+  return triangles;
+}
+
 void stop(ClothState& state) {
   for (std::size_t i = 0; i < state.v.size(); ++i) state.v.set(i, Vec3::Zero());
   state.history.step = 0;
@@ -36,29 +47,43 @@ void stop(ClothState& state) {
 
 }  // namespace
 
-Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh, double warp_deg,
-                        int straight_column) {
-  const bool is_square = std::fmod(warp_deg, 90) == 0;
+Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh,
+                        const RectangleOptions& options) {
+  const bool is_grid = mesh == SpecimenMesh::grid && std::fmod(options.warp_deg, 90) == 0;
+  const bool has_springs = options.membrane == SpecimenMembrane::springs;
+  ClothMaterial material{.density = fabric.density, .structural = 0, .shear = 0, .bend = 0};
+  if (has_springs) material.damping_time = fabric.damping;
   std::shared_ptr<const ClothTopology> topology;
   std::shared_ptr<const ClothElements> elements;
-  if (mesh == SpecimenMesh::grid && is_square) {
-    const GridWarp warp = std::fmod(warp_deg, 180) == 0 ? GridWarp::first_axis : GridWarp::second_axis;
+  if (is_grid) {
+    const GridWarp warp =
+        std::fmod(options.warp_deg, 180) == 0 ? GridWarp::first_axis : GridWarp::second_axis;
     topology = build_grid_topology(grid, SpringModel::alternating);
-    elements = build_grid_elements(grid, topology->mesh, warp, fabric);
-  } else {
-    TriangleMesh triangles = mesh == SpecimenMesh::grid ? build_grid_mesh(grid, GridDiagonals::alternating)
-                                                        : build_random_mesh(grid, kMeshSeed);
-    for (int j = 0; j < grid.num_rows(); ++j) {
-      const int i = grid.index(straight_column, j);
-      triangles.positions[i].x() = straight_column * grid.spacing_x();
+    if (has_springs) {
+      const GridSprings springs =
+          make_grid_springs(grid, CellDiagonals::alternating, warp, fabric, "specimen");
+      material.structural = springs.along_x;
+      material.structural_z = springs.along_z;
+      material.shear = springs.diagonal;
+      elements = build_grid_bending_elements(grid, warp, fabric);
+    } else {
+      elements = build_grid_elements(grid, topology->mesh, warp, fabric);
     }
-    topology = build_mesh_topology(std::move(triangles));
-    const auto [s, c] = sin_cos_deg(warp_deg);
-    elements = build_mesh_elements(topology->mesh, warp_from_direction(topology->mesh, {c, 0, s}), fabric);
+  } else {
+    topology = build_mesh_topology(make_triangles(grid, mesh, options.straight_column));
+    const auto [s, c] = sin_cos_deg(options.warp_deg);
+    const WarpField warp = warp_from_direction(topology->mesh, {c, 0, s});
+    if (has_springs) {
+      material.structural = 1;
+      material.spring_factors = make_mesh_springs(topology->mesh, warp, fabric, "specimen").stiffness;
+      material.spring_factors.resize(topology->springs.size(), 0.0);
+      elements = build_mesh_bending_elements(topology->mesh, warp, fabric);
+    } else {
+      elements = build_mesh_elements(topology->mesh, warp, fabric);
+    }
   }
   Specimen specimen;
-  specimen.model = build_cloth_model(
-      topology, {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0}, elements);
+  specimen.model = build_cloth_model(topology, material, elements);
   specimen.state = make_state(topology->mesh.positions);
   return specimen;
 }
@@ -102,6 +127,13 @@ std::vector<Vec3> compute_membrane_forces(const Specimen& specimen) {
   for (const auto& [v, rest] : elements.membranes) {
     const TriangleCorners f = membrane_force(rest, elements.law(), {x[v[0]], x[v[1]], x[v[2]]});
     for (int c = 0; c < 3; ++c) force[v[c]] += f[c];
+  }
+  const std::vector<Spring>& springs = specimen.model->topology->springs;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const auto& [i, j, kind, rest_length] = springs[s];
+    const Vec3 f = spring_force(specimen.model->stiffness(static_cast<int>(s)), rest_length, x[j] - x[i]);
+    force[i] += f;
+    force[j] -= f;
   }
   return force;
 }

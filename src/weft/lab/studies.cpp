@@ -58,7 +58,8 @@ Strip make_strip(const Fabric& fabric, const SpecimenSettings& settings, double 
                   .size_z = kStripWidth * strip.cell,
                   .cells_x = strip.cells,
                   .cells_z = kStripWidth};
-  strip.specimen = make_rectangle(fabric, grid, settings.mesh, warp_deg, kClampedColumn);
+  strip.specimen =
+      make_rectangle(fabric, grid, settings.mesh, {.warp_deg = warp_deg, .straight_column = kClampedColumn});
   strip.specimen.environment.gravity = {0, -kGravity, 0};
   clamp(strip.specimen, [&](const Vec3& p) -> std::optional<Vec3> {
     if (p.x() > (kClampedColumn + 0.01) * strip.cell) return {};
@@ -72,7 +73,7 @@ Specimen make_deformed(const Fabric& fabric, const SpecimenSettings& settings,
                        const std::function<Vec3(const Vec3&)>& deform, StudyResult& result) {
   const int cells = or_default(settings.resolution, kSheetCells);
   const Grid grid{.size_x = kSheetSize, .size_z = kSheetSize, .cells_x = cells, .cells_z = cells};
-  Specimen specimen = make_rectangle(fabric, grid, settings.mesh, 0);
+  Specimen specimen = make_rectangle(fabric, grid, settings.mesh, {.membrane = settings.membrane});
   const auto is_end = [](double x) { return x < 1e-9 || x > kSheetSize - 1e-9; };
   clamp(specimen, [&](const Vec3& p) -> std::optional<Vec3> {
     if (!is_end(p.x()) && !is_end(p.z())) return {};
@@ -161,7 +162,7 @@ StudyResult study_buckling(const Fabric& fabric, const SpecimenSettings& setting
   const double gravity_per_load = fabric.bend_warp / (fabric.density * std::pow(kLength, 3));
   StudyResult result;
   const auto tips = [&](double load) {
-    Specimen specimen = make_rectangle(fabric, grid, settings.mesh, 0, kClampedColumn);
+    Specimen specimen = make_rectangle(fabric, grid, settings.mesh, {.straight_column = kClampedColumn});
     specimen.environment.gravity = {0, 0, load * gravity_per_load};
     for (int i = 0; i < specimen.model->num_particles(); ++i) {
       const Vec3& p = specimen.rest()[i];

@@ -67,6 +67,15 @@ std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& gri
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
+std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleMesh& mesh,
+                                                                 const WarpField& warp,
+                                                                 const Fabric& fabric) {
+  ClothElements elements;
+  elements.bending = build_mesh_bending(mesh, warp, fabric);
+  elements.damping = fabric.damping;
+  return std::make_shared<ClothElements>(std::move(elements));
+}
+
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric, BendingModel bending) {
   ClothElements elements = make_elements(mesh, warp, fabric, bending);

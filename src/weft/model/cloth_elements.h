@@ -48,6 +48,10 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
 std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
                                                                  const Fabric& fabric);
 
+/// A mesh's bending alone, likewise. There is no strain limit.
+std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleMesh& mesh,
+                                                                 const WarpField& warp, const Fabric& fabric);
+
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);

@@ -34,10 +34,10 @@ struct ClothMaterial {
   double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
   double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
 
-  // Of a grid whose springs stand for a fabric (see make_grid_springs); integrators that move elements know
-  // them.
-  std::optional<double> structural_z;  // of structural springs along the second axis; those on the border, of
-                                       // both axes, then have half their stiffness [N/m]
+  // Of springs that stand for a fabric (see make_grid_springs, make_mesh_springs); integrators that move
+  // elements know them.
+  std::optional<double> structural_z;  // of a grid's structural springs along the second axis; those on the
+                                       // border, of both axes, then have half their stiffness [N/m]
   double damping_time = 0;             // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
 
   /// Of each spring of the topology, in its order: what the stiffness above is multiplied by, >= 0; empty: 1.

@@ -145,8 +145,8 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
                    .friction = f.friction};
   const bool is_grid = std::holds_alternative<Grid>(desc.shape);
   if (is_grid && !cloth.has("model")) desc.model = SpringModel::alternating;
-  if (!is_grid && desc.fabric->membrane == Membrane::springs)
-    cloth.get("membrane").expected("\"triangle\", for springs can be a fabric on grids alone");
+  if (!is_grid && desc.fabric->membrane == Membrane::springs && f.strain_limit > 0)
+    cloth.get("membrane").expected("\"triangle\", for springs keep a strain_limit on grids alone");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "weft/core/error.h"
 #include "weft/fabric/grid_springs.h"
+#include "weft/fabric/mesh_springs.h"
 #include "weft/scene/scene_meshes.h"
 
 namespace weft {
@@ -58,7 +59,7 @@ struct Stuff {
   std::shared_ptr<const ClothElements> elements;
 };
 
-Stuff make_springs(const ClothSceneDesc& desc, const Grid& grid, std::vector<std::string>& warnings) {
+Stuff make_springs_on_grid(const ClothSceneDesc& desc, const Grid& grid, std::vector<std::string>& warnings) {
   const FabricDesc& fabric = *desc.fabric;
   const std::optional<GridWarp> warp = grid_warp(fabric);
   if (!warp)
@@ -97,12 +98,30 @@ WarpField find_warp(const ClothSceneDesc& desc, const LoadedCloth& loaded,
   return warp;
 }
 
+Stuff make_springs_on_mesh(const ClothSceneDesc& desc, const LoadedCloth& loaded,
+                           std::vector<std::string>& warnings) {
+  const Fabric& fabric = desc.fabric->numbers;
+  const ClothTopology& topology = *loaded.topology;
+  const WarpField warp = find_warp(desc, loaded, warnings);
+  MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric->name);
+  for (const std::string& warning : springs.warnings)
+    warnings.push_back("cloth \"" + desc.name + "\": " + warning);
+  ClothMaterial material = desc.material;
+  material.structural = 1;
+  material.damping_time = fabric.damping;
+  material.spring_factors = std::move(springs.stiffness);  // edges are a mesh's first springs
+  material.spring_factors.resize(topology.springs.size(), 0.0);
+  return {material, build_mesh_bending_elements(topology.mesh, warp, fabric)};
+}
+
 Stuff make_stuff(const ClothSceneDesc& desc, const LoadedCloth& loaded, std::vector<std::string>& warnings) {
   const ClothTopology& topology = *loaded.topology;
   if (!desc.fabric) return {desc.material, nullptr};
   const FabricDesc& fabric = *desc.fabric;
   const Grid* grid = std::get_if<Grid>(&desc.shape);
-  if (grid && fabric.membrane == Membrane::springs) return make_springs(desc, *grid, warnings);
+  if (fabric.membrane == Membrane::springs) {
+    return grid ? make_springs_on_grid(desc, *grid, warnings) : make_springs_on_mesh(desc, loaded, warnings);
+  }
   if (topology.grid)
     return {desc.material, build_grid_elements(*grid, topology.mesh, *grid_warp(fabric), fabric.numbers)};
   return {desc.material,
@@ -200,10 +219,9 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
                    " holds no particle; regions are in world coordinates [m], after position and rotation");
 }
 
-/// Of each spring; empty if none is said to be stiffer than the others.
-std::vector<double> make_spring_factors(const ClothSceneDesc& desc, const LoadedCloth& loaded,
-                                        const std::vector<Vec3>& positions) {
-  std::vector<double> factors;
+/// Multiplies the factors of each spring, which are 1 if there are none yet, by those of regions.
+void multiply_spring_factors(const ClothSceneDesc& desc, const LoadedCloth& loaded,
+                             const std::vector<Vec3>& positions, std::vector<double>& factors) {
   const std::vector<Spring>& springs = loaded.topology->springs;
   for (const StiffenDesc& part : desc.stiffened) {
     factors.resize(springs.size(), 1.0);
@@ -213,7 +231,6 @@ std::vector<double> make_spring_factors(const ClothSceneDesc& desc, const Loaded
       if (is_inside[springs[s].i] && is_inside[springs[s].j]) factors[s] *= part.factor;
     }
   }
-  return factors;
 }
 
 std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded,
@@ -275,7 +292,7 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
     const LoadedCloth loaded = load(desc, result.warnings);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
     Stuff stuff = make_stuff(desc, loaded, result.warnings);
-    stuff.material.spring_factors = make_spring_factors(desc, loaded, positions);
+    multiply_spring_factors(desc, loaded, positions, stuff.material.spring_factors);
     if (scene.contact) fit_thickness(desc, loaded.topology->mesh, stuff.material);
     const ClothId id = world.add_cloth({.name = desc.name,
                                         .topology = loaded.topology,
