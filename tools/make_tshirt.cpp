@@ -1,4 +1,4 @@
-// Sews the T-shirt of the garment scenes: make_tshirt OUT.obj
+// Sews the T-shirts of the garment scenes: make_tshirt tshirt.obj, make_tshirt tshirt_fine.obj 1.43
 //
 // The pattern is half of a panel in the plane x >= 0, made of two patches of quads:
 //
@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <set>
 #include <utility>
@@ -54,13 +55,19 @@ constexpr double kCuffWidth = 0.165;
 constexpr double kSleeveSlope_deg = 15;  // below the horizontal
 constexpr double kChestHeight = 0.1;     // of the bulge
 
-// Quads along the sides: edges of about 0.02 m, a little longer once inflated
-constexpr int kShoulderCells = 7;
-constexpr int kNeckCells = 7;  // of the half
-constexpr int kHemCells = kNeckCells + kShoulderCells;
-constexpr int kSideCells = 18;
-constexpr int kArmholeCells = 11;
-constexpr int kSleeveCells = 10;
+/// Quads along the sides.
+struct Cells {
+  int shoulder, neck, side, armhole, sleeve;  // neck: of the half
+
+  int hem() const { return neck + shoulder; }
+};
+
+/// Edges of about 0.02 m, a little longer once inflated; or so many times finer.
+Cells make_cells(double fineness) {
+  const auto times = [fineness](int cells) { return static_cast<int>(std::lround(fineness * cells)); };
+  return {
+      .shoulder = times(7), .neck = times(7), .side = times(18), .armhole = times(11), .sleeve = times(10)};
+}
 
 constexpr int kRelaxations = 60;  // more changes angles by less than a degree
 
@@ -163,7 +170,7 @@ struct Pattern {
   Curve hem, centre, neck, shoulder, side, armhole, sleeve_top, cuff, sleeve_bottom;
 };
 
-Pattern make_pattern(double neck_depth) {
+Pattern make_pattern(double neck_depth, const Cells& cells) {
   const auto [sin, cos] = sin_cos_deg(kSleeveSlope_deg);
   const Vec3 cuff_top = kShoulderTip + kSleeveLength * Vec3(cos, -sin, 0);
   const Vec3 cuff_bottom = cuff_top + kCuffWidth * Vec3(-sin, -cos, 0);
@@ -173,15 +180,15 @@ Pattern make_pattern(double neck_depth) {
   const Vec3 armhole_bend(kShoulderTip.x() + 0.005, kUnderarm.y() + 0.06, 0);
 
   Pattern p;
-  p.hem = divide(hem_centre, kHemCorner, kHemCells);
-  p.centre = divide(hem_centre, neck_centre, kSideCells + kArmholeCells);
-  p.neck = divide(make_arc(neck_centre, neck_bend, kNeckPoint), kNeckCells);
-  p.shoulder = divide(kNeckPoint, kShoulderTip, kShoulderCells);
-  p.side = divide(kHemCorner, kUnderarm, kSideCells);
-  p.armhole = divide(make_arc(kUnderarm, armhole_bend, kShoulderTip), kArmholeCells);
-  p.sleeve_top = divide(kShoulderTip, cuff_top, kSleeveCells);
-  p.sleeve_bottom = divide(kUnderarm, cuff_bottom, kSleeveCells);
-  p.cuff = divide(cuff_bottom, cuff_top, kArmholeCells);
+  p.hem = divide(hem_centre, kHemCorner, cells.hem());
+  p.centre = divide(hem_centre, neck_centre, cells.side + cells.armhole);
+  p.neck = divide(make_arc(neck_centre, neck_bend, kNeckPoint), cells.neck);
+  p.shoulder = divide(kNeckPoint, kShoulderTip, cells.shoulder);
+  p.side = divide(kHemCorner, kUnderarm, cells.side);
+  p.armhole = divide(make_arc(kUnderarm, armhole_bend, kShoulderTip), cells.armhole);
+  p.sleeve_top = divide(kShoulderTip, cuff_top, cells.sleeve);
+  p.sleeve_bottom = divide(kUnderarm, cuff_bottom, cells.sleeve);
+  p.cuff = divide(cuff_bottom, cuff_top, cells.armhole);
   return p;
 }
 
@@ -279,8 +286,8 @@ void relax_once(TriangleMesh& panel, const std::vector<bool>& held) {
   }
 }
 
-TriangleMesh make_front(double neck_depth) {
-  const Pattern pattern = make_pattern(neck_depth);
+TriangleMesh make_front(double neck_depth, const Cells& cells) {
+  const Pattern pattern = make_pattern(neck_depth, cells);
   TriangleMesh panel = make_flat_panel(pattern);
   const auto on_seam =
       find_points(panel, {pattern.side, pattern.sleeve_bottom, pattern.sleeve_top, pattern.shoulder});
@@ -297,8 +304,8 @@ TriangleMesh make_front(double neck_depth) {
   return panel;
 }
 
-TriangleMesh make_back(double neck_depth) {
-  TriangleMesh panel = make_front(neck_depth);
+TriangleMesh make_back(double neck_depth, const Cells& cells) {
+  TriangleMesh panel = make_front(neck_depth, cells);
   for (Vec3& x : panel.positions) x.z() = 0.0 - x.z();  // unlike -z, leaves 0 without a sign
   turn_over(panel);
   return panel;
@@ -332,9 +339,10 @@ Quality measure(const TriangleMesh& mesh) {
   return quality;
 }
 
-void make_tshirt(const char* file) {
-  const std::vector<ObjObject> panels = {{"front", make_front(kFrontNeckDepth)},
-                                         {"back", make_back(kBackNeckDepth)}};
+void make_tshirt(const char* file, double fineness) {
+  const Cells cells = make_cells(fineness);
+  const std::vector<ObjObject> panels = {{"front", make_front(kFrontNeckDepth, cells)},
+                                         {"back", make_back(kBackNeckDepth, cells)}};
   write_obj(file, panels);
   for (const auto& [name, mesh] : panels) {
     const Quality q = measure(mesh);
@@ -349,12 +357,13 @@ void make_tshirt(const char* file) {
 }  // namespace weft
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: make_tshirt OUT.obj\n");
+  const double fineness = argc == 3 ? std::atof(argv[2]) : 1;
+  if (argc < 2 || argc > 3 || !(fineness >= 0.5 && fineness <= 10)) {
+    std::fprintf(stderr, "usage: make_tshirt OUT.obj [FINENESS from 0.5 to 10]\n");
     return 2;
   }
   try {
-    weft::make_tshirt(argv[1]);
+    weft::make_tshirt(argv[1], fineness);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_tshirt: %s\n", error.what());
     return 1;
