@@ -252,6 +252,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   collect_shapes(1.0);
   std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
+  if (constraints_.empty()) return;
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
   project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });

@@ -80,24 +80,30 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
 /// where it was, at every time. Once one has left it, those that will soon do so count as well.
 void Proximity::find_moved(const SurfaceMotion& motion) {
   moved_.clear();
-  drift_at_start_ = find_drift(motion.start, made_for_.start);
-  drift_at_end_ = find_drift(motion.end, made_for_.end);
-  const double most_sq = made_with_ * made_with_, soon_sq = kSoon * kSoon * most_sq;
-  bool has_any_left = false;
-  for (int v = 0; v < surface_.num_vertices; ++v) {
+  find_drift(motion);
+  const auto is_within = [&](int v, double slack) {
     const double at_start_sq = (motion.start[v] - made_for_.start[v] - drift_at_start_).squaredNorm(),
                  at_end_sq = (motion.end[v] - made_for_.end[v] - drift_at_end_).squaredNorm();
-    has_any_left |= !(at_start_sq <= most_sq && at_end_sq <= most_sq);
-    if (!(at_start_sq <= soon_sq && at_end_sq <= soon_sq)) moved_.push_back(v);
+    return (at_start_sq <= slack * slack) & (at_end_sq <= slack * slack);  // false for what is not a number
+  };
+  bool are_all_within = true;
+  for (int v = 0; v < surface_.num_vertices; ++v) are_all_within &= is_within(v, made_with_);
+  if (are_all_within) return;
+  for (int v = 0; v < surface_.num_vertices; ++v) {
+    if (!is_within(v, kSoon * made_with_)) moved_.push_back(v);
   }
-  if (!has_any_left) moved_.clear();
 }
 
 /// What all cloth has moved in common.
-Vec3 Proximity::find_drift(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const {
-  Vec3 sum = Vec3::Zero();
-  for (int v = 0; v < num_cloth_vertices_; ++v) sum += x[v] - reference[v];
-  return sum / std::max(1, num_cloth_vertices_);
+void Proximity::find_drift(const SurfaceMotion& motion) {
+  Vec3 at_start = Vec3::Zero(), at_end = Vec3::Zero();
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    at_start += motion.start[v] - made_for_.start[v];
+    at_end += motion.end[v] - made_for_.end[v];
+  }
+  const int count = std::max(1, num_cloth_vertices_);
+  drift_at_start_ = at_start / count;
+  drift_at_end_ = at_end / count;
 }
 
 /// Of the vertices in is_moved_ and the triangles in is_renewed_.
@@ -307,11 +313,25 @@ void Proximity::add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairCh
   for (const int v : b.vertex) {
     if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(v, pair.a, is_fan, chunk);
   }
+  std::array<MovingAabb, 3> box_b;
+  for (int k = 0; k < 3; ++k) {
+    if (b.edge[k] >= 0) box_b[k] = box_of_edge(b.edge[k]);
+  }
   for (const int e : a.edge) {
-    for (const int f : b.edge) {
-      if (e >= 0 && f >= 0) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
+    if (e < 0) continue;
+    const MovingAabb box_e = box_of_edge(e);
+    for (int k = 0; k < 3; ++k) {
+      const int f = b.edge[k];
+      if (f >= 0 && box_e.may_meet(box_b[k])) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
     }
   }
+}
+
+MovingAabb Proximity::box_of_edge(int edge) const {
+  const auto [i, j] = surface_.edges[edge];
+  MovingAabb box = vertex_box_[i];
+  box.merge(vertex_box_[j]);
+  return box;
 }
 
 /// How near two features must be at the start to become close during the step: a and b are their corners.
@@ -350,10 +370,6 @@ void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairC
 void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
-  MovingAabb box_a = vertex_box_[e[0]], box_b = vertex_box_[f[0]];
-  box_a.merge(vertex_box_[e[1]]);
-  box_b.merge(vertex_box_[f[1]]);
-  if (!box_a.may_meet(box_b)) return;
   const auto distance = [&](const std::vector<Vec3>& x) {
     return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
   };

@@ -75,7 +75,7 @@ class Proximity {
   };
 
   void find_moved(const SurfaceMotion& motion);
-  Vec3 find_drift(const std::vector<Vec3>& x, const std::vector<Vec3>& reference) const;
+  void find_drift(const SurfaceMotion& motion);
   void choose_slack();
   void measure_edges();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
@@ -92,6 +92,7 @@ class Proximity {
   void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
   void add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairChunk& chunk) const;
   void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
+  MovingAabb box_of_edge(int edge) const;
   void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
   template <class Distance>
   void add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
