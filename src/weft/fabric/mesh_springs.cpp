@@ -112,7 +112,6 @@ MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, c
   for (std::size_t e = 0; e < edges.size(); ++e) {
     for (const Side& side : sides[e]) {
       if (side.part.isZero()) continue;
-      // A vertex weighs by the root of its area in the sum of squares.
       for (const int v : mesh.triangles[side.triangle])
         columns[e].push_back({v, scale.asDiagonal() * side.part * scale.asDiagonal() / around[v]});
     }

@@ -40,6 +40,51 @@ TriangleMesh make_triangles(const Grid& grid, SpecimenMesh mesh, int straight_co
   return triangles;
 }
 
+/// Without springs.
+ClothMaterial bare_material(const Fabric& fabric) {
+  return {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0};
+}
+
+/// A fabric on its mesh.
+struct Laid {
+  std::shared_ptr<const ClothTopology> topology;
+  ClothMaterial material;
+  std::shared_ptr<const ClothElements> elements;
+};
+
+Laid lay_on_grid(const Fabric& fabric, const Grid& grid, double warp_deg, bool has_springs) {
+  const GridWarp warp = std::fmod(warp_deg, 180) == 0 ? GridWarp::first_axis : GridWarp::second_axis;
+  Laid laid{build_grid_topology(grid, SpringModel::alternating), bare_material(fabric), nullptr};
+  if (!has_springs) {
+    laid.elements = build_grid_elements(grid, laid.topology->mesh, warp, fabric);
+    return laid;
+  }
+  const GridSprings springs = make_grid_springs(grid, CellDiagonals::alternating, warp, fabric, "specimen");
+  laid.material.structural = springs.along_x;
+  laid.material.structural_z = springs.along_z;
+  laid.material.shear = springs.diagonal;
+  laid.material.damping_time = fabric.damping;
+  laid.elements = build_grid_bending_elements(grid, warp, fabric);
+  return laid;
+}
+
+Laid lay_on_mesh(const Fabric& fabric, TriangleMesh triangles, double warp_deg, bool has_springs) {
+  Laid laid{build_mesh_topology(std::move(triangles)), bare_material(fabric), nullptr};
+  const TriangleMesh& mesh = laid.topology->mesh;
+  const auto [s, c] = sin_cos_deg(warp_deg);
+  const WarpField warp = warp_from_direction(mesh, {c, 0, s});
+  if (!has_springs) {
+    laid.elements = build_mesh_elements(mesh, warp, fabric);
+    return laid;
+  }
+  laid.material.structural = 1;
+  laid.material.spring_factors = make_mesh_springs(mesh, warp, fabric, "specimen").stiffness;
+  laid.material.spring_factors.resize(laid.topology->springs.size(), 0.0);
+  laid.material.damping_time = fabric.damping;
+  laid.elements = build_mesh_bending_elements(mesh, warp, fabric);
+  return laid;
+}
+
 void stop(ClothState& state) {
   for (std::size_t i = 0; i < state.v.size(); ++i) state.v.set(i, Vec3::Zero());
   state.history.step = 0;
@@ -49,42 +94,14 @@ void stop(ClothState& state) {
 
 Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh,
                         const RectangleOptions& options) {
-  const bool is_grid = mesh == SpecimenMesh::grid && std::fmod(options.warp_deg, 90) == 0;
   const bool has_springs = options.membrane == SpecimenMembrane::springs;
-  ClothMaterial material{.density = fabric.density, .structural = 0, .shear = 0, .bend = 0};
-  if (has_springs) material.damping_time = fabric.damping;
-  std::shared_ptr<const ClothTopology> topology;
-  std::shared_ptr<const ClothElements> elements;
-  if (is_grid) {
-    const GridWarp warp =
-        std::fmod(options.warp_deg, 180) == 0 ? GridWarp::first_axis : GridWarp::second_axis;
-    topology = build_grid_topology(grid, SpringModel::alternating);
-    if (has_springs) {
-      const GridSprings springs =
-          make_grid_springs(grid, CellDiagonals::alternating, warp, fabric, "specimen");
-      material.structural = springs.along_x;
-      material.structural_z = springs.along_z;
-      material.shear = springs.diagonal;
-      elements = build_grid_bending_elements(grid, warp, fabric);
-    } else {
-      elements = build_grid_elements(grid, topology->mesh, warp, fabric);
-    }
-  } else {
-    topology = build_mesh_topology(make_triangles(grid, mesh, options.straight_column));
-    const auto [s, c] = sin_cos_deg(options.warp_deg);
-    const WarpField warp = warp_from_direction(topology->mesh, {c, 0, s});
-    if (has_springs) {
-      material.structural = 1;
-      material.spring_factors = make_mesh_springs(topology->mesh, warp, fabric, "specimen").stiffness;
-      material.spring_factors.resize(topology->springs.size(), 0.0);
-      elements = build_mesh_bending_elements(topology->mesh, warp, fabric);
-    } else {
-      elements = build_mesh_elements(topology->mesh, warp, fabric);
-    }
-  }
+  const bool is_grid = mesh == SpecimenMesh::grid && std::fmod(options.warp_deg, 90) == 0;
+  const Laid laid = is_grid ? lay_on_grid(fabric, grid, options.warp_deg, has_springs)
+                            : lay_on_mesh(fabric, make_triangles(grid, mesh, options.straight_column),
+                                          options.warp_deg, has_springs);
   Specimen specimen;
-  specimen.model = build_cloth_model(topology, material, elements);
-  specimen.state = make_state(topology->mesh.positions);
+  specimen.model = build_cloth_model(laid.topology, laid.material, laid.elements);
+  specimen.state = make_state(laid.topology->mesh.positions);
   return specimen;
 }
 
