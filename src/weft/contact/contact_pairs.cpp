@@ -23,8 +23,9 @@ constexpr double kParallelSq = 0.03;
 /// Edges that pass each other nearer than this when they are in one plane do meet [m].
 constexpr double kMeeting = 1e-5;
 
-/// Pairs of cloth and collider count for the solve from this share of their gap farther apart.
-constexpr double kNearBy = 0.6;
+/// Pairs of cloth and collider, and of two cloths, count for the solve from this share of their gap farther
+/// apart. More than this of two cloths makes friction between them too weak near its limit.
+constexpr double kNearBy = 0.6, kNearByCloth = 0.07;
 
 /// Features this near have no direction between them at all [m].
 constexpr double kTouching = 1e-9;
@@ -75,10 +76,10 @@ bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
       nearest = d;
       pair = &pairs[p];
     }
-    if (nearest.distance() <= near_by(motion_.half_thickness[vertex], true)) break;
+    if (nearest.distance() <= near_by(motion_.half_thickness[vertex], kNearBy)) break;
   }
   if (nearest.region == TriangleRegion::face ||
-      nearest.distance() > near_by(motion_.half_thickness[vertex], true))
+      nearest.distance() > near_by(motion_.half_thickness[vertex], kNearBy))
     return false;
   const auto [i, j, k] = proximity_.surface().triangles[pair->b];
   c.num_vertices = 4;
@@ -114,7 +115,7 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   if (d.region != TriangleRegion::face) return false;
   c.weight = {-d.weights[0], -d.weights[1], -d.weights[2], 1};
   const std::vector<Vec3>& y = motion_.end;
-  const double near = near_by(gap, is_on_body(c));
+  const double near = near_by(gap, share_nearby(c));
   if (distance > near && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > near) return false;
   if (is_on_closed_body(i)) {
     // The outside is known, so that what is inside by a little is pushed out.
@@ -154,7 +155,7 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
   if (distance < kTouching) return false;
   const std::vector<Vec3>& y = motion_.end;
-  const double near = near_by(gap, is_on_body(c));
+  const double near = near_by(gap, share_nearby(c));
   if (distance > near && edge_edge_distance(y[i], y[j], y[k], y[l]).distance() > near) return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
@@ -192,10 +193,16 @@ double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const
   return (is_on_body(c) ? 1 - pressed_in_ : 1) * std::min(thickness, double{pair.max_gap});
 }
 
-/// How near a pair must be to count. The solve is told of what lies on a collider though it does not quite
-/// touch: it would fall.
-double ContactSystem::near_by(double gap, bool is_body) const {
-  return (is_for_solve_ && is_body ? 1 + kNearBy : 1) * gap;
+/// How near a pair must be to count. The solve is told of what lies on a collider or on another cloth though
+/// it does not quite touch: it would fall, be set apart again, and buzz.
+double ContactSystem::near_by(double gap, double share) const {
+  return (is_for_solve_ ? 1 + share : 1) * gap;
+}
+
+/// The share of its gap by which a pair may be farther apart and count for the solve.
+double ContactSystem::share_nearby(const Constraint& c) const {
+  if (is_on_body(c)) return kNearBy;
+  return mesh_of(first_vertex_, c.vertex[0]) != mesh_of(first_vertex_, c.vertex[3]) ? kNearByCloth : 0;
 }
 
 /// By how much the pair's distance can change during the step, at most [m].

@@ -162,7 +162,8 @@ class ContactSystem {
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
   bool finish_crossing(const FeaturePair& pair, Constraint& c) const;
   double gap_of(const FeaturePair& pair, const Constraint& c) const;
-  double near_by(double gap, bool is_body) const;
+  double near_by(double gap, double share) const;
+  double share_nearby(const Constraint& c) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
   void set_laws();
