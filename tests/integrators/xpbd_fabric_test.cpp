@@ -92,6 +92,23 @@ TEST(XpbdFabric, ShakenKeepsItsMomentum) {
   }
 }
 
+TEST(XpbdFabric, HasTheSameBitsForAnyNumberOfThreads) {
+  const Grid grid{.size_x = 1, .size_z = 1, .cells_x = 60, .cells_z = 60};  // several chunks a colour
+  Fabric fabric = find_fabric("denim").fabric;
+  fabric.damping = 0.01;
+  for (const auto& model : {test::on_mesh(grid, fabric), with_hinges(grid, fabric)}) {
+    const Environment environment = test::hung_by(*model, {0, 60});
+    std::vector<ClothState> ends;
+    for (const int threads : {1, 3}) {
+      ends.push_back(make_state(model->topology->mesh.positions));
+      const auto xpbd = make_xpbd({});
+      const auto jobs = make_jobs(threads);
+      for (int s = 0; s < 20; ++s) xpbd->advance(*model, environment, kFrame / 50, *jobs, ends.back());
+    }
+    for (int i = 0; i < model->num_particles(); ++i) ASSERT_EQ(ends[0].v.get(i), ends[1].v.get(i)) << i;
+  }
+}
+
 TEST(XpbdFabric, KeepsAStrainLimitWithSubstepsEnough) {
   // A loose sheet; the limit is a stiff spring of its own, which takes more substeps than the cloth does.
   Fabric loose{.density = 0.2, .c11 = 20, .c22 = 20, .c12 = 0, .g = 5};
