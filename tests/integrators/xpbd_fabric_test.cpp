@@ -21,18 +21,6 @@ void run(Integrator& integrator, const ClothModel& model, const Environment& env
   test::advance(integrator, model, environment, kFrame / substeps, frames * substeps, state);
 }
 
-double mean_distance(const ClothState& a, const ClothState& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) sum += (a.position(i) - b.position(i)).norm();
-  return sum / static_cast<double>(a.x.size());
-}
-
-Vec3 momentum(const ClothModel& model, const ClothState& state) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < model.num_particles(); ++i) sum += model.mass[i] * state.v.get(i);
-  return sum;
-}
-
 std::shared_ptr<const ClothModel> with_hinges(const Grid& grid, const Fabric& fabric) {
   const auto topology = build_mesh_topology(make_sheet(test::SheetKind::random, grid));
   const TriangleMesh& mesh = topology->mesh;
@@ -61,7 +49,7 @@ TEST(XpbdFabric, SwingsAsWithImplicitEulerAtTheSameSteps) {
       run(*xpbd, *model, environment, 12, fast);
       const auto euler = make_implicit_euler({.tolerance = 1e-5});
       test::advance(*euler, *model, environment, kFrame / substeps, 12 * substeps, slow);
-      const double distance = mean_distance(fast, slow);
+      const double distance = test::rms_distance(fast, slow);
       EXPECT_LT(distance, before / 2);
       before = distance;
     }
@@ -85,10 +73,10 @@ TEST(XpbdFabric, ShakenKeepsItsMomentum) {
   for (const auto& model : all_kinds(fabric)) {
     ClothState state = make_state(model->topology->mesh.positions);
     test::shake(state, 0.002, 1);
-    const Vec3 before = momentum(*model, state);
+    const Vec3 before = compute_momentum(*model, state);
     const auto xpbd = make_xpbd({});
     run(*xpbd, *model, {.gravity = Vec3::Zero()}, 10, state);
-    EXPECT_LT((momentum(*model, state) - before).norm(), 1e-6) << "0.01 kg at about 1 m/s, in floats";
+    EXPECT_LT((compute_momentum(*model, state) - before).norm(), 1e-6) << "0.01 kg at about 1 m/s, in floats";
   }
 }
 

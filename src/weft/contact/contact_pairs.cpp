@@ -201,6 +201,7 @@ double ContactSystem::near_by(double gap, double share) const {
 
 /// The share of its gap by which a pair may be farther apart and count for the solve.
 double ContactSystem::share_nearby(const Constraint& c) const {
+  if (!is_for_solve_) return 0;
   if (is_on_body(c)) return kNearBy;
   return mesh_of(first_vertex_, c.vertex[0]) != mesh_of(first_vertex_, c.vertex[3]) ? kNearByCloth : 0;
 }
