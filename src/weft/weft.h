@@ -37,6 +37,7 @@
 // What a cloth is, and what of it moves:
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
+#include "weft/model/fabric_springs.h"
 #include "weft/model/springs.h"
 // What acts on it:
 #include "weft/animation/rigid_motion.h"

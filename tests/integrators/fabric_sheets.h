@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tests/forces/sheets.h"
-#include "weft/fabric/grid_springs.h"
 #include "weft/integrators/integrator.h"
+#include "weft/model/fabric_springs.h"
 
 namespace weft::test {
 
@@ -37,15 +37,10 @@ inline std::shared_ptr<const ClothModel> springs_on(const Grid& grid, double str
                          .strain_limit = strain_limit,
                          .stretch_warp = {},
                          .stretch_weft = {}};
-  const GridSprings springs =
-      make_grid_springs(grid, CellDiagonals::alternating, GridWarp::first_axis, fabric, "test");
-  const ClothMaterial material{.density = fabric.density,
-                               .structural = springs.along_x,
-                               .shear = springs.diagonal,
-                               .bend = 0,
-                               .structural_z = springs.along_z,
-                               .damping_time = fabric.damping,
-                               .spring_factors = {}};
+  ClothMaterial material{.density = fabric.density, .bend = 0};
+  set_fabric_springs(
+      make_grid_springs(grid, CellDiagonals::alternating, GridWarp::first_axis, fabric, "test"), fabric,
+      material);
   return build_cloth_model(build_grid_topology(grid, SpringModel::alternating), material,
                            build_grid_bending_elements(grid, GridWarp::first_axis, fabric));
 }

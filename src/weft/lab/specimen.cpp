@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "weft/core/angle.h"
-#include "weft/fabric/grid_springs.h"
-#include "weft/fabric/mesh_springs.h"
 #include "weft/forces/membrane.h"
 #include "weft/forces/spring.h"
 #include "weft/mesh/sample_meshes.h"
+#include "weft/model/fabric_springs.h"
 #include "weft/world/measures.h"
 
 namespace weft {
@@ -59,11 +58,8 @@ Laid lay_on_grid(const Fabric& fabric, const Grid& grid, double warp_deg, bool h
     laid.elements = build_grid_elements(grid, laid.topology->mesh, warp, fabric);
     return laid;
   }
-  const GridSprings springs = make_grid_springs(grid, CellDiagonals::alternating, warp, fabric, "specimen");
-  laid.material.structural = springs.along_x;
-  laid.material.structural_z = springs.along_z;
-  laid.material.shear = springs.diagonal;
-  laid.material.damping_time = fabric.damping;
+  set_fabric_springs(make_grid_springs(grid, CellDiagonals::alternating, warp, fabric, "specimen"), fabric,
+                     laid.material);
   laid.elements = build_grid_bending_elements(grid, warp, fabric);
   return laid;
 }
@@ -77,10 +73,8 @@ Laid lay_on_mesh(const Fabric& fabric, TriangleMesh triangles, double warp_deg, 
     laid.elements = build_mesh_elements(mesh, warp, fabric);
     return laid;
   }
-  laid.material.structural = 1;
-  laid.material.spring_factors = make_mesh_springs(mesh, warp, fabric, "specimen").stiffness;
-  laid.material.spring_factors.resize(laid.topology->springs.size(), 0.0);
-  laid.material.damping_time = fabric.damping;
+  set_fabric_springs(make_mesh_springs(mesh, warp, fabric, "specimen"), *laid.topology, fabric,
+                     laid.material);
   laid.elements = build_mesh_bending_elements(mesh, warp, fabric);
   return laid;
 }

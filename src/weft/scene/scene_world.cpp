@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "weft/core/error.h"
-#include "weft/fabric/grid_springs.h"
-#include "weft/fabric/mesh_springs.h"
+#include "weft/model/fabric_springs.h"
 #include "weft/scene/scene_meshes.h"
 
 namespace weft {
@@ -71,10 +70,7 @@ Stuff make_springs_on_grid(const ClothSceneDesc& desc, const Grid& grid, std::ve
   for (const std::string& warning : springs.warnings)
     warnings.push_back("cloth \"" + desc.name + "\": " + warning);
   ClothMaterial material = desc.material;
-  material.structural = springs.along_x;
-  material.structural_z = springs.along_z;
-  material.shear = springs.diagonal;
-  material.damping_time = fabric.numbers.damping;
+  set_fabric_springs(springs, fabric.numbers, material);
   return {material, build_grid_bending_elements(grid, *warp, fabric.numbers)};
 }
 
@@ -103,14 +99,11 @@ Stuff make_springs_on_mesh(const ClothSceneDesc& desc, const LoadedCloth& loaded
   const Fabric& fabric = desc.fabric->numbers;
   const ClothTopology& topology = *loaded.topology;
   const WarpField warp = find_warp(desc, loaded, warnings);
-  MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric->name);
+  const MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric->name);
   for (const std::string& warning : springs.warnings)
     warnings.push_back("cloth \"" + desc.name + "\": " + warning);
   ClothMaterial material = desc.material;
-  material.structural = 1;
-  material.damping_time = fabric.damping;
-  material.spring_factors = std::move(springs.stiffness);  // edges are a mesh's first springs
-  material.spring_factors.resize(topology.springs.size(), 0.0);
+  set_fabric_springs(springs, topology, fabric, material);
   return {material, build_mesh_bending_elements(topology.mesh, warp, fabric)};
 }
 
