@@ -32,6 +32,8 @@ constexpr double kMostOfSize = 10;
 /// Of two neighbours' distance at rest, what contact may ask for.
 constexpr float kShareOfRest = 0.5f;
 
+constexpr int kFanGrain = 2048;  // pairs of triangles in a fan per chunk
+
 }  // namespace
 
 void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices,
@@ -233,14 +235,26 @@ void Proximity::drop_pairs_of_moved() {
 
 /// Of triangles of which one is in is_renewed_.
 void Proximity::find_pairs(AabbTree::Extent extent, JobSystem& jobs) {
-  cloth_tree_.find_self_pairs(jobs, search_, extent);
-  add_pairs(search_.pairs, 0, false, jobs);
+  const auto add_found = [&](int first, PairChunk& chunk) {
+    for (const ItemPair& pair : chunk.triangles.pairs)
+      add_pairs_of_triangles(pair.a, first + pair.b, false, chunk);
+  };
+  const auto add_within_cloth = [&](int part, PairChunk& chunk) {
+    cloth_tree_.find_self_part(part, extent, chunk.triangles);
+    add_found(0, chunk);
+  };
+  const auto add_on_bodies = [&](int part, PairChunk& chunk) {
+    cloth_tree_.find_part(body_tree_, part, extent, chunk.triangles);
+    add_found(num_cloth_triangles_, chunk);
+  };
+  const auto add_fan = [&](int p, PairChunk& chunk) {
+    add_pairs_of_triangles(fans_[p].a, fans_[p].b, true, chunk);
+  };
+  add_pairs(cloth_tree_.num_self_parts(), 1, add_within_cloth, jobs);
+  if (static_cast<int>(surface_.triangles.size()) > num_cloth_triangles_)
+    add_pairs(cloth_tree_.num_parts_with(body_tree_), 1, add_on_bodies, jobs);
   find_fans(jobs);
-  add_pairs(fans_, 0, true, jobs);
-  if (static_cast<int>(surface_.triangles.size()) > num_cloth_triangles_) {
-    cloth_tree_.find_pairs(body_tree_, jobs, search_, extent);
-    add_pairs(search_.pairs, num_cloth_triangles_, false, jobs);
-  }
+  add_pairs(static_cast<int>(fans_.size()), kFanGrain, add_fan, jobs);
   // The tree's shape, and with it the order, depends on what came before; contact must not.
   put_in_order(surface_.num_vertices, vertex_triangle_);
   put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
@@ -266,23 +280,16 @@ void Proximity::measure_edges() {
   longest_edge_ = std::sqrt(longest_sq) + 2 * made_with_;
 }
 
-/// Of all these pairs of triangles, the second one counted from `first`.
-void Proximity::add_pairs(const std::vector<ItemPair>& triangles, int first, bool is_fan, JobSystem& jobs) {
-  constexpr int kGrain = 2048;
+/// What add(i, chunk) adds to a chunk for i from 0 to before `count`.
+template <class Add>
+void Proximity::add_pairs(int count, int grain, const Add& add, JobSystem& jobs) {
   const auto append = [](const std::vector<FeaturePair>& from, std::vector<FeaturePair>& to) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  collect_in_order(
-      jobs, static_cast<int>(triangles.size()), kGrain, chunks_,
-      [&](int p, PairChunk& chunk) {
-        const ItemPair pair{triangles[p].a, triangles[p].b + first};
-        if ((is_renewed_[pair.a] || is_renewed_[pair.b]) && !pass(pair.a, pair.b))
-          add_pairs_of_triangles(pair, is_fan, chunk);
-      },
-      [&](const PairChunk& chunk) {
-        append(chunk.vertex_triangle, vertex_triangle_);
-        append(chunk.edge_edge, edge_edge_);
-      });
+  collect_in_order(jobs, count, grain, chunks_, add, [&](const PairChunk& chunk) {
+    append(chunk.vertex_triangle, vertex_triangle_);
+    append(chunk.edge_edge, edge_edge_);
+  });
 }
 
 /// By a, then by b, each once; a is below `end_of_a`.
@@ -304,14 +311,15 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
   }
 }
 
-void Proximity::add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairChunk& chunk) const {
-  const Surface::OwnedFeatures &a = surface_.owned[pair.a], &b = surface_.owned[pair.b];
-  const Triangle &ta = surface_.triangles[pair.a], &tb = surface_.triangles[pair.b];
+void Proximity::add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const {
+  if ((!is_renewed_[first] && !is_renewed_[second]) || pass(first, second)) return;
+  const Surface::OwnedFeatures &a = surface_.owned[first], &b = surface_.owned[second];
+  const Triangle &ta = surface_.triangles[first], &tb = surface_.triangles[second];
   for (const int v : a.vertex) {
-    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(v, pair.b, is_fan, chunk);
+    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(v, second, is_fan, chunk);
   }
   for (const int v : b.vertex) {
-    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(v, pair.a, is_fan, chunk);
+    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(v, first, is_fan, chunk);
   }
   std::array<MovingAabb, 3> box_b;
   for (int k = 0; k < 3; ++k) {
@@ -387,19 +395,21 @@ void Proximity::find_fan_shapes(const std::vector<Vec3>& x, std::vector<FanShape
       const Vec3 area = (x[j] - x[i]).cross(x[k] - x[i]);
       const double longest_sq =
           std::max({(x[j] - x[i]).squaredNorm(), (x[k] - x[j]).squaredNorm(), (x[i] - x[k]).squaredNorm()});
-      shapes[t] = {area.stableNormalized(), longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0};
+      const double height = longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0;
+      shapes[t] = {area.stableNormalized().cast<float>(), static_cast<float>(height)};
     }
   });
 }
 
 /// Whether the cloth makes a point there.
 bool Proximity::is_sharp(int vertex, const std::vector<FanShape>& shapes) const {
-  Vec3 sum = Vec3::Zero();
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (const int t : surface_.triangles_at(vertex)) sum += shapes[t].normal;
-  const double length = sum.norm();
+  const float length = sum.norm();
   for (const int t : surface_.triangles_at(vertex)) {
-    const double facing = shapes[t].normal.dot(sum);
-    if (!(facing >= kSharp * length && facing * shapes[t].height > 2 * made_with_ * length)) return true;
+    const float facing = shapes[t].normal.dot(sum);
+    const bool is_flat = facing >= kSharp * length && facing * shapes[t].height > 2 * made_with_ * length;
+    if (!is_flat) return true;  // what is not a number either
   }
   return false;
 }

@@ -62,6 +62,7 @@ class Proximity {
  private:
   struct PairChunk {
     std::vector<FeaturePair> vertex_triangle, edge_edge;
+    PairPart triangles;
 
     void clear() {
       vertex_triangle.clear();
@@ -70,8 +71,8 @@ class Proximity {
   };
 
   struct FanShape {
-    Vec3 normal;
-    double height;  // the least of three [m]
+    Eigen::Vector3f normal;
+    float height;  // the least of three [m]
   };
 
   void find_moved(const SurfaceMotion& motion);
@@ -88,9 +89,10 @@ class Proximity {
   int find_wildest(const SurfaceMotion& motion) const;
   void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
   void find_pairs(AabbTree::Extent extent, JobSystem& jobs);
-  void add_pairs(const std::vector<ItemPair>& triangles, int first, bool is_fan, JobSystem& jobs);
+  template <class Add>
+  void add_pairs(int count, int grain, const Add& add, JobSystem& jobs);
   void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
-  void add_pairs_of_triangles(const ItemPair& pair, bool is_fan, PairChunk& chunk) const;
+  void add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const;
   void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
   MovingAabb box_of_edge(int edge) const;
   void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
@@ -133,7 +135,6 @@ class Proximity {
   std::vector<char> is_near_;     // (num_vertices) in one of these triangles
 
   // Work space.
-  PairSearch search_;
   std::vector<PairChunk> chunks_;
   std::vector<int> begin_of_a_;
   std::vector<FeaturePair> ordered_;

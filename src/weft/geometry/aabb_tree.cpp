@@ -8,8 +8,8 @@
 namespace weft {
 namespace {
 
-constexpr int kNodeGrain = 256;         // nodes per chunk of a query
-constexpr int kCopyGrain = 16;          // chunks whose results are copied by one job
+constexpr int kNodesPerPart = 256;      // of a query
+constexpr int kCopyGrain = 16;          // parts whose results are copied by one job
 constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are dealt with side by side
 constexpr std::size_t kNumRanges = 32;  // parts of a tree that are built side by side
 
@@ -217,25 +217,31 @@ WEFT_ALWAYS_INLINE std::int64_t test_leaf_pairs(const TreeView& left, const Tree
 }
 
 #define WEFT_LEAF_PAIRS \
-  (const TreeView& left, const TreeView& right, aabb_tree::Chunk& chunk, std::int64_t& box_pairs)
-#define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, chunk, box_pairs)
+  (const TreeView& left, const TreeView& right, PairPart& found, std::int64_t& box_pairs)
+#define WEFT_LEAF_PAIRS_ARGUMENTS (left, right, found, box_pairs)
 
 WEFT_ALWAYS_INLINE void test_within_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<true, false>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<true, false>(left, right, found.leaf_pairs, found.pairs);
 }
 WEFT_ALWAYS_INLINE void test_between_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<false, false>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<false, false>(left, right, found.leaf_pairs, found.pairs);
 }
 WEFT_ALWAYS_INLINE void test_moving_within_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<true, true>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<true, true>(left, right, found.leaf_pairs, found.pairs);
 }
 WEFT_ALWAYS_INLINE void test_moving_between_body WEFT_LEAF_PAIRS {
-  box_pairs = test_leaf_pairs<false, true>(left, right, chunk.leaf_pairs, chunk.pairs);
+  box_pairs = test_leaf_pairs<false, true>(left, right, found.leaf_pairs, found.pairs);
 }
 WEFT_MULTIVERSION(test_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_moving_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_moving_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
+
+void clear(PairPart& found) {
+  found.leaf_pairs.clear();
+  found.pairs.clear();
+  found.box_pairs = found.comparisons = 0;
+}
 
 }  // namespace
 
@@ -303,17 +309,17 @@ bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direct
 /// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
 template <class MayMeet>
 void AabbTree::collect(const AabbTree& other, NodePair start, const MayMeet& may_meet,
-                       aabb_tree::Chunk& chunk) const {
+                       PairPart& found) const {
   NodePair stack[2 * kMaxDepth];
   int depth = 0;
   stack[depth++] = start;
   while (depth > 0) {
     const auto [n, m] = stack[--depth];
     const Node &a = nodes_[n], &b = other.nodes_[m];
-    ++chunk.box_pairs;
+    ++found.box_pairs;
     if (!may_meet(n, m)) continue;
     if (a.right == 0 && b.right == 0) {
-      chunk.leaf_pairs.push_back({n, m});
+      found.leaf_pairs.push_back({n, m});
     } else if (b.right == 0 || (a.right != 0 && a.right - n >= b.right - m)) {
       stack[depth++] = {a.right, m};
       stack[depth++] = {n + 1, m};
@@ -338,97 +344,114 @@ void AabbTree::mark(std::span<const char> is_marked) {
 }
 
 void AabbTree::find_leaf_pairs(const AabbTree& other, NodePair start, Extent extent, bool counts,
-                               aabb_tree::Chunk& chunk) const {
+                               PairPart& found) const {
   if (moves_ && other.moves_ && extent == Extent::marked) {
     collect(
         other, start,
         [&](int n, int m) {
           return (is_marked_[n] || other.is_marked_[m]) && moving(n).may_meet(other.moving(m));
         },
-        chunk);
+        found);
   } else if (moves_ && other.moves_) {
     collect(
-        other, start, [&](int n, int m) { return moving(n).may_meet(other.moving(m)); }, chunk);
+        other, start, [&](int n, int m) { return moving(n).may_meet(other.moving(m)); }, found);
   } else if (counts) {
     collect(
         other, start,
-        [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box, chunk.comparisons); }, chunk);
+        [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box, found.comparisons); }, found);
   } else {
     collect(
-        other, start, [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box); }, chunk);
+        other, start, [&](int n, int m) { return nodes_[n].box.overlaps(other.nodes_[m].box); }, found);
   }
 }
 
-/// Runs find_below(begin, end, chunk) over [0, num_starts) in chunks, tests the leaves' items against
-/// each other, and strings the chunks' results together in order.
-template <class FindBelow>
-void AabbTree::find_in_chunks(int num_starts, int grain, const FindBelow& find_below, const AabbTree& other,
-                              bool is_self, JobSystem& jobs, PairSearch& search) const {
-  const std::size_t num_chunks = (num_starts + grain - 1) / grain;
-  if (search.chunks.size() < num_chunks) search.chunks.resize(num_chunks);
-  parallel_for(jobs, num_starts, grain, [&](int begin, int end) {
-    aabb_tree::Chunk& chunk = search.chunks[begin / grain];
-    chunk.leaf_pairs.clear();
-    chunk.pairs.clear();
-    chunk.box_pairs = chunk.comparisons = 0;
-    find_below(begin, end, chunk);
-    std::int64_t box_pairs = 0;
-    const auto view = [](const AabbTree& tree) -> TreeView {
-      return {tree.nodes_.data(), tree.leaves_.data(), tree.node_ways_.data(), tree.leaf_ways_.data()};
-    };
-    const auto test = moves_ && other.moves_ ? (is_self ? test_moving_within : test_moving_between)
-                                             : (is_self ? test_within : test_between);
-    test(view(*this), view(other), chunk, box_pairs);
-    chunk.box_pairs += box_pairs;
-    chunk.comparisons += 6 * box_pairs;  // side by side: none is left out
-  });
-  string_together(num_chunks, jobs, search);
+/// Tests the leaves' items against each other.
+void AabbTree::test_leaves(const AabbTree& other, bool is_self, PairPart& found) const {
+  const auto view = [](const AabbTree& tree) -> TreeView {
+    return {tree.nodes_.data(), tree.leaves_.data(), tree.node_ways_.data(), tree.leaf_ways_.data()};
+  };
+  const auto test = moves_ && other.moves_ ? (is_self ? test_moving_within : test_moving_between)
+                                           : (is_self ? test_within : test_between);
+  std::int64_t box_pairs = 0;
+  test(view(*this), view(other), found, box_pairs);
+  found.box_pairs += box_pairs;
+  found.comparisons += 6 * box_pairs;  // side by side: none is left out
 }
 
-void AabbTree::string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search) {
+int AabbTree::num_self_parts() const {
+  return (static_cast<int>(nodes_.size()) + kNodesPerPart - 1) / kNodesPerPart;
+}
+
+void AabbTree::find_self_part(int part, Extent extent, PairPart& found) const {
+  find_self_part(part, extent, false, found);
+}
+
+/// Each node's two halves are held against each other, and each leaf against itself.
+void AabbTree::find_self_part(int part, Extent extent, bool counts, PairPart& found) const {
+  clear(found);
+  const int begin = part * kNodesPerPart,
+            end = std::min(begin + kNodesPerPart, static_cast<int>(nodes_.size()));
+  for (int n = begin; n < end; ++n) {
+    const Node& node = nodes_[n];
+    if (extent == Extent::marked && !is_marked_[n]) continue;
+    if (node.right != 0) {
+      find_leaf_pairs(*this, {n + 1, node.right}, extent, counts, found);
+    } else {
+      found.leaf_pairs.push_back({n, n});
+    }
+  }
+  test_leaves(*this, true, found);
+}
+
+int AabbTree::num_parts_with(const AabbTree& other) const {
+  return nodes_.empty() || other.nodes_.empty() ? 0 : static_cast<int>(starts_.size());
+}
+
+void AabbTree::find_part(const AabbTree& other, int part, Extent extent, PairPart& found) const {
+  find_part(other, part, extent, false, found);
+}
+
+void AabbTree::find_part(const AabbTree& other, int part, Extent extent, bool counts, PairPart& found) const {
+  clear(found);
+  find_leaf_pairs(other, {starts_[part], 0}, extent, counts, found);
+  test_leaves(other, false, found);
+}
+
+/// Runs find_part(part, found) for all parts, and strings their results together in order.
+template <class FindPart>
+void AabbTree::find_all(int num_parts, const FindPart& find_part, JobSystem& jobs, PairSearch& search) {
+  if (static_cast<int>(search.parts.size()) < num_parts) search.parts.resize(num_parts);
+  parallel_for(jobs, num_parts, 1, [&](int part, int) { find_part(part, search.parts[part]); });
   search.num_box_pairs = search.num_comparisons = 0;
   std::size_t num_pairs = 0;
-  for (std::size_t c = 0; c < num_chunks; ++c) {
-    aabb_tree::Chunk& chunk = search.chunks[c];
-    chunk.first = num_pairs;
-    num_pairs += chunk.pairs.size();
-    search.num_box_pairs += chunk.box_pairs;
-    if (search.counts_comparisons) search.num_comparisons += chunk.comparisons;
+  for (int p = 0; p < num_parts; ++p) {
+    PairPart& part = search.parts[p];
+    part.first = num_pairs;
+    num_pairs += part.pairs.size();
+    search.num_box_pairs += part.box_pairs;
+    if (search.counts_comparisons) search.num_comparisons += part.comparisons;
   }
   search.pairs.resize(num_pairs);
-  parallel_for(jobs, static_cast<int>(num_chunks), kCopyGrain, [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) {
-      const aabb_tree::Chunk& chunk = search.chunks[c];
-      std::copy(chunk.pairs.begin(), chunk.pairs.end(), search.pairs.begin() + chunk.first);
+  parallel_for(jobs, num_parts, kCopyGrain, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      const PairPart& part = search.parts[p];
+      std::copy(part.pairs.begin(), part.pairs.end(), search.pairs.begin() + part.first);
     }
   });
 }
 
 void AabbTree::find_self_pairs(JobSystem& jobs, PairSearch& search, Extent extent) const {
-  // Each node's two halves are held against each other, and each leaf against itself.
-  const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
-    for (int n = begin; n < end; ++n) {
-      const Node& node = nodes_[n];
-      if (extent == Extent::marked && !is_marked_[n]) continue;
-      if (node.right != 0) {
-        find_leaf_pairs(*this, {n + 1, node.right}, extent, search.counts_comparisons, chunk);
-      } else {
-        chunk.leaf_pairs.push_back({n, n});
-      }
-    }
+  const auto find = [&](int part, PairPart& found) {
+    find_self_part(part, extent, search.counts_comparisons, found);
   };
-  find_in_chunks(static_cast<int>(nodes_.size()), kNodeGrain, find_below, *this, true, jobs, search);
+  find_all(num_self_parts(), find, jobs, search);
 }
 
 void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search, Extent extent) const {
-  search.pairs.clear();
-  search.num_box_pairs = search.num_comparisons = 0;
-  if (nodes_.empty() || other.nodes_.empty()) return;
-  const auto find_below = [&](int begin, int end, aabb_tree::Chunk& chunk) {
-    for (int s = begin; s < end; ++s)
-      find_leaf_pairs(other, {starts_[s], 0}, extent, search.counts_comparisons, chunk);
+  const auto find = [&](int part, PairPart& found) {
+    find_part(other, part, extent, search.counts_comparisons, found);
   };
-  find_in_chunks(static_cast<int>(starts_.size()), 1, find_below, other, false, jobs, search);
+  find_all(num_parts_with(other), find, jobs, search);
 }
 
 /// Halves the tree, and its halves, into a few dozen parts.

@@ -51,14 +51,17 @@ struct NodePair {
   int a, b;
 };
 
-struct Chunk {
-  std::vector<NodePair> leaf_pairs;  // nodes that are leaves
-  std::vector<ItemPair> pairs;
-  std::int64_t box_pairs, comparisons;
-  std::size_t first;  // where its pairs go
-};
-
 }  // namespace aabb_tree
+
+/// The result of a part of a query. Reuse it, too.
+struct PairPart {
+  std::vector<ItemPair> pairs;
+
+  // Private to the tree.
+  std::vector<aabb_tree::NodePair> leaf_pairs;  // nodes that are leaves
+  std::int64_t box_pairs = 0, comparisons = 0;
+  std::size_t first = 0;  // where its pairs go
+};
 
 /// The result of a query for pairs. Reuse it, and queries allocate nothing once it has grown.
 struct PairSearch {
@@ -68,7 +71,7 @@ struct PairSearch {
   bool counts_comparisons = false;   // set it to have them counted, which is slower
   std::int64_t num_comparisons = 0;  // of numbers, for the boxes compared [1]
 
-  std::vector<aabb_tree::Chunk> chunks;  // private to the tree
+  std::vector<PairPart> parts;  // private to the tree
 };
 
 class AabbTree {
@@ -121,6 +124,14 @@ class AabbTree {
   /// keys. To the extent of marked items, for which both trees must be marked, as above.
   void find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search,
                   Extent extent = Extent::all) const;
+
+  /// The same queries in parts, each for itself and on any thread, for pairs that need not all be kept:
+  /// together the parts from 0 to before num_self_parts(), or num_parts_with(other), find what the whole
+  /// query finds.
+  int num_self_parts() const;
+  void find_self_part(int part, Extent extent, PairPart& found) const;
+  int num_parts_with(const AabbTree& other) const;
+  void find_part(const AabbTree& other, int part, Extent extent, PairPart& found) const;
 
   /// Calls visit(item) for all items whose boxes overlap `box`.
   template <class Visit>
@@ -247,13 +258,14 @@ class AabbTree {
   MovingAabb moving(int n) const { return {nodes_[n].box, node_ways_[n]}; }
   float total_area() const;
   template <class MayMeet>
-  void collect(const AabbTree& other, NodePair start, const MayMeet& may_meet, aabb_tree::Chunk& chunk) const;
+  void collect(const AabbTree& other, NodePair start, const MayMeet& may_meet, PairPart& found) const;
   void find_leaf_pairs(const AabbTree& other, NodePair start, Extent extent, bool counts,
-                       aabb_tree::Chunk& chunk) const;
-  static void string_together(std::size_t num_chunks, JobSystem& jobs, PairSearch& search);
-  template <class FindBelow>
-  void find_in_chunks(int num_starts, int grain, const FindBelow& find_below, const AabbTree& other,
-                      bool is_self, JobSystem& jobs, PairSearch& search) const;
+                       PairPart& found) const;
+  void find_self_part(int part, Extent extent, bool counts, PairPart& found) const;
+  void find_part(const AabbTree& other, int part, Extent extent, bool counts, PairPart& found) const;
+  void test_leaves(const AabbTree& other, bool is_self, PairPart& found) const;
+  template <class FindPart>
+  static void find_all(int num_parts, const FindPart& find_part, JobSystem& jobs, PairSearch& search);
 
   int num_items_ = 0;
   float built_area_ = 0;
