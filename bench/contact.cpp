@@ -5,18 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "bench/machine.h"
 #include "weft/lab/contact_experiments.h"
 #include "weft/run/runner.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
 #include "weft/world/world.h"
 
 namespace weft::bench {
 namespace {
 
 constexpr int kQuickFrames = 20;
+constexpr double kForever = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
@@ -128,6 +131,50 @@ void bench_layers(bool quick) {
   fmt::print("\n");
 }
 
+/// What contact costs a sheet with which nothing collides: wall time per step over that without contact.
+double measure_nothing_near(int cells) {
+  constexpr int kRuns = 5, kSettle = 10, kSteps = 40;
+  double fastest[2] = {kForever, kForever};  // without contact, with it [s]
+  for (int run = 0; run < kRuns; ++run) {
+    for (const bool contact : {false, true}) {
+      World world;
+      world.set_contact(contact);
+      world.add_cloth(
+          {.name = "sheet",
+           .topology = build_grid_topology({.size_x = 1, .size_z = 1, .cells_x = cells, .cells_z = cells},
+                                           SpringModel::alternating),
+           .material = {.structural = 2000, .shear = 1000, .bend = 20, .damping = 0.002}});
+      for (int s = 0; s < kSettle; ++s) world.step(1.0 / 60);
+      const double start = seconds_now();
+      for (int s = 0; s < kSteps; ++s) world.step(1.0 / 60);
+      fastest[contact] = std::min(fastest[contact], seconds_now() - start);
+    }
+  }
+  return fastest[true] / fastest[false];
+}
+
+/// Memory per particle that contact/ball_and_floor has taken after a second [bytes].
+double measure_memory(int cells) {
+  SceneDesc scene = read_scene(find_scene("contact/ball_and_floor"));
+  Grid& grid = std::get<Grid>(scene.cloths.at(0).shape);
+  grid.cells_x = grid.cells_z = cells;
+  const double before = resident_bytes();
+  World world = build_world(scene, make_serial_jobs()).world;
+  for (int s = 0; s < scene.fps; ++s) world.step(1.0 / scene.fps);
+  return (resident_bytes() - before) / grid.num_particles();
+}
+
+void bench_overhead(bool quick) {
+  const int cells = quick ? 63 : 127, cells_on_ball = quick ? 127 : 255;
+  fmt::print("## Memory, and nothing near\n\n");
+  fmt::print("contact/ball_and_floor with {0}×{0} particles: {1:.0f} bytes per particle after a second.\n",
+             cells_on_ball + 1, measure_memory(cells_on_ball));
+  fmt::print(
+      "A sheet of {0}×{0} particles in free fall: {1:.2f} times the time per step without contact.\n\n",
+      cells + 1, measure_nothing_near(cells));
+  std::fflush(stdout);
+}
+
 void bench_rest(const ContactExperiment& setup, double seconds) {
   fmt::print(
       "## Rest\n\n"
@@ -181,6 +228,7 @@ void bench_laws(const ContactExperiment& setup) {
 }  // namespace
 
 bool bench_contact(const ContactBenchOptions& options) {
+  bench_overhead(options.quick);  // first: memory that others have given back would not count
   const bool is_clean = bench_scenes(options);
   const ContactExperiment setup{.cells = options.quick ? 16 : 32};
   bench_layers(options.quick);
