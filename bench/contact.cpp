@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 
 #include "bench/machine.h"
 #include "weft/lab/contact_experiments.h"
@@ -13,6 +14,7 @@
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
+#include "weft/world/measures.h"
 #include "weft/world/world.h"
 
 namespace weft::bench {
@@ -77,11 +79,23 @@ bool bench_scenes(const ContactBenchOptions& options) {
 struct LayerCost {
   double ms = 0, ms_without = 0;  // per step, with contact and without
   double contacts = 0;            // that bear something
+  double speed = 0;               // at which they tremble (RMS) [m/s]
 };
+
+/// RMS over all particles, by mass [m/s].
+double speed_of(const World& world) {
+  double kinetic = 0, mass = 0;
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothModel& model = world.model({c});
+    kinetic += compute_kinetic_energy(model, world.state({c}));
+    mass += std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
+  }
+  return std::sqrt(2 * kinetic / mass);
+}
 
 LayerCost measure_layers(int layers, int cells) {
   constexpr double kSize = 0.64, kThickness = 1e-3;
-  constexpr int kSettle = 20, kSteps = 20;
+  constexpr int kSettle = 60, kSteps = 20;
   LayerCost cost;
   for (const bool contact : {true, false}) {
     World world;
@@ -108,6 +122,10 @@ LayerCost measure_layers(int layers, int cells) {
     world.track_contacts(true);
     world.step(1.0 / 60);
     cost.contacts = static_cast<double>(world.contact_points().size());
+    for (int s = 0; s < kSteps; ++s) {
+      world.step(1.0 / 60);
+      cost.speed += speed_of(world) / kSteps;
+    }
   }
   return cost;
 }
@@ -118,14 +136,15 @@ void bench_layers(bool quick) {
       "## Cost against the number of contacts\n\n"
       "Sheets of {0}×{0} cells on each other and on a floor, `newton`, one thread; without contact they "
       "float.\n\n"
-      "| layers | contacts that bear | ms per step | without contact | µs per contact | |\n"
-      "|--:|--:|--:|--:|--:|---|\n",
+      "| layers | contacts that bear | tremble mm/s | ms per step | without contact | µs per contact | |\n"
+      "|--:|--:|--:|--:|--:|--:|---|\n",
       cells);
   for (const int layers : {1, 2, 3, 4, 6, 8}) {
     const LayerCost cost = measure_layers(layers, cells);
     const double each = 1000 * (cost.ms - cost.ms_without) / cost.contacts;
-    fmt::print("| {} | {:.0f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", layers, cost.contacts, cost.ms,
-               cost.ms_without, each, std::string(static_cast<std::size_t>(std::min(60.0, 10 * each)), '#'));
+    fmt::print("| {} | {:.0f} | {:.2f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", layers, cost.contacts,
+               1000 * cost.speed, cost.ms, cost.ms_without, each,
+               std::string(static_cast<std::size_t>(std::min(60.0, 10 * each)), '#'));
     std::fflush(stdout);
   }
   fmt::print("\n");
