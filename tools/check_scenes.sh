@@ -23,7 +23,7 @@ for scene in needle knife_edge bullet wall ball_and_floor folded_fall crossed_st
 done
 # Of those that take long, the beginning.
 check contact/twisted_tube 0.000001 150
-check contact/stack 0.000001 10
+check contact/stack 0.000001 40
 
 "$weft" run garment --frames 30 --out "$out/garment"
 "$weft" verify "$out/garment" || echo "garment: told, not judged"
