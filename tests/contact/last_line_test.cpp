@@ -43,9 +43,11 @@ struct Patches {
     rest = motion.start;
     motion.end = end;
     is_solid.assign(end.size(), 0);
+    weft::Patches groups;
+    groups.add_mesh(surface, rest, 0, static_cast<int>(surface.triangles.size()));
     Proximity proximity;
-    proximity.reset(surface, rest, surface.num_vertices, static_cast<int>(surface.triangles.size()),
-                    {0.003, 0.001});
+    proximity.reset(surface, groups, rest, surface.num_vertices, static_cast<int>(surface.triangles.size()),
+                    {0.003, 0.001, 0.006});
     LastLine line;
     const LastLineReport report =
         line.hold({&inverse_mass, &shapes, &first_vertex, &origins, &is_solid}, proximity, motion, *jobs);

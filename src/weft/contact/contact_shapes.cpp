@@ -42,7 +42,15 @@ double radius_of(const ColliderShape& shape) {
 
 }  // namespace
 
-void ContactSystem::collect_shapes(double share_of_travel) {
+bool ContactSystem::has_plain_shapes() const {
+  return std::any_of(shapes_.begin(), shapes_.end(),
+                     [](const MovingShape& shape) { return !shape.is_mesh(); });
+}
+
+/// `stretch`: how much longer than the lists have it an edge may be [m].
+void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
+  if (!has_plain_shapes()) return;
+  longest_edge_ = proximity_.longest_edge() + stretch;
   for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
     if (!shapes_[s].is_mesh()) collect_shape(s, share_of_travel);
   }

@@ -26,9 +26,9 @@ constexpr double kSlidingSpeed = 0.01;  // slower, static friction holds [m/s]
 constexpr int kSearches = 6;            // after friction, contacts are looked for anew this often
 constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
-/// How far cloth may move before pairs are looked for anew: a share of its cells, or of its thickness.
+/// How far cloth may move before pairs are searched again: a share of its cells, or of its thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
-  constexpr double kMostOfEdge = 0.15, kLeastOfEdge = 0.015;
+  constexpr double kMostOfEdge = 0.07, kNarrow = 0.3;
   double sum = 0;
   int count = 0;
   for (const Spring& s : topology.springs) {
@@ -37,7 +37,7 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
     ++count;
   }
   const double edge = count > 0 ? sum / count : 0.0;
-  return {std::max(thickness, kMostOfEdge * edge), std::max(thickness / 4, kLeastOfEdge * edge)};
+  return {std::max(thickness, kMostOfEdge * edge), thickness / 4, std::max(2 * thickness, kNarrow * edge)};
 }
 
 /// How much of the acceleration the particle has given way to in the step before, from none, where it hung or
@@ -174,7 +174,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   std::vector<Vec3> rest;
   std::vector<int> things;  // (triangles)
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Proximity::Slack slack{kInfinity, kInfinity};
+  Proximity::Slack slack{kInfinity, kInfinity, 0};
   for (const ContactCloth& cloth : cloths_) {
     const ClothTopology& topology = *cloth.model->topology;
     numbered_cloths_.push_back(cloth.model->topology);
@@ -183,7 +183,8 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     things.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
     rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
     const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
-    slack = {std::min(slack.most, own.most), std::min(slack.least, own.least)};
+    slack = {std::min(slack.most, own.most), std::min(slack.least, own.least),
+             std::max(slack.narrow, own.narrow)};
   }
   const int num_cloth_vertices = surface.num_vertices;
   const int num_cloth_triangles = static_cast<int>(surface.triangles.size());
@@ -198,6 +199,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     things.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
   }
   surface.build_fans();
+  const Patches patches = build_patches(surface, rest);
   find_pieces(surface);
   longest_rest_edge_ = 0;
   for (const auto& [i, j] : surface.edges) {
@@ -217,8 +219,25 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     if (body.is_closed)
       std::fill(&is_solid_[body.first_vertex], &is_solid_[body.end_vertex - 1] + 1, char{1});
   }
-  proximity_.reset(std::move(surface), std::move(rest), num_cloth_vertices, num_cloth_triangles, slack);
+  proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
+                   slack);
   proximity_.set_things(std::move(things));
+}
+
+Patches ContactSystem::build_patches(const Surface& surface, const std::vector<Vec3>& rest) const {
+  Patches patches;
+  int triangle = 0;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothTopology& topology = *cloths_[c].model->topology;
+    const int end = triangle + topology.mesh.num_triangles();
+    if (topology.grid)
+      patches.add_grid(surface, *topology.grid, first_vertex_[c], triangle);
+    else
+      patches.add_mesh(surface, rest, triangle, end);
+    triangle = end;
+  }
+  patches.add_body(surface, triangle, static_cast<int>(surface.triangles.size()));
+  return patches;
 }
 
 void ContactSystem::place_bodies() {
@@ -248,8 +267,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   if (proximity_.wildest() >= 0) return;
   // What lies on a shape falls into it, for the solve to lift it out again; on cloth it lies where it is.
   std::swap(motion_.end, fallen_);
-  longest_edge_ = proximity_.longest_edge() + step_.step * step_.step * acceleration.norm();
-  collect_shapes(1.0);
+  collect_shapes(1.0, step_.step * step_.step * acceleration.norm());
   std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
   if (constraints_.empty()) return;
@@ -325,20 +343,21 @@ int ContactSystem::wild_cloth() const {
 }
 
 void ContactSystem::hold_off(JobSystem& jobs) {
-  is_for_solve_ = false;
+  is_for_solve_ = is_clear_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
-  longest_edge_ = proximity_.longest_edge();
   collect_pairs(jobs);
   collect_shapes(0.0);
+  is_clear_ = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty() && !has_plain_shapes();
   if (constraints_.empty()) return;
   project(jobs);
   store_touched();
 }
 
 LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
+  if (is_clear_) return {};
   origins_.clear();
   for (int c = 0; c < static_cast<int>(cloths_.size()); ++c) {
     end_of(c);
@@ -408,7 +427,6 @@ void ContactSystem::project(JobSystem& jobs) {
   for (int search = 0; search < kSearches && has_left_reach(); ++search) {
     arrived_ = motion_.end;
     proximity_.update(motion_, jobs);
-    longest_edge_ = proximity_.longest_edge();
     constraints_.clear();
     collect_pairs(jobs);
     collect_shapes(0.0);

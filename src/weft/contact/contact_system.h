@@ -151,6 +151,7 @@ class ContactSystem {
   int group_of(int cloth) const;
 
   void renumber(const std::vector<Collider>& colliders);
+  Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
   void collect_pairs(JobSystem& jobs);
@@ -174,7 +175,8 @@ class ContactSystem {
   const Body& body_of(int vertex) const;
   bool is_on_body(const Constraint& c) const;
   bool is_on_closed_body(int vertex) const;
-  void collect_shapes(double share_of_travel);
+  void collect_shapes(double share_of_travel, double stretch = 0);
+  bool has_plain_shapes() const;
   void collect_shape(int shape, double share_of_travel);
   double shape_reach(int v, double share_of_travel) const;
   void collect_edges(int shape, double share_of_travel);
@@ -208,6 +210,7 @@ class ContactSystem {
   ContactStep step_;
   bool is_predicted_ = false;  // the solve knows of contacts
   bool is_for_solve_ = false;  // contacts are being predicted
+  bool is_clear_ = false;      // nothing can meet anything on the way that hold_off has seen
   double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
   std::vector<Vec3> fallen_;           // where inertia and all of gravity would take it

@@ -26,6 +26,9 @@ constexpr double kRecovery = 0.2;
 /// Of positions that are stored as floats, relative to their size [1].
 constexpr double kRounding = 1.2e-7;
 
+/// How near features may come that are held apart by `thickness` [m].
+double separation_of(double thickness) { return std::max(kSeparation * thickness, kFloor); }
+
 /// The pair's distance that its impulse asks for [m].
 double target_for(const ImpactLimit& limit, double start) {
   const double recovered = start + kRecovery * (limit.separation - start);
@@ -141,7 +144,7 @@ bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
 ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
   const int cloth = mesh_of(*step_.first_vertex, std::min(vertex, num_cloth_vertices() - 1));
   const Vec3 offset = motion_->start[vertex] - (*step_.origins)[cloth];
-  const double separation = std::max(kSeparation * thickness, kFloor);
+  const double separation = separation_of(thickness);
   return {separation, std::min(kFloor, separation), kRounding * (1 + offset.norm())};
 }
 
@@ -241,7 +244,7 @@ void LastLine::find_shape_hits(int s) {
   bool is_any_near = false;
   for (int v = 0; v < num_cloth_vertices(); ++v) {
     const double travel = (is_still ? y[v] - x[v] : shape.at_start(y[v]) - x[v]).norm();
-    const double most = travel + reach + 2 * limit_for(motion_->half_thickness[v], v).separation;
+    const double most = travel + reach + 2 * separation_of(motion_->half_thickness[v]);
     if (signed_distance(shape.before, x[v]).distance > most) continue;
     is_near_[v] = 1;
     is_any_near = true;

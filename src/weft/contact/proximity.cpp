@@ -14,7 +14,7 @@ constexpr double kLoosest = 1.6;
 /// The triangles around a vertex are its neighbours on the mesh. As long as their normals are near to their
 /// sum, seen along it they do not overlap, and nothing of them can come close: within 30° when lists are
 /// made, and such that none can turn over while they are kept.
-constexpr double kSharp = 0.87;
+constexpr float kSharp = 0.87f;
 
 /// So few triangles may all be near to each other, as long as they do not fly off [m].
 constexpr int kFewTriangles = 500;
@@ -36,9 +36,10 @@ constexpr int kFanGrain = 2048;  // pairs of triangles in a fan per chunk
 
 }  // namespace
 
-void Proximity::reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices,
+void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, int num_cloth_vertices,
                       int num_cloth_triangles, const Slack& slack) {
   surface_ = std::move(surface);
+  patches_ = std::move(patches);
   rest_ = std::move(rest);
   num_cloth_vertices_ = num_cloth_vertices;
   num_cloth_triangles_ = num_cloth_triangles;
@@ -69,13 +70,16 @@ bool Proximity::pass(int triangle, int other) const {
 }
 
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
-  if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness)
-    return rebuild(motion, jobs);
-  find_moved(motion);
-  if (moved_.empty()) return;
-  const bool are_many =
-      static_cast<double>(moved_.size()) > kManyMoved * static_cast<double>(motion.end.size());
-  if (are_many || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
+  if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness) {
+    rebuild(motion, jobs);
+  } else {
+    find_moved(motion);
+    if (moved_.empty()) return;
+    const bool are_many =
+        static_cast<double>(moved_.size()) > kManyMoved * static_cast<double>(motion.end.size());
+    if (are_many || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
+  }
+  while (wildest_ < 0 && slack_ < made_with_) rebuild(motion, jobs);
 }
 
 /// What two features do in straight lines keeps their pair, as long as each corner stays within the slack of
@@ -88,8 +92,12 @@ void Proximity::find_moved(const SurfaceMotion& motion) {
                  at_end_sq = (motion.end[v] - made_for_.end[v] - drift_at_end_).squaredNorm();
     return (at_start_sq <= slack * slack) & (at_end_sq <= slack * slack);  // false for what is not a number
   };
+  constexpr int kBlock = 256;  // without a branch for each vertex
   bool are_all_within = true;
-  for (int v = 0; v < surface_.num_vertices; ++v) are_all_within &= is_within(v, made_with_);
+  for (int begin = 0; begin < surface_.num_vertices && are_all_within; begin += kBlock) {
+    const int end = std::min(begin + kBlock, surface_.num_vertices);
+    for (int v = begin; v < end; ++v) are_all_within &= is_within(v, made_with_);
+  }
   if (are_all_within) return;
   for (int v = 0; v < surface_.num_vertices; ++v) {
     if (!is_within(v, kSoon * made_with_)) moved_.push_back(v);
@@ -108,58 +116,110 @@ void Proximity::find_drift(const SurfaceMotion& motion) {
   drift_at_end_ = at_end / count;
 }
 
-/// Of the vertices in is_moved_ and the triangles in is_renewed_.
-void Proximity::make_boxes(JobSystem& jobs) {
-  constexpr int kGrain = 4096;
-  vertex_box_.resize(surface_.num_vertices);
-  triangle_box_.resize(surface_.triangles.size());
+/// Of the vertices in is_moved_, and of the patches in is_renewed_patch_.
+void Proximity::measure_patches(JobSystem& jobs) {
+  constexpr int kGrain = 4096, kPatchGrain = 512;
+  const auto num_vertices = static_cast<std::size_t>(surface_.num_vertices);
+  for (Moment* moment : {&at_start_, &at_end_}) {
+    moment->x.resize(num_vertices);
+    moment->patches.resize(patches_.num_cloth());
+  }
+  patch_box_.resize(patches_.size());
+  constexpr float kRounding = 2e-6f;  // of sums of floats, relative to the size of what is measured
+  margin_.resize(num_vertices);
   parallel_for(jobs, surface_.num_vertices, kGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      if (is_moved_[v]) vertex_box_[v] = box_of_vertex(v);
+      if (!is_moved_[v]) continue;
+      const Float4 start = to_float4(made_for_.start[v] - origin_),
+                   last = to_float4(made_for_.end[v] - origin_);
+      at_start_.x[v] = start;
+      at_end_.x[v] = last;
+      const float size = std::max(start.cwiseAbs().maxCoeff(), last.cwiseAbs().maxCoeff());
+      margin_[v] = static_cast<float>(made_for_.half_thickness[v] + made_with_) + kRounding * size;
     }
   });
-  parallel_for(jobs, static_cast<int>(surface_.triangles.size()), kGrain, [&](int begin, int end) {
-    for (int t = begin; t < end; ++t) {
-      if (!is_renewed_[t]) continue;
-      const auto [i, j, k] = surface_.triangles[t];
-      triangle_box_[t] = vertex_box_[i];
-      triangle_box_[t].merge(vertex_box_[j]);
-      triangle_box_[t].merge(vertex_box_[k]);
+  parallel_for(jobs, patches_.size(), kPatchGrain, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      if (!is_renewed_patch_[p]) continue;
+      patch_box_[p] = box_of(patches_.vertices(p));
+      if (p >= patches_.num_cloth()) continue;
+      at_start_.patches[p] = patches_.measure(p, at_start_.x);
+      at_end_.patches[p] = patches_.measure(p, at_end_.x);
     }
   });
 }
 
-MovingAabb Proximity::box_of_vertex(int v) const {
-  constexpr double kRounding = 1e-6;  // of sums of floats, relative to the size of what is looked at
-  const Vec3 at = made_for_.start[v] - origin_, way = made_for_.end[v] - made_for_.start[v];
-  const double margin = made_for_.half_thickness[v] + made_with_ + kRounding * (at.norm() + way.norm());
-  return {make_aabb(at, at, margin), make_aabb(way, way)};
-}
-
-/// Over the triangles [begin, end).
-void Proximity::fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
-  const auto box_of = [&](int item) { return triangle_box_[begin + item]; };
-  if (tree.num_items() == end - begin) {
-    tree.refit(box_of, jobs);
-    if (tree.looseness() < kLoosest) return;
+/// Neighbours that no window keeps apart, of the windows that have changed.
+void Proximity::find_folded() {
+  is_flat_.resize(patches_.num_windows());
+  for (int w = 0; w < patches_.num_windows(); ++w) {
+    bool has_changed = false;
+    float margin = 0;
+    for (const int p : patches_.members(w)) {
+      has_changed |= is_renewed_patch_[p] != 0;
+      margin = std::max(margin, margin_[patches_.vertices(p)[0]]);
+    }
+    if (has_changed)
+      is_flat_[w] = patches_.least_distance(w, at_start_.patches, at_end_.patches) > 2 * margin;
   }
+  is_folded_.assign(patches_.num_cloth(), 0);
+  folded_pairs_.clear();
+  for (const Patches::Neighbours& pair : patches_.neighbours()) {
+    bool is_folded = true;
+    for (int n = pair.first_window; n < pair.end_window; ++n)
+      is_folded = is_folded && !is_flat_[patches_.window(n)];
+    if (!is_folded) continue;
+    is_folded_[pair.a] = is_folded_[pair.b] = 1;
+    folded_pairs_.push_back({pair.a, pair.b});
+  }
+}
+
+Proximity::SweptBox Proximity::box_of(std::span<const int> vertices) const {
+  SweptBox box;
+  for (const int v : vertices) {
+    const Float4 &x = at_start_.x[v], way = at_end_.x[v] - x;
+    const Float4 margin = Float4::Constant(margin_[v]);
+    box.min = box.min.cwiseMin(x - margin);
+    box.max = box.max.cwiseMax(x + margin);
+    box.way_min = box.way_min.cwiseMin(way);
+    box.way_max = box.way_max.cwiseMax(way);
+  }
+  return box;
+}
+
+/// Over the patches [begin, end).
+void Proximity::build_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
   std::vector<Aabb> boxes;
-  for (int t = begin; t < end; ++t) boxes.push_back(triangle_box_[t].box);
-  tree.build(boxes, {surface_.triangles.begin() + begin, surface_.triangles.begin() + end}, jobs);
-  tree.refit(box_of, jobs);
+  for (int p = begin; p < end; ++p) boxes.push_back(patch_box_[p].to_aabb().box);
+  tree.build(boxes, {}, jobs);
+}
+
+/// False if the tree has become loose.
+bool Proximity::refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, JobSystem& jobs) {
+  if (extent == AabbTree::Extent::marked)
+    tree.mark(std::span(is_renewed_patch_).subspan(begin, tree.num_items()));
+  tree.refit([&](int item) { return patch_box_[begin + item].to_aabb(); }, jobs, extent);
+  return tree.looseness() < kLoosest;
 }
 
 /// -1 if cloth moves against itself by less than its own size on the average.
 int Proximity::find_wildest(const SurfaceMotion& motion) const {
   if (num_cloth_vertices_ == 0) return -1;
-  Vec3 low = motion.start[0], high = low, drift = Vec3::Zero();
+  Vec3 low = motion.start[0], high = low, least = motion.end[0] - low, most = least;
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    const Vec3 way = motion.end[v] - motion.start[v];
+    low = low.cwiseMin(motion.start[v]);
+    high = high.cwiseMax(motion.start[v]);
+    least = least.cwiseMin(way);
+    most = most.cwiseMax(way);
+  }
+  if ((most - least).norm() <= (high - low).norm()) return -1;
+  Vec3 drift = Vec3::Zero();
   for (int v = 0; v < num_cloth_vertices_; ++v) drift += motion.end[v] - motion.start[v];
   drift /= num_cloth_vertices_;
   double sum = 0, farthest = 0;
   int wildest = 0;
   for (int v = 0; v < num_cloth_vertices_; ++v) {
-    low = low.cwiseMin(motion.start[v]);
-    high = high.cwiseMax(motion.start[v]);
     const double travel = (motion.end[v] - motion.start[v] - drift).norm();
     sum += travel;
     if (travel <= farthest) continue;
@@ -174,37 +234,43 @@ int Proximity::find_wildest(const SurfaceMotion& motion) const {
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   vertex_triangle_.clear();
   edge_edge_.clear();
+  patch_pairs_.clear();
   wildest_ = find_wildest(motion);
   if (wildest_ >= 0) return made_for_.end.clear();
   made_for_ = motion;
   made_with_ = slack_;
   origin_ = motion.start[0];
-  const int num_triangles = static_cast<int>(surface_.triangles.size());
   is_moved_.assign(surface_.num_vertices, 1);
   is_near_.assign(surface_.num_vertices, 1);
-  is_renewed_.assign(num_triangles, 1);
-  make_boxes(jobs);
-  fit_tree(cloth_tree_, 0, num_cloth_triangles_, jobs);
-  if (num_triangles > num_cloth_triangles_) fit_tree(body_tree_, num_cloth_triangles_, num_triangles, jobs);
-  find_pairs(AabbTree::Extent::all, jobs);
+  is_renewed_.assign(surface_.triangles.size(), 1);
+  is_renewed_patch_.assign(patches_.size(), 1);
+  measure_patches(jobs);
+  const auto fit = [&](AabbTree& tree, int begin, int end) {
+    if (tree.num_items() == end - begin && refit_tree(tree, begin, AabbTree::Extent::all, jobs)) return;
+    build_tree(tree, begin, end, jobs);
+    refit_tree(tree, begin, AabbTree::Extent::all, jobs);
+  };
+  fit(cloth_tree_, 0, patches_.num_cloth());
+  if (has_bodies()) fit(body_tree_, patches_.num_cloth(), patches_.size());
+  find_folded();
+  find_near_patches(AabbTree::Extent::all, jobs);
+
+  find_pairs(jobs);
 }
 
-/// The pairs of moved_ alone. False if the tree has become loose: all is to be looked for anew.
+/// Only the pairs of moved_. False if the tree has become loose: everything is to be searched again.
 bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
   if (find_wildest(motion) >= 0) return false;
   mark_moved(motion);
-  make_boxes(jobs);
-  const int num_triangles = static_cast<int>(surface_.triangles.size());
-  const auto fit = [&](AabbTree& tree, int begin, int end) {
-    tree.mark(std::span(is_renewed_).subspan(begin, end - begin));
-    tree.refit([&](int item) { return triangle_box_[begin + item]; }, jobs, AabbTree::Extent::marked);
-    return tree.looseness() < kLoosest;
-  };
-  if (!fit(cloth_tree_, 0, num_cloth_triangles_)) return false;
-  if (num_triangles > num_cloth_triangles_ && !fit(body_tree_, num_cloth_triangles_, num_triangles))
+  measure_patches(jobs);
+  if (!refit_tree(cloth_tree_, 0, AabbTree::Extent::marked, jobs)) return false;
+  if (has_bodies() && !refit_tree(body_tree_, patches_.num_cloth(), AabbTree::Extent::marked, jobs))
     return false;
+  find_folded();
   drop_pairs_of_moved();
-  find_pairs(AabbTree::Extent::marked, jobs);
+  find_near_patches(AabbTree::Extent::marked, jobs);
+
+  find_pairs(jobs);
   return true;
 }
 
@@ -222,6 +288,11 @@ void Proximity::mark_moved(const SurfaceMotion& motion) {
       for (const int w : surface_.triangles[t]) is_near_[w] = 1;
     }
   }
+  for (int p = 0; p < patches_.size(); ++p) {
+    const std::span<const int> vertices = patches_.vertices(p);
+    is_renewed_patch_[p] =
+        std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_moved_[v] != 0; });
+  }
 }
 
 void Proximity::drop_pairs_of_moved() {
@@ -233,51 +304,103 @@ void Proximity::drop_pairs_of_moved() {
   std::erase_if(edge_edge_, [&](const FeaturePair& p) { return has_moved(p.a) || has_moved(p.b); });
 }
 
-/// Of triangles of which one is in is_renewed_.
-void Proximity::find_pairs(AabbTree::Extent extent, JobSystem& jobs) {
-  const auto add_found = [&](int first, PairChunk& chunk) {
-    for (const ItemPair& pair : chunk.triangles.pairs)
-      add_pairs_of_triangles(pair.a, first + pair.b, false, chunk);
+/// The pairs of patches that may meet: those of which one has changed are searched, the others are kept.
+void Proximity::find_near_patches(AabbTree::Extent extent, JobSystem& jobs) {
+  near_patches_.clear();
+  const int num_cloth = patches_.num_cloth();
+  const auto search = [&](int count, int first_of_b, const auto& find) {
+    collect_in_order(jobs, count, 1, parts_, find, [&](const PairPart& part) {
+      for (const ItemPair& pair : part.pairs) near_patches_.push_back({pair.a, first_of_b + pair.b});
+    });
   };
-  const auto add_within_cloth = [&](int part, PairChunk& chunk) {
-    cloth_tree_.find_self_part(part, extent, chunk.triangles);
-    add_found(0, chunk);
-  };
-  const auto add_on_bodies = [&](int part, PairChunk& chunk) {
-    cloth_tree_.find_part(body_tree_, part, extent, chunk.triangles);
-    add_found(num_cloth_triangles_, chunk);
-  };
+  search(cloth_tree_.num_self_parts(), 0,
+         [&](int part, PairPart& found) { cloth_tree_.find_self_part(part, extent, found); });
+  if (has_bodies()) {
+    search(cloth_tree_.num_parts_with(body_tree_), num_cloth,
+           [&](int part, PairPart& found) { cloth_tree_.find_part(body_tree_, part, extent, found); });
+  }
+
+  patch_pairs_.swap(patch_pairs_before_);
+  patch_pairs_.clear();
+  const auto has_changed = [&](int a, int b) { return is_renewed_patch_[a] || is_renewed_patch_[b]; };
+  for (const PatchPair& pair : patch_pairs_before_) {
+    if (!pair.are_neighbours && !has_changed(pair.a, pair.b)) patch_pairs_.push_back(pair);
+  }
+  for (const auto& [a, b] : near_patches_) {
+    if (has_changed(a, b) && !patches_.are_neighbours(a, b)) patch_pairs_.push_back({a, b});
+  }
+  for (const auto& [a, b] : folded_pairs_) patch_pairs_.push_back({a, b, true});
+  std::sort(patch_pairs_.begin(), patch_pairs_.end());
+  auto before = patch_pairs_before_.begin();
+  for (PatchPair& pair : patch_pairs_) {
+    while (before != patch_pairs_before_.end() && *before < pair) ++before;
+    pair.is_new = before == patch_pairs_before_.end() || *before != pair;
+    if (!pair.is_new || !pair.are_neighbours) continue;
+    for (const int p : {pair.a, pair.b}) {
+      for (const int v : patches_.vertices(p)) is_near_[v] = 1;
+    }
+  }
+}
+
+/// Boxes of the triangles that may meet something.
+void Proximity::measure_triangles(JobSystem& jobs) {
+  constexpr int kGrain = 256;
+  is_searched_.assign(patches_.size(), 0);
+  for (const PatchPair& pair : patch_pairs_) {
+    if (pair.is_new || is_renewed_patch_[pair.a] || is_renewed_patch_[pair.b])
+      is_searched_[pair.a] = is_searched_[pair.b] = 1;
+  }
+  triangle_box_.resize(surface_.triangles.size());
+  parallel_for(jobs, patches_.size(), kGrain, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      if (!is_searched_[p]) continue;
+      for (const int t : patches_.triangles(p)) triangle_box_[t] = box_of(surface_.triangles[t]);
+    }
+  });
+}
+
+/// Of pairs of patches that are new, or of triangles of which one is in is_renewed_.
+void Proximity::find_pairs(JobSystem& jobs) {
+  constexpr int kGrain = 16;
+  longest_edge_.reset();
+  if (!patch_pairs_.empty()) measure_triangles(jobs);
+  const auto add_near = [&](int p, PairChunk& chunk) { add_pairs_of_patches(patch_pairs_[p], chunk); };
   const auto add_fan = [&](int p, PairChunk& chunk) {
     add_pairs_of_triangles(fans_[p].a, fans_[p].b, true, chunk);
   };
-  add_pairs(cloth_tree_.num_self_parts(), 1, add_within_cloth, jobs);
-  if (static_cast<int>(surface_.triangles.size()) > num_cloth_triangles_)
-    add_pairs(cloth_tree_.num_parts_with(body_tree_), 1, add_on_bodies, jobs);
+  add_pairs(static_cast<int>(patch_pairs_.size()), kGrain, add_near, jobs);
   find_fans(jobs);
   add_pairs(static_cast<int>(fans_.size()), kFanGrain, add_fan, jobs);
   // The tree's shape, and with it the order, depends on what came before; contact must not.
   put_in_order(surface_.num_vertices, vertex_triangle_);
   put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
-  measure_edges();
   choose_slack();
 }
 
-/// Where cloth lies in layers, each moment of keeping would cost many pairs more.
+/// Halved where many pairs are listed, for each is tested several times a step; doubled again after a while
+/// of few.
 void Proximity::choose_slack() {
-  constexpr std::size_t kMany = 20, kFew = 4;  // pairs per vertex
+  constexpr int kCalm = 8;                    // searches that have found few pairs
+  constexpr std::size_t kMany = 6, kFew = 1;  // pairs per vertex
   const std::size_t pairs = vertex_triangle_.size() + edge_edge_.size(), n = num_cloth_vertices_;
-  if (pairs > kMany * n) slack_ = slacks_.least;
-  if (pairs < kFew * n) slack_ = slacks_.most;
+  num_calm_ = pairs < kFew * n ? num_calm_ + 1 : 0;
+  if (pairs > kMany * n) slack_ = std::max(slacks_.least, slack_ / 2);
+  if (num_calm_ < kCalm) return;
+  num_calm_ = 0;
+  slack_ = std::min(slacks_.most, 2 * slack_);
 }
 
-/// Each end may move by the slack before this is done again.
-void Proximity::measure_edges() {
+/// Each end may move by the slack before edges are other ones.
+double Proximity::longest_edge() {
+  if (longest_edge_) return *longest_edge_;
+  if (wildest_ >= 0) return std::numeric_limits<double>::infinity();
   double longest_sq = 0;
   for (const auto& [i, j] : surface_.edges) {
-    if (i < num_cloth_vertices_)
-      longest_sq = std::max(longest_sq, (made_for_.end[j] - made_for_.end[i]).squaredNorm());
+    if (i >= num_cloth_vertices_) break;
+    longest_sq = std::max(longest_sq, (made_for_.end[j] - made_for_.end[i]).squaredNorm());
   }
   longest_edge_ = std::sqrt(longest_sq) + 2 * made_with_;
+  return *longest_edge_;
 }
 
 /// What add(i, chunk) adds to a chunk for i from 0 to before `count`.
@@ -294,6 +417,7 @@ void Proximity::add_pairs(int count, int grain, const Add& add, JobSystem& jobs)
 
 /// By a, then by b, each once; a is below `end_of_a`.
 void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
+  if (pairs.empty()) return;
   begin_of_a_.assign(end_of_a + 1, 0);
   for (const FeaturePair& p : pairs) ++begin_of_a_[p.a + 1];
   for (int a = 0; a < end_of_a; ++a) begin_of_a_[a + 1] += begin_of_a_[a];
@@ -311,35 +435,48 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
   }
 }
 
-void Proximity::add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const {
-  if ((!is_renewed_[first] && !is_renewed_[second]) || pass(first, second)) return;
-  const Surface::OwnedFeatures &a = surface_.owned[first], &b = surface_.owned[second];
-  const Triangle &ta = surface_.triangles[first], &tb = surface_.triangles[second];
-  for (const int v : a.vertex) {
-    if (v >= 0 && !has_vertex(tb, v)) add_vertex_triangle(v, second, is_fan, chunk);
-  }
-  for (const int v : b.vertex) {
-    if (v >= 0 && !has_vertex(ta, v)) add_vertex_triangle(v, first, is_fan, chunk);
-  }
-  std::array<MovingAabb, 3> box_b;
-  for (int k = 0; k < 3; ++k) {
-    if (b.edge[k] >= 0) box_b[k] = box_of_edge(b.edge[k]);
-  }
-  for (const int e : a.edge) {
-    if (e < 0) continue;
-    const MovingAabb box_e = box_of_edge(e);
-    for (int k = 0; k < 3; ++k) {
-      const int f = b.edge[k];
-      if (f >= 0 && box_e.may_meet(box_b[k])) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
+void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const {
+  if (!pair.is_new && !is_renewed_patch_[pair.a] && !is_renewed_patch_[pair.b]) return;
+  const std::span<const int> first = patches_.triangles(pair.a), second = patches_.triangles(pair.b);
+  for (std::size_t m = 0; m < first.size(); ++m) {
+    const int s = first[m];
+    const SweptBox& box = triangle_box_[s];
+    if (!patch_box_[pair.b].may_meet(box)) continue;
+    for (std::size_t n = pair.a == pair.b ? m + 1 : 0; n < second.size(); ++n) {
+      const int t = second[n];
+      if (!pair.is_new && !is_renewed_[s] && !is_renewed_[t]) continue;
+      if (!box.may_meet(triangle_box_[t]) ||
+          num_shared_vertices(surface_.triangles[s], surface_.triangles[t]) > 0)
+        continue;
+      if (!pass(s, t)) add_pairs_of_triangles(std::min(s, t), std::max(s, t), false, chunk);
     }
   }
 }
 
-MovingAabb Proximity::box_of_edge(int edge) const {
-  const auto [i, j] = surface_.edges[edge];
-  MovingAabb box = vertex_box_[i];
-  box.merge(vertex_box_[j]);
-  return box;
+void Proximity::add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const {
+  const Surface::OwnedFeatures &a = surface_.owned[first], &b = surface_.owned[second];
+  const Triangle &ta = surface_.triangles[first], &tb = surface_.triangles[second];
+  const SweptBox box_a = box_of(ta), box_b = box_of(tb);
+  for (const int v : a.vertex) {
+    if (v >= 0 && !has_vertex(tb, v) && box_of({&v, 1}).may_meet(box_b))
+      add_vertex_triangle(v, second, is_fan, chunk);
+  }
+  for (const int v : b.vertex) {
+    if (v >= 0 && !has_vertex(ta, v) && box_of({&v, 1}).may_meet(box_a))
+      add_vertex_triangle(v, first, is_fan, chunk);
+  }
+  std::array<SweptBox, 3> sides;
+  for (int k = 0; k < 3; ++k) {
+    if (b.edge[k] >= 0) sides[k] = box_of(surface_.edges[b.edge[k]]);
+  }
+  for (const int e : a.edge) {
+    if (e < 0) continue;
+    const SweptBox side = box_of(surface_.edges[e]);
+    for (int k = 0; k < 3; ++k) {
+      const int f = b.edge[k];
+      if (f >= 0 && side.may_meet(sides[k])) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
+    }
+  }
 }
 
 /// How near two features must be at the start to become close during the step: a and b are their corners.
@@ -367,7 +504,6 @@ void Proximity::add_pair(FeaturePair pair, double reach, bool is_fan, const Dist
 }
 
 void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const {
-  if (!vertex_box_[vertex].may_meet(triangle_box_[triangle])) return;
   const Triangle& t = surface_.triangles[triangle];
   const auto distance = [&](const std::vector<Vec3>& x) {
     return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
@@ -384,54 +520,59 @@ void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const
   add_pair({a, b}, reach_between(e, f), is_fan, distance, chunk.edge_edge);
 }
 
-/// Of the triangles in is_renewed_, where vertices are at x.
-void Proximity::find_fan_shapes(const std::vector<Vec3>& x, std::vector<FanShape>& shapes, JobSystem& jobs) {
-  constexpr int kGrain = 2048;
-  shapes.resize(num_cloth_triangles_);
-  parallel_for(jobs, num_cloth_triangles_, kGrain, [&](int begin, int end) {
-    for (int t = begin; t < end; ++t) {
-      if (!is_renewed_[t]) continue;
-      const auto [i, j, k] = surface_.triangles[t];
-      const Vec3 area = (x[j] - x[i]).cross(x[k] - x[i]);
-      const double longest_sq =
-          std::max({(x[j] - x[i]).squaredNorm(), (x[k] - x[j]).squaredNorm(), (x[i] - x[k]).squaredNorm()});
-      const double height = longest_sq > 0 ? area.norm() / std::sqrt(longest_sq) : 0.0;
-      shapes[t] = {area.stableNormalized().cast<float>(), static_cast<float>(height)};
-    }
-  });
-}
-
-/// Whether the cloth makes a point there.
-bool Proximity::is_sharp(int vertex, const std::vector<FanShape>& shapes) const {
+/// Whether the cloth makes a point there, where vertices are at x: seen along the sum of all normals at it, a
+/// triangle is turned away too far, or too narrow to stay so.
+bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
+  constexpr std::size_t kMost = 16;  // triangles at a vertex that are measured
+  const std::span<const int> fan = surface_.triangles_at(vertex);
+  if (fan.size() > kMost) return true;
+  struct Shape {
+    Eigen::Vector3f normal;
+    float height;  // the least of three [m]
+  };
+  std::array<Shape, kMost> shapes;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const int t : surface_.triangles_at(vertex)) sum += shapes[t].normal;
-  const float length = sum.norm();
-  for (const int t : surface_.triangles_at(vertex)) {
-    const float facing = shapes[t].normal.dot(sum);
-    const bool is_flat = facing >= kSharp * length && facing * shapes[t].height > 2 * made_with_ * length;
+  for (std::size_t f = 0; f < fan.size(); ++f) {
+    const auto [i, j, k] = surface_.triangles[fan[f]];
+    const Eigen::Vector3f a = (x[j] - x[i]).head<3>(), b = (x[k] - x[i]).head<3>(), area = a.cross(b);
+    const float size = area.norm(),
+                longest_sq = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+    if (!(size > 0)) return true;
+    shapes[f] = {area / size, size / std::sqrt(longest_sq)};
+    sum += shapes[f].normal;
+  }
+  const float length = sum.norm(), width = static_cast<float>(slacks_.narrow);
+  for (std::size_t f = 0; f < fan.size(); ++f) {
+    const float facing = shapes[f].normal.dot(sum);
+    const bool is_flat = facing >= kSharp * length && facing * shapes[f].height > width * length;
     if (!is_flat) return true;  // what is not a number either
   }
   return false;
 }
 
-/// Triangles that share a vertex or an edge are not reported by the tree. They matter only where the cloth
-/// makes a point or a fold. Two that share an edge are found at both of its ends.
+/// Triangles that share a vertex matter only where the cloth makes a point or a fold. Two that share an edge
+/// are found at both of its ends.
 void Proximity::find_fans(JobSystem& jobs) {
   constexpr int kGrain = 2048;
-  find_fan_shapes(made_for_.start, shape_at_start_, jobs);
-  find_fan_shapes(made_for_.end, shape_at_end_, jobs);
+  is_in_fold_.assign(num_cloth_vertices_, 0);
+  for (int p = 0; p < patches_.num_cloth(); ++p) {
+    if (!is_folded_[p]) continue;
+    for (const int v : patches_.vertices(p)) is_in_fold_[v] = is_near_[v];
+  }
   is_sharp_.resize(num_cloth_vertices_);
   parallel_for(jobs, num_cloth_vertices_, kGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      if (is_near_[v]) is_sharp_[v] = is_sharp(v, shape_at_start_) || is_sharp(v, shape_at_end_);
+      if (is_in_fold_[v]) is_sharp_[v] = is_sharp(v, at_start_.x) || is_sharp(v, at_end_.x);
     }
   });
   fans_.clear();
   for (int v = 0; v < num_cloth_vertices_; ++v) {
-    if (!is_near_[v] || !is_sharp_[v]) continue;
+    if (!is_in_fold_[v] || !is_sharp_[v]) continue;
     const std::span<const int> fan = surface_.triangles_at(v);
     for (std::size_t f = 0; f < fan.size(); ++f) {
-      for (std::size_t g = f + 1; g < fan.size(); ++g) fans_.push_back({fan[f], fan[g]});
+      for (std::size_t g = f + 1; g < fan.size(); ++g) {
+        if (!pass(fan[f], fan[g])) fans_.push_back({fan[f], fan[g]});
+      }
     }
   }
 }

@@ -2,8 +2,11 @@
 /// Which vertices and triangles, and which edges, may come close during a step.
 
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "weft/contact/patches.h"
 #include "weft/contact/surface.h"
 #include "weft/core/job_system.h"
 #include "weft/geometry/aabb_tree.h"
@@ -22,23 +25,26 @@ struct FeaturePair {
   float max_gap = std::numeric_limits<float>::infinity();  // neighbours on the mesh may come this close [m]
 };
 
-/// Finds close pairs with an AABB tree of moving boxes: what moves together does not meet, however fast it
-/// is. A vertex' pairs are kept as long as it moves as it did then, to within `slack`, or so but for a
-/// motion that is common to all cloth; else they alone are looked for anew. A list may hold pairs that are
-/// not close, never misses one that is, and is in a fixed order.
+/// Verlet lists of close pairs: a vertex's pairs stay valid while its motion, relative to the mean of all
+/// cloth, is within `slack`; otherwise they are searched again. A list may hold pairs that are not close,
+/// never misses one that is, and is in a fixed order.
+///
+/// The search goes by patches (patches.h): those that cannot meet themselves are left out, and of others an
+/// AABB tree of moving boxes gives the pairs. What moves together does not meet, however fast it is.
 class Proximity {
  public:
-  /// How far vertices may move before pairs are looked for anew: the most where few are near, the least where
-  /// many are [m].
+  /// How far vertices may move before pairs are searched again: the most where few pairs are near, the least
+  /// where many are [m].
   struct Slack {
     double most = 0, least = 0;
+    double narrow = 0;  // where triangles at a vertex seem narrower than this, they may turn over [m]
   };
 
   /// The first `num_cloth_triangles` triangles are cloth, the first `num_cloth_vertices` vertices too; the
   /// others are colliders', which are not held against each other. `rest` (num_cloth_vertices) are the cloth
-  /// at rest, by which neighbours on the mesh are told from folds [m].
-  void reset(Surface surface, std::vector<Vec3> rest, int num_cloth_vertices, int num_cloth_triangles,
-             const Slack& slack);
+  /// at rest, by which neighbours on the mesh are told from folds [m]. `patches` hold every triangle once.
+  void reset(Surface surface, Patches patches, std::vector<Vec3> rest, int num_cloth_vertices,
+             int num_cloth_triangles, const Slack& slack);
 
   /// What each triangle belongs to (triangles), and which of these go through each other: `passes` (things,
   /// things) is symmetric; empty: none do. Pairs of those that do are not listed.
@@ -57,12 +63,39 @@ class Proximity {
   const std::vector<FeaturePair>& edge_edge() const { return edge_edge_; }
 
   /// No edge of cloth is longer now [m].
-  double longest_edge() const { return longest_edge_; }
+  double longest_edge();
 
  private:
+  /// A MovingAabb in registers. By default empty.
+  struct SweptBox {
+    Float4 min = Float4::Constant(Aabb::kInfinity), max = -min;
+    Float4 way_min = min, way_max = max;
+
+    /// As MovingAabb::may_meet.
+    bool may_meet(const SweptBox& other) const {
+      const Float4 towards = (other.way_max - way_min).cwiseMax(0.0f),
+                   away = (way_max - other.way_min).cwiseMax(0.0f);
+      return ((min - other.max).array() <= towards.array()).all() &&
+             ((other.min - max).array() <= away.array()).all();
+    }
+    MovingAabb to_aabb() const {
+      return {{{min[0], min[1], min[2]}, {max[0], max[1], max[2]}},
+              {{way_min[0], way_min[1], way_min[2]}, {way_max[0], way_max[1], way_max[2]}}};
+    }
+  };
+
+  /// Two patches that may meet, or one twice.
+  struct PatchPair {
+    int a = 0, b = 0;  // a <= b
+    bool are_neighbours = false;
+    bool is_new = true;  // all of its features are to be searched, not only what has moved
+
+    auto operator<=>(const PatchPair& other) const { return a != other.a ? a <=> other.a : b <=> other.b; }
+    bool operator==(const PatchPair& other) const { return a == other.a && b == other.b; }
+  };
+
   struct PairChunk {
     std::vector<FeaturePair> vertex_triangle, edge_edge;
-    PairPart triangles;
 
     void clear() {
       vertex_triangle.clear();
@@ -70,39 +103,43 @@ class Proximity {
     }
   };
 
-  struct FanShape {
-    Eigen::Vector3f normal;
-    float height;  // the least of three [m]
+  /// Where vertices are (num_vertices), from origin_, and how patches are deformed there (cloth patches).
+  struct Moment {
+    std::vector<Float4> x;
+    std::vector<PatchDeformation> patches;
   };
 
   void find_moved(const SurfaceMotion& motion);
   void find_drift(const SurfaceMotion& motion);
   void choose_slack();
-  void measure_edges();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
   bool pass(int triangle, int other) const;
   bool renew(const SurfaceMotion& motion, JobSystem& jobs);
   void mark_moved(const SurfaceMotion& motion);
   void drop_pairs_of_moved();
-  void make_boxes(JobSystem& jobs);
-  MovingAabb box_of_vertex(int vertex) const;
+  void measure_patches(JobSystem& jobs);
+  void find_folded();
+  SweptBox box_of(std::span<const int> vertices) const;
   int find_wildest(const SurfaceMotion& motion) const;
-  void fit_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
-  void find_pairs(AabbTree::Extent extent, JobSystem& jobs);
+  void build_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
+  bool refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, JobSystem& jobs);
+  bool has_bodies() const { return patches_.size() > patches_.num_cloth(); }
+  void find_near_patches(AabbTree::Extent extent, JobSystem& jobs);
+  void measure_triangles(JobSystem& jobs);
+  void find_pairs(JobSystem& jobs);
   template <class Add>
   void add_pairs(int count, int grain, const Add& add, JobSystem& jobs);
   void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
+  void add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const;
   void add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const;
   void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
-  MovingAabb box_of_edge(int edge) const;
   void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
   template <class Distance>
   void add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
                 std::vector<FeaturePair>& pairs) const;
   template <std::size_t kA, std::size_t kB>
   double reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const;
-  void find_fan_shapes(const std::vector<Vec3>& x, std::vector<FanShape>& shapes, JobSystem& jobs);
-  bool is_sharp(int vertex, const std::vector<FanShape>& shapes) const;
+  bool is_sharp(int vertex, const std::vector<Float4>& x) const;
   void find_fans(JobSystem& jobs);
 
   Surface surface_;
@@ -114,27 +151,39 @@ class Proximity {
   Slack slacks_;
   double slack_ = 0;      // for the next lists [m]
   double made_with_ = 0;  // for those at hand [m]
+  int num_calm_ = 0;      // searches in a row that have found few pairs
 
-  AabbTree cloth_tree_, body_tree_;
-  SurfaceMotion made_for_;      // what the lists were made for, but for a motion in common; or empty
-  Vec3 origin_ = Vec3::Zero();  // of boxes
+  Patches patches_;
+  AabbTree cloth_tree_, body_tree_;  // of patches
+  SurfaceMotion made_for_;           // what the lists were made for, but for a motion in common; or empty
+  Vec3 origin_ = Vec3::Zero();       // of boxes
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
-  double longest_edge_ = 0;  // [m]
+  std::optional<double> longest_edge_;  // of what the lists were made for, if it has been asked for [m]
   int wildest_ = -1;
 
   // Of what the lists were made for.
-  std::vector<MovingAabb> vertex_box_, triangle_box_;
-  std::vector<char> is_sharp_;                           // (num_cloth_vertices)
-  std::vector<FanShape> shape_at_start_, shape_at_end_;  // (num_cloth_triangles)
+  Moment at_start_, at_end_;
+  std::vector<float> margin_;  // (num_vertices) slack, half the thickness, and what floats round off [m]
+  std::vector<SweptBox> patch_box_;     // (patches)
+  std::vector<char> is_flat_;           // (windows) nothing in it can meet
+  std::vector<PatchPair> patch_pairs_;  // whose features are listed, in order
 
-  // What is to be looked for anew.
+  // What is to be searched again.
   std::vector<int> moved_;  // vertices
   Vec3 drift_at_start_ = Vec3::Zero(), drift_at_end_ = Vec3::Zero();
-  std::vector<char> is_moved_;    // (num_vertices)
-  std::vector<char> is_renewed_;  // (triangles) has one of them
-  std::vector<char> is_near_;     // (num_vertices) in one of these triangles
+  std::vector<char> is_moved_;          // (num_vertices)
+  std::vector<char> is_renewed_;        // (triangles) has one of them
+  std::vector<char> is_near_;           // (num_vertices) in one of these triangles
+  std::vector<char> is_renewed_patch_;  // (patches) has one of these triangles
 
   // Work space.
+  std::vector<PatchPair> patch_pairs_before_;
+  std::vector<ItemPair> near_patches_;
+  std::vector<PairPart> parts_;
+  std::vector<ItemPair> folded_pairs_;
+  std::vector<char> is_folded_, is_searched_;  // (patches)
+  std::vector<SweptBox> triangle_box_;         // (triangles) of patches that are searched
+  std::vector<char> is_sharp_, is_in_fold_;    // (num_cloth_vertices)
   std::vector<PairChunk> chunks_;
   std::vector<int> begin_of_a_;
   std::vector<FeaturePair> ordered_;

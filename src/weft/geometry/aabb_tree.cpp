@@ -237,12 +237,6 @@ WEFT_MULTIVERSION(test_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_moving_within, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 WEFT_MULTIVERSION(test_moving_between, WEFT_LEAF_PAIRS, WEFT_LEAF_PAIRS_ARGUMENTS)
 
-void clear(PairPart& found) {
-  found.leaf_pairs.clear();
-  found.pairs.clear();
-  found.box_pairs = found.comparisons = 0;
-}
-
 }  // namespace
 
 void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs) {
@@ -388,7 +382,7 @@ void AabbTree::find_self_part(int part, Extent extent, PairPart& found) const {
 
 /// Each node's two halves are held against each other, and each leaf against itself.
 void AabbTree::find_self_part(int part, Extent extent, bool counts, PairPart& found) const {
-  clear(found);
+  found.clear();
   const int begin = part * kNodesPerPart,
             end = std::min(begin + kNodesPerPart, static_cast<int>(nodes_.size()));
   for (int n = begin; n < end; ++n) {
@@ -412,7 +406,7 @@ void AabbTree::find_part(const AabbTree& other, int part, Extent extent, PairPar
 }
 
 void AabbTree::find_part(const AabbTree& other, int part, Extent extent, bool counts, PairPart& found) const {
-  clear(found);
+  found.clear();
   find_leaf_pairs(other, {starts_[part], 0}, extent, counts, found);
   test_leaves(other, false, found);
 }

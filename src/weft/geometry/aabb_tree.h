@@ -61,6 +61,12 @@ struct PairPart {
   std::vector<aabb_tree::NodePair> leaf_pairs;  // nodes that are leaves
   std::int64_t box_pairs = 0, comparisons = 0;
   std::size_t first = 0;  // where its pairs go
+
+  void clear() {
+    pairs.clear();
+    leaf_pairs.clear();
+    box_pairs = comparisons = 0;
+  }
 };
 
 /// The result of a query for pairs. Reuse it, and queries allocate nothing once it has grown.
