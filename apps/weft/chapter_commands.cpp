@@ -13,6 +13,7 @@
 #include "painter.h"
 #include "weft/core/error.h"
 #include "weft/core/simd.h"
+#include "weft/core/staged_file.h"
 #include "weft/core/version.h"
 #include "weft/lab/chapters.h"
 #include "weft/render/device.h"
@@ -64,7 +65,7 @@ void paint(const fs::path& file, const Animation& animation, const std::vector<i
 
 ChapterOptions chapter_options(const ReportOptions& options) {
   ChapterOptions chapter{.quick = options.quick, .threads = num_processors(), .cache = options.cache};
-  chapter.say = [](const std::string& words) { fmt::print(stderr, "  {}\n", words); };
+  chapter.say = [](const std::string& words) { say("  " + words); };
   if (!options.out.empty()) {
     chapter.paint = [folder = options.out](const std::string& file, const Animation& animation,
                                            const std::vector<int>& frames, const auto& springs) {
@@ -97,7 +98,7 @@ Chapter run_study(const ChapterCommand& command, const ReportOptions& options) {
 void write_plots(const fs::path& folder, const Chapter& chapter) {
   for (const Claim& claim : chapter.claims) {
     for (const Figure2d& picture : claim.pictures) {
-      if (!picture.svg.empty()) write_text(folder / picture.file, picture.svg);
+      if (!picture.svg.empty()) write_file(folder / picture.file, picture.svg);
     }
   }
 }
@@ -105,12 +106,12 @@ void write_plots(const fs::path& folder, const Chapter& chapter) {
 /// NAME.json, and its plots.
 void write_chapter(const fs::path& folder, const Chapter& chapter) {
   write_plots(folder, chapter);
-  write_text(folder / (chapter.name + ".json"), to_json(chapter));
+  write_file(folder / (chapter.name + ".json"), to_json(chapter));
 }
 
 void write_report(const fs::path& folder, const StudyReport& report) {
-  write_text(folder / "study.md", to_markdown(report, "."));
-  write_text(folder / "study.html", to_html(report, folder));
+  write_file(folder / "study.md", to_markdown(report, "."));
+  write_file(folder / "study.html", to_html(report, folder));
 }
 
 /// With --json one object on standard output, and nothing else.
@@ -156,11 +157,11 @@ void run_all(const ReportOptions& options) {
   for (const ChapterCommand& command : commands) {
     const double pace = usual > 0 ? spent / usual : 1;
     if (const auto kept = find_chapter(command, options)) {
-      fmt::print(stderr, "{}: kept from an earlier run (--fresh runs it again)\n", command.name);
+      say(command.name + ": kept from an earlier run (--fresh runs it again)");
       chapters.push_back(*kept);
     } else {
-      fmt::print(stderr, "{}: chapter {} of {}, about {:.0f} s left\n", command.name, chapters.size() + 1,
-                 commands.size(), pace * left);
+      say(fmt::format("{}: chapter {} of {}, about {:.0f} s left", command.name, chapters.size() + 1,
+                      commands.size(), pace * left));
       chapters.push_back(run_study(command, options));
       write_chapter(options.out, chapters.back());
       usual += usual_seconds(command, options.quick);

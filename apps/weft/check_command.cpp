@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common.h"
 #include "weft/core/error.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
@@ -12,9 +13,9 @@ namespace weft::app {
 namespace {
 
 /// Reads the scene and builds its world: meshes and pins are judged too.
-int check(const std::string& scene) {
+int check(const std::string& scene, const Overrides& overrides) {
   const std::filesystem::path file = find_scene(scene);
-  const SceneWorld built = build_world(read_scene(file), make_serial_jobs());
+  const SceneWorld built = build_world(read_scene(file, overrides), make_serial_jobs());
   for (const std::string& warning : built.warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
   fmt::print("{}: good\n", file.string());
   return kDone;
@@ -29,10 +30,12 @@ void add_check_command(CLI::App& app, int& exit_code) {
   auto keys = std::make_shared<bool>(false);
   CLI::Option* list = command->add_flag("--keys", *keys, "Instead, list every key that scene files may have");
   file->excludes(list);
-  command->callback([scene, keys, &exit_code] {
+  auto overrides = std::make_shared<Overrides>();
+  add_set_option(*command, *overrides);
+  command->callback([scene, keys, overrides, &exit_code] {
     if (*keys) return fmt::print("{}", describe_scene_keys());
     if (scene->empty()) throw InputError("FILE is required; or --keys, to list the keys of scene files");
-    exit_code = check(*scene);
+    exit_code = check(*scene, *overrides);
   });
 }
 

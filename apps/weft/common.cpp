@@ -1,9 +1,9 @@
 #include "common.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <system_error>
 #include <thread>
 
@@ -13,30 +13,22 @@ namespace weft::app {
 
 namespace fs = std::filesystem;
 
-void require_writable(const fs::path& file) {
-  std::error_code error;
-  if (fs::is_other(file, error)) return;
-  const bool is_new = !fs::exists(fs::symlink_status(file, error));
-  errno = 0;
-  if (!std::ofstream(file, std::ios::app)) {
-    throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
-  }
-  if (is_new) fs::remove(file, error);
-}
-
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
-}
+void say(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int choose_threads(int asked) {
+  constexpr int kMostPerProcessor = 4;  // of more, oneTBB would say that it ignores them
+  const int most = kMostPerProcessor * num_processors();
+  if (asked > most) say(fmt::format("--threads {}: {} are used, four for each processor", asked, most));
+  return asked > 0 ? std::min(asked, most) : num_processors();
+}
 
 void add_set_option(CLI::App& command, Overrides& overrides) {
   command.add_option("--set", overrides, "Change a value, as in --set solver.integrator=desbrun")
@@ -48,10 +40,13 @@ void add_set_option(CLI::App& command, Overrides& overrides) {
 PictureSize parse_size(const std::string& text) {
   PictureSize size;
   char end = 0;
-  constexpr int kLargest = 16384;
+  constexpr int kLargest = 16384;  // of most OpenGL drivers
   const bool is_good = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2 &&
                        size.width > 0 && size.height > 0 && size.width <= kLargest && size.height <= kLargest;
-  if (!is_good) throw InputError("--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1280x720");
+  if (!is_good) {
+    throw InputError(fmt::format(
+        "--size {}: expected WIDTHxHEIGHT in pixels, such as 1280x720, each from 1 to {}", text, kLargest));
+  }
   return size;
 }
 

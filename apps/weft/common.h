@@ -10,23 +10,23 @@
 
 namespace weft::app {
 
-/// The file can be written after the simulation, or InputError before it. What is in it stays, and so does a
-/// pipe.
-void require_writable(const std::filesystem::path& file);
-
 /// The folder is there, or InputError.
 void make_folder(const std::filesystem::path& folder);
 
-/// Replaces the file's text; throws InputError if it cannot be written.
-void write_text(const std::filesystem::path& file, const std::string& text);
+/// A line on standard error; one that is closed or full is no reason to fail.
+void say(const std::string& line);
 
 /// Processors of this machine, at least 1.
 int num_processors();
 
+/// Threads to use where so many are asked for (0: one per processor): at most four per processor, which is
+/// said.
+int choose_threads(int asked);
+
 /// --set KEY=VALUE, as often as wanted.
 void add_set_option(CLI::App& command, Overrides& overrides);
 
-/// "1280x720" as a size; throws InputError for anything else.
+/// "1280x720" as a size, each from 1 to 16384; throws InputError for anything else.
 PictureSize parse_size(const std::string& text);
 
 }  // namespace weft::app

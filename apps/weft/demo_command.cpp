@@ -78,6 +78,7 @@ int run_demo(const fs::path& out) {
     if (run.report.outcome == RunOutcome::failed) fmt::print("  failed at {}\n", run.report.failure);
     if (run.report.outcome != RunOutcome::done) return exit_code_of(run.report.outcome);
     pictures.paint(run);
+    if (interrupted()) return kInterrupted;
   }
   fmt::print(
       "\nEach scene's picture.png, video.mp4, animation.glb (for any glTF viewer) and report.json are in "

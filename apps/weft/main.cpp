@@ -1,11 +1,53 @@
-#include <fmt/core.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <system_error>
 
 #include "commands.h"
+#include "common.h"
 #include "weft/core/error.h"
+#include "weft/core/nearest_name.h"
 #include "weft/core/version.h"
 
-int main(int argc, char** argv) {
-  using namespace weft::app;
+namespace weft::app {
+namespace {
+
+/// Files that are opened later must not take the place of a standard stream that the caller has closed. What
+/// is written to a closed standard output fails; to a closed standard error, it is lost.
+void fill_standard_streams() {
+  for (const int stream : {0, 1, 2}) {
+    if (fcntl(stream, F_GETFD) == -1) open("/dev/null", stream == 2 ? O_WRONLY : O_RDONLY);
+  }
+}
+
+/// Names the first word that is no command, and what may have been meant. CLI11 would ask for a command.
+void require_commands(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* parent = &app;
+  std::string path = app.get_name();
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    std::vector<std::string> names;
+    const CLI::App* chosen = nullptr;
+    for (const CLI::App* command : parent->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(command->get_name());
+      if (command->get_name() == argv[i]) chosen = command;
+    }
+    if (names.empty()) return;
+    if (!chosen) {
+      const std::string nearest = find_nearest(argv[i], names);
+      const std::string hint = nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+                                               : fmt::format("did you mean \"{}\"?", nearest);
+      throw InputError(
+          fmt::format("{} has no command \"{}\"; {} (see {} --help)", path, argv[i], hint, path));
+    }
+    parent = chosen;
+    path += " " + chosen->get_name();
+  }
+}
+
+int run(int argc, char** argv) {
   int exit_code = kDone;
   CLI::App app{"Weft simulates cloth. Start with: weft scenes, weft run paper/fig6_ball", "weft"};
   app.set_version_flag("--version", weft::kVersion);
@@ -21,15 +63,37 @@ int main(int argc, char** argv) {
   add_verify_command(app, exit_code);
   add_bench_command(app, exit_code);
   try {
+    require_commands(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   } catch (const weft::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    say(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "weft: {}\n", error.what());
+    if (!std::ferror(stdout)) say(fmt::format("weft: {}", error.what()));
     return kSimulationFailed;
   }
   return exit_code;
+}
+
+/// Takes what was printed to where it goes; false, with a sentence, if not all of it could be written.
+bool finish_standard_output() {
+  errno = 0;
+  const bool had_failed = std::ferror(stdout) != 0;
+  if (std::fflush(stdout) == 0 && !had_failed) return true;
+  const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
+  say("weft: standard output cannot be written" + reason);
+  return false;
+}
+
+}  // namespace
+}  // namespace weft::app
+
+int main(int argc, char** argv) {
+  using namespace weft::app;
+  fill_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large (ulimit -f) is an error of the write
+  const int exit_code = run(argc, argv);
+  return finish_standard_output() ? exit_code : kBadInput;
 }

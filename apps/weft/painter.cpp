@@ -48,7 +48,11 @@ void Painter::write_pictures(const fs::path& file, const std::vector<int>& frame
 
 void Painter::write_video(const fs::path& file, int every) {
   VideoWriter video(file, size_.width, size_.height, animation_.frames_per_second / every);
-  for (int frame = 0; frame <= last_ && !interrupted(); frame += every) video.add(draw(frame));
+  const bool was_interrupted = interrupted();  // while simulating
+  for (int frame = 0; frame <= last_; frame += every) {
+    video.add(draw(frame));
+    if (interrupted() != was_interrupted) break;
+  }
   video.finish();
 }
 

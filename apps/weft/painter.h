@@ -30,7 +30,7 @@ class Painter {
   /// frames that do not exist.
   void write_pictures(const std::filesystem::path& file, const std::vector<int>& frames, int columns);
 
-  /// Every so many frames, until the end or an interrupt.
+  /// Every so many frames, until the end or an interrupt that comes meanwhile.
   void write_video(const std::filesystem::path& file, int every);
 
   int last_frame() const { return last_; }

@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "run_command.h"
 #include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 #include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
 #include "weft/run/runner.h"
@@ -62,20 +63,18 @@ class Source {
   /// At least up to the last frame that is wanted, unless the simulation ends before.
   Footage get() const {
     if (!scene_) return {read_glb(file_), RunOutcome::done};
-    RunOptions options{.threads = request_.threads > 0 ? request_.threads : num_processors()};
+    RunOptions options{.threads = choose_threads(request_.threads)};
     if (!request_.frames.empty())
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
     if (options.frames == 0) options.frames = 1;
     ProgressBar bar(scene_->name);
-    catch_interrupts();
     RunResult result = run_scene(*scene_, options, [&](const Progress& progress) {
       bar.update(progress);
       return !interrupted();
     });
     bar.clear();
-    for (const std::string& warning : result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    if (result.report.outcome == RunOutcome::failed)
-      fmt::print(stderr, "the simulation failed at {}\n", result.report.failure);
+    for (const std::string& warning : result.report.warnings) say("warning: " + warning);
+    if (result.report.outcome == RunOutcome::failed) say("the simulation failed at " + result.report.failure);
     return {std::move(result.animation), result.report.outcome};
   }
 
@@ -108,7 +107,7 @@ PaintSettings paint_settings(const RenderRequest& request) {
   return settings;
 }
 
-/// Paints what there is, even if the simulation has failed; tells how that ended.
+/// Paints what there is, even if the simulation has failed or was interrupted; tells how that ended.
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
   PaintSettings settings = paint_settings(request);
@@ -117,6 +116,7 @@ RunOutcome render(const RenderRequest& request) {
   if (request.out.has_parent_path()) make_folder(request.out.parent_path());
   require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
+  catch_interrupts();
   const auto [animation, outcome] = source.get();
   settings.style.springs = source.springs();
   Painter painter(animation, settings, std::move(device));
@@ -126,8 +126,9 @@ RunOutcome render(const RenderRequest& request) {
     const std::vector<int> last = {painter.last_frame()};
     painter.write_pictures(request.out, request.frames.empty() ? last : request.frames, request.columns);
   }
+  if (interrupted()) fmt::print("interrupted: what was done is kept\n");
   fmt::print("written {}\n", request.out.string());
-  return outcome;
+  return interrupted() ? RunOutcome::interrupted : outcome;
 }
 
 }  // namespace

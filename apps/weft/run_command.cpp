@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <memory>
-#include <system_error>
 
 #include "commands.h"
 #include "common.h"
 #include "progress.h"
 #include "summary.h"
+#include "weft/core/staged_file.h"
 #include "weft/scene/scene_library.h"
 
 namespace weft::app {
@@ -20,18 +19,21 @@ namespace fs = std::filesystem;
 constexpr const char* kAnimationName = "animation.glb";
 constexpr const char* kReportName = "report.json";
 
-/// The folder is there and everything can be written, or InputError. Results of an earlier run in the folder
-/// go.
+/// The folder is there and everything can be written, or InputError. Results of an earlier run stay.
 void prepare_folder(const fs::path& folder, const fs::path& report) {
   make_folder(folder);
-  const std::array results = {folder / kAnimationName, folder / kReportName};
-  for (const fs::path& file : results) require_writable(file);
+  for (const char* name : {kAnimationName, kReportName}) require_writable(folder / name);
   if (!report.empty()) require_writable(report);
-  for (const fs::path& file : results) {
-    std::error_code error;
-    fs::remove(file, error);
-    if (error) throw InputError(file.string() + " of an earlier run cannot be replaced: " + error.message());
-  }
+}
+
+/// Both are whole before either replaces that of an earlier run.
+void write_results(const fs::path& folder, const RunResult& result) {
+  StagedFile animation(folder / kAnimationName), report(folder / kReportName);
+  write_glb(animation, result.animation);
+  report.out() << to_json(result.report);
+  report.finish();
+  animation.replace();
+  report.replace();
 }
 
 }  // namespace
@@ -40,8 +42,7 @@ FinishedRun run_to_files(const RunRequest& request) {
   const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
   const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
   prepare_folder(folder, request.report);
-  const RunOptions options{.frames = request.frames,
-                           .threads = request.threads > 0 ? request.threads : num_processors()};
+  const RunOptions options{.frames = request.frames, .threads = choose_threads(request.threads)};
   ProgressBar bar(scene.name);
   catch_interrupts();
   RunResult result = run_scene(scene, options, [&](const Progress& progress) {
@@ -49,9 +50,8 @@ FinishedRun run_to_files(const RunRequest& request) {
     return !interrupted();
   });
   bar.clear();
-  write_report(folder / kReportName, result.report);
+  write_results(folder, result);
   if (!request.report.empty()) write_report(request.report, result.report);
-  write_glb(folder / kAnimationName, result.animation);
   return {std::move(result.report), std::move(result.animation), folder / kAnimationName,
           folder / kReportName};
 }

@@ -25,8 +25,8 @@ struct FinishedRun {
   std::filesystem::path animation_file, report_file;
 };
 
-/// Reads, simulates with a progress bar, writes. Throws InputError for bad input and unwritable places,
-/// before simulating where it can.
+/// Reads, simulates with a progress bar, replaces the results of an earlier run. Throws InputError for bad
+/// input and unwritable places, before simulating where it can; then the earlier results stay.
 FinishedRun run_to_files(const RunRequest& request);
 
 /// The exit code that an outcome deserves.

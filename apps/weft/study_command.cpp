@@ -7,6 +7,7 @@
 #include "common.h"
 #include "painter.h"
 #include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 #include "weft/io/obj_reader.h"
 #include "weft/lab/studies.h"
 #include "weft/render/device.h"
@@ -22,7 +23,7 @@ struct StudyOptions {
   std::string fabric;
   SpecimenSettings specimen;
   StripDirection direction = StripDirection::warp;
-  int threads = num_processors();
+  int threads = 0;  // 0: all processors
   bool json = false;
   fs::path out;
 };
@@ -53,7 +54,7 @@ void write_shape(const fs::path& file, const AnimatedMesh& mesh) {
 }
 
 void write_files(const fs::path& folder, const Json& json, const StudyResult& result) {
-  write_text(folder / "study.json", dump(json));
+  write_file(folder / "study.json", dump(json));
   for (const auto& [file, animation] : result.pictures) {
     write_shape(folder / (file + ".obj"), animation.cloths.at(0));
     Painter painter(animation, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
@@ -62,7 +63,7 @@ void write_files(const fs::path& folder, const Json& json, const StudyResult& re
 }
 
 void print_warnings(const StudyResult& result) {
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : result.warnings) say("warning: " + warning);
 }
 
 /// With --json one object on standard output, and nothing else; all words go to standard error.
@@ -156,7 +157,7 @@ void add_study_command(CLI::App& app, int&) {
   CLI::App* drape =
       add(*studies, "drape", "Drape coefficient (ISO 9073-9): the shadow of a disc that hangs over plates",
           disc, [](const Fabric& fabric, const StudyOptions& options) {
-            return study_drape(fabric, options.specimen, options.threads);
+            return study_drape(fabric, options.specimen, choose_threads(options.threads));
           });
   add_threads_option(*drape, *disc);
 }

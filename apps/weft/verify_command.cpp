@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -59,6 +60,13 @@ nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check
           {"offences", offences}};
 }
 
+/// What is wrong with a tolerance; nothing: empty.
+std::string require_depth(const std::string& text) {
+  double depth = 0;
+  if (CLI::detail::lexical_cast(text, depth) && std::isfinite(depth) && depth >= 0) return "";
+  return text + " is no depth; expected a finite number of metres, 0 or more";
+}
+
 int verify(const VerifyRequest& request) {
   const fs::path file = fs::is_directory(request.path) ? request.path / "animation.glb" : request.path;
   const AnimationCheck check = check_animation(read_glb(file), {.tolerance = request.tolerance});
@@ -79,7 +87,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", request->path, "The folder of a run, or a .glb file that a run wrote")
       ->required();
   command->add_option("--tolerance", request->tolerance, "How deep cloth may be inside a collider [m]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(require_depth)
       ->type_name("M")
       ->capture_default_str();
   command->add_flag("--json", request->json, "Print the result as JSON");

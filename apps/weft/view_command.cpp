@@ -9,7 +9,7 @@
 #include "common.h"
 #include "progress.h"
 #include "viewer.h"
-#include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 
@@ -34,7 +34,8 @@ std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, Sc
   std::vector<std::string> integrators = request.compare;
   if (integrators.empty()) integrators = {scene.solver.integrator};
   const int count = static_cast<int>(integrators.size());
-  const int threads = request.threads > 0 ? request.threads : std::max(1, (num_processors() - 1) / count);
+  const int threads =
+      request.threads > 0 ? choose_threads(request.threads) : std::max(1, (num_processors() - 1) / count);
   std::vector<std::unique_ptr<ViewSide>> sides;
   for (const std::string& name : integrators) {
     scene.solver.integrator = name;
@@ -52,8 +53,7 @@ void view(const ViewRequest& request) {
   if (!request.report.empty()) require_writable(request.report);
   const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
   std::vector<std::unique_ptr<ViewSide>> sides = make_sides(request, scene);
-  for (const std::string& warning : sides[0]->live().warnings())
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : sides[0]->live().warnings()) say("warning: " + warning);
   catch_interrupts();
   give_way_to_simulation();
   Viewer(std::move(sides), options).run();

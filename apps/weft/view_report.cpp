@@ -1,10 +1,9 @@
 #include "view_report.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "viewer.h"
-#include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 
 namespace weft::app {
 namespace {
@@ -60,14 +59,7 @@ void write_view_report(const std::filesystem::path& file, const Viewer& viewer) 
                {"sides", Json::array()},
                {"controls", viewer.controls}};
   for (int s = 0; s < viewer.num_sides(); ++s) json["sides"].push_back(to_json(viewer.side(s)));
-  std::filesystem::path part = file;
-  part += ".part";
-  std::ofstream out(part);
-  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(part, file, error);
-  if (!out || error) throw InputError(file.string() + " cannot be written");
+  write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::filesystem::path name_of_next_picture() {

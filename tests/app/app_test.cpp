@@ -5,7 +5,9 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 
+#include "tests/app/background.h"
 #include "tests/app/program.h"
 #include "weft/io/glb_writer.h"
 
@@ -76,6 +78,31 @@ TEST_F(App, ReportOptionWritesTheReportOnceMore) {
   EXPECT_EQ(read_text("results/copy.json"), read_text("results/report.json"));
   EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --report /dev/stdout | grep -c state_hash").out,
             "1\n");
+  // Here standard output is a file.
+  const Finished both = shell("weft run paper/fig6_ball --frames 1 --out results --report /dev/stdout");
+  const std::string report = read_text("results/report.json");
+  EXPECT_EQ(both.out.substr(0, report.size()), report);
+  EXPECT_TRUE(contains(both.out.substr(report.size()), "written "));
+}
+
+TEST_F(App, ReportThatCannotBeWrittenLosesNothing) {
+  const Finished done = shell("weft run paper/fig6_ball --frames 1 --out results --report /dev/full");
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_EQ(done.err, "/dev/full cannot be written: No space left on device\n");
+  EXPECT_EQ(read_json("results/report.json")["frames"], 1);
+  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+}
+
+TEST_F(App, ResultsThatCannotBeWrittenLeaveTheFilesOfAnEarlierRun) {
+  fs::create_directories("results");
+  for (const char* file : {"results/animation.glb", "results/report.json"})
+    std::ofstream(file) << "written before";
+  const Finished done = shell("ulimit -f 16; weft run paper/fig6_ball --frames 3 --out results");
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_EQ(done.err, "results/animation.glb cannot be written: File too large\n");
+  EXPECT_EQ(read_text("results/animation.glb"), "written before");
+  EXPECT_EQ(read_text("results/report.json"), "written before");
+  EXPECT_EQ(std::distance(fs::directory_iterator("results"), {}), 2) << "nothing is left aside";
 }
 
 TEST_F(App, SetChangesValuesOfTheScene) {
@@ -146,7 +173,9 @@ TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
   expect_bad_input("weft run paper/fig6_ball --set solver", "expected path.to.key=value");
   expect_bad_input("weft run paper/fig6_ball --set solver.integratr=paper", "did you mean \"integrator\"?");
   expect_bad_input("weft", "--help");
-  expect_bad_input("weft fly", "--help");
+  expect_bad_input("weft fly", "weft has no command \"fly\"; there are run, demo, ");
+  expect_bad_input("weft rnu garment", "weft has no command \"rnu\"; did you mean \"run\"?");
+  expect_bad_input("weft study drpae", "weft study has no command \"drpae\"; did you mean \"drape\"?");
   expect_bad_input("weft bench integrators --integrators magic", "magic");
   expect_bad_input("weft bench integrators --sizes 0", "--sizes");
   expect_bad_input("WEFT_SCENES=no/such/folder weft scenes", "no/such/folder");
@@ -166,32 +195,88 @@ TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
   EXPECT_EQ(read_text("file"), "not a folder");
 }
 
-TEST_F(App, InterruptKeepsWhatWasDone) {
-  // After two seconds, which is long after the first frame. The status kept is the program's, not timeout's.
-  const Finished done = shell("timeout --preserve-status --signal=INT 2 '" WEFT_PROGRAM
-                              "' run paper/fig6_ball --frames 1000000 --out results");
-  EXPECT_EQ(done.exit_code, 130);
-  EXPECT_TRUE(contains(done.out, "interrupted: what was done is kept")) << done.out;
-  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
-  const nlohmann::json report = read_json("results/report.json");
-  EXPECT_EQ(report["outcome"], "interrupted");
-  EXPECT_GT(report["frames"], 0);
-  EXPECT_EQ(report["lowest_y"].size(), report["frames"]);
+TEST_F(App, SignalsThatEndProgramsKeepWhatWasDone) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Background run({"run", "paper/fig6_ball", "--frames", "1000000", "--out", "results"});
+    ASSERT_TRUE(run.catches(SIGTERM));
+    run.send(signal);
+    EXPECT_EQ(run.wait(), 130) << signal;
+    EXPECT_TRUE(contains(read_text("background.txt"), "interrupted: what was done is kept"));
+    EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+    const nlohmann::json report = read_json("results/report.json");
+    EXPECT_EQ(report["outcome"], "interrupted");
+    EXPECT_GT(report["frames"], 0);
+    EXPECT_EQ(report["lowest_y"].size(), report["frames"]);
+    fs::remove_all("results");
+  }
 }
 
-TEST_F(App, InterruptSentTwiceInARowCountsOnce) {
-  const Finished done = shell("'" WEFT_PROGRAM
-                              "' run paper/fig6_ball --frames 1000000 --out results & "
-                              "sleep 1; kill -INT $!; sleep 0.02; kill -INT $!; wait $!");
-  EXPECT_EQ(done.exit_code, 130);
+TEST_F(App, SignalSentTwiceInARowCountsOnce) {
+  Background run({"run", "paper/fig6_ball", "--frames", "1000000", "--out", "results"});
+  ASSERT_TRUE(run.catches(SIGTERM));
+  run.send(SIGTERM);
+  run.send(SIGHUP);
+  EXPECT_EQ(run.wait(), 130);
   EXPECT_EQ(read_json("results/report.json")["outcome"], "interrupted");
 }
 
-TEST_F(App, InterruptEndsTheDemo) {
-  const Finished done =
-      shell("timeout --preserve-status --signal=INT 1 '" WEFT_PROGRAM "' demo --out results");
-  EXPECT_EQ(done.exit_code, 130) << done.err;
-  EXPECT_TRUE(contains(done.out, "ms/frame")) << done.out;
+TEST_F(App, SignalEndsTheDemo) {
+  Background demo({"demo", "--out", "results"});
+  ASSERT_TRUE(demo.catches(SIGTERM));
+  demo.send(SIGTERM);
+  EXPECT_EQ(demo.wait(), 130);
+  EXPECT_TRUE(contains(read_text("background.txt"), "ms/frame"));
+  EXPECT_FALSE(fs::exists("results/paper/fig6_ball_real")) << "the scenes that follow are left alone";
+}
+
+TEST_F(App, IgnoredHangupStaysIgnored) {
+  Background run({"run", "paper/fig6_ball", "--frames", "20", "--out", "results"}, SIG_IGN);
+  ASSERT_TRUE(run.catches(SIGTERM));
+  run.send(SIGHUP);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_EQ(read_json("results/report.json")["frames"], 20);
+}
+
+TEST_F(App, KilledRunLeavesTheFilesOfAnEarlierRun) {
+  ASSERT_EQ(shell("weft run paper/fig6_ball --frames 2 --out results").exit_code, 0);
+  const std::string animation = read_text("results/animation.glb"), report = read_text("results/report.json");
+  Background run({"run", "paper/fig6_ball", "--frames", "1000000", "--out", "results"});
+  ASSERT_TRUE(run.catches(SIGTERM)) << "it simulates";
+  run.send(SIGKILL);
+  EXPECT_EQ(run.wait(), -1);
+  EXPECT_EQ(read_text("results/animation.glb"), animation);
+  EXPECT_EQ(read_text("results/report.json"), report);
+}
+
+TEST_F(App, StandardOutputThatCannotBeWrittenIsAnError) {
+  for (const std::string command :
+       {"weft scenes", "weft check --keys", "weft --help", "weft run --help", "weft --version"}) {
+    for (const std::string where : {" > /dev/full", " >&-"}) {
+      const Finished done = shell(command + where);
+      EXPECT_EQ(done.exit_code, 2) << command << where;
+      EXPECT_TRUE(done.err.starts_with("weft: standard output cannot be written")) << done.err;
+      EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << command << where << done.err;
+    }
+  }
+  EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results > /dev/full").exit_code, 2);
+  EXPECT_EQ(read_json("results/report.json")["outcome"], "done") << "the results are files";
+}
+
+TEST_F(App, StandardErrorThatCannotBeWrittenIsNone) {
+  const std::string run = "weft run paper/fig6_ball --frames 1 --threads 1024 --out results ";
+  EXPECT_EQ(shell(run + "2> /dev/full").exit_code, 0);
+  EXPECT_EQ(shell(run + "2>&-").exit_code, 0);
+  EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
+  EXPECT_EQ(shell("weft run no/such/scene 2> /dev/full").exit_code, 2);
+}
+
+TEST_F(App, ThreadsAreAtMostFourForEachProcessor) {
+  const Finished done = shell("weft run paper/fig6_ball --frames 1 --threads 1024 --out results");
+  EXPECT_EQ(done.exit_code, 0);
+  const int most = std::min(1024, 4 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+  EXPECT_EQ(read_json("results/report.json")["threads"], most);
+  if (most == 1024) return;
+  EXPECT_EQ(done.err, "--threads 1024: " + std::to_string(most) + " are used, four for each processor\n");
 }
 
 TEST_F(App, ScenesListsEverySceneWithItsDescription) {
@@ -249,6 +334,12 @@ TEST_F(App, CheckListsEveryMistakeWithItsPlace) {
   EXPECT_EQ(done.err, expected);
 }
 
+TEST_F(App, CheckTakesTheValuesThatARunIsGiven) {
+  EXPECT_EQ(shell("weft check paper/fig6_ball --set cloth[0].grid.cells=[4,4]").exit_code, 0);
+  expect_bad_input("weft check paper/fig6_ball --set solver.integrator=magic", "magic");
+  expect_bad_input("weft check paper/fig6_ball --tolerance 1", "--tolerance");
+}
+
 TEST_F(App, TellsItsVersionAndHowToUseIt) {
   EXPECT_EQ(shell("weft --version").out, WEFT_VERSION "\n");
   for (const char* command : {"", "run", "demo", "scenes", "check", "verify", "bench", "bench integrators"}) {
@@ -301,6 +392,8 @@ TEST_F(App, VerifyRefusesWhatIsNoRun) {
   expect_bad_input("weft verify empty", "empty/animation.glb");
   std::ofstream("words.glb") << "words";
   expect_bad_input("weft verify words.glb", "words.glb: is no complete .glb file");
+  for (const std::string tolerance : {"nan", "inf", "-1", "deep"})
+    expect_bad_input("weft verify words.glb --tolerance=" + tolerance, tolerance + " is no depth");
 }
 
 TEST_F(App, BenchMeasures) {

@@ -1,5 +1,6 @@
 /// `weft render` and the pictures of `weft demo`, as a shell sees them.
 
+#include "tests/app/background.h"
 #include "tests/app/program.h"
 #include "weft/render/device.h"
 #include "weft/render/image.h"
@@ -56,6 +57,18 @@ TEST_F(Render, MakesAVideo) {
   EXPECT_EQ(probe.out, "100,80,30/1,4\n") << probe.err;
 }
 
+TEST_F(Render, InterruptedVideoHoldsTheFramesThatWereDone) {
+  if (shell("ffprobe -version").exit_code != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  Background render({"render", "paper/fig6_ball", "--frames", "100000", "--size", "100x80", "--out",
+                     "ball.mp4", "--set", "cloth[0].grid.cells=[8,8]"});
+  ASSERT_TRUE(render.catches(SIGTERM)) << read_text("background.txt");
+  render.send(SIGTERM);
+  EXPECT_EQ(render.wait(), 130) << read_text("background.txt");
+  const Finished probe =
+      shell("ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 ball.mp4");
+  EXPECT_GE(std::atoi(probe.out.c_str()), 2) << "the start and a frame" << probe.err;
+}
+
 TEST_F(Render, DrawsSprings) {
   EXPECT_EQ(shell("weft render paper/fig4_vertical --frame 0 --springs --out springs.png" + kQuick).exit_code,
             0);
@@ -65,6 +78,7 @@ TEST_F(Render, DrawsSprings) {
 TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
   expect_bad_input("weft render paper/fig6_ball --out film.avi", "film.avi: expected a name that ends in");
   expect_bad_input("weft render paper/fig6_ball --size big", "--size big: expected WIDTHxHEIGHT");
+  expect_bad_input("weft render paper/fig6_ball --size 100000x100000", "each from 1 to 16384");
   expect_bad_input("weft render paper/fig6_ball --camera 0,95", "elevation between -90 and 90");
   expect_bad_input("weft render no/such/scene", "no/such/scene");
   expect_bad_input("mkdir d; weft render d", "d/animation.glb");

@@ -199,7 +199,7 @@ TEST(GlbWriter, TellsWhyAFileCannotBeWritten) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "weft_glb_folder.glb";
   std::filesystem::create_directories(folder / "occupied");
   EXPECT_THROW(write_glb(folder, animation), InputError);  // a folder is in the way
-  EXPECT_FALSE(std::filesystem::exists(folder.string() + ".part"));
+  EXPECT_FALSE(std::filesystem::exists(folder.parent_path() / ".weft_glb_folder.glb.partial"));
   try {
     write_glb(folder / "missing" / "a.glb", animation);
     FAIL();

@@ -93,17 +93,21 @@ TEST(ObjReader, TakesAnyLayoutOfLines) {
 }
 
 TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
-  const ObjMesh known = parse_obj(
-      "mtllib a.mtl\no a\ng b\ns off\nusemtl c\nvn 0 0 1\nvt 0 0\n" + kFourVertices + "f 1 2 3\nl 1 2\np 1\n",
-      "x.obj");
+  const ObjMesh known = parse_obj("mtllib a.mtl\no a\ng b\ns off\nusemtl c\nusemap d\nvn 0 0 1\nvt 0 0\n" +
+                                      kFourVertices + "f 1 2 3\nl 1 2\np 1\n",
+                                  "x.obj");
   EXPECT_TRUE(known.warnings.empty());
 
   // As the garment files of Berkeley: `t` is no face, `vv` no vertex.
   const ObjMesh garment = parse_obj("v 0 0 0\nvv 0 0 0\nv 1 0 0\nvv 1 0 0\nv 0 1 0\nf 1 2 3\nt 0\n", "x.obj");
-  ASSERT_EQ(garment.warnings.size(), 2u);
-  EXPECT_EQ(garment.warnings[0], "x.obj:7: unknown keyword 't' was passed over; it begins 1 lines");
-  EXPECT_EQ(garment.warnings[1], "x.obj:2: unknown keyword 'vv' was passed over; it begins 2 lines");
+  EXPECT_TRUE(garment.warnings.empty());
   EXPECT_EQ(garment.mesh.num_vertices(), 3);
+  EXPECT_EQ(garment.mesh.num_triangles(), 1);
+
+  const ObjMesh other = parse_obj("v 0 0 0\nw 0\nv 1 0 0\nw 0\nv 0 1 0\nf 1 2 3\ncurv 0\n", "x.obj");
+  ASSERT_EQ(other.warnings.size(), 2u);
+  EXPECT_EQ(other.warnings[0], "x.obj:7: unknown keyword 'curv' was passed over; it begins 1 lines");
+  EXPECT_EQ(other.warnings[1], "x.obj:2: unknown keyword 'w' was passed over; it begins 2 lines");
 }
 
 TEST(ObjReader, TellsFewOfVeryManyUnknownKeywords) {

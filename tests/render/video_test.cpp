@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -86,6 +89,21 @@ TEST(VideoTrouble, KeepsAnEarlierFileUnlessFinished) {
   }  // not finished
   EXPECT_EQ(read(file), "earlier");
   EXPECT_FALSE(fs::exists(file.string() + ".part"));
+}
+
+TEST(VideoTrouble, SignalsToTheWholeGroupLeaveFfmpegAtWork) {
+  if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  fs::create_directories(kFolder);
+  const fs::path file = kFolder / "signalled.mp4";
+  VideoWriter video(file, 64, 48, 20);
+  const std::string children = "/proc/self/task/" + std::to_string(getpid()) + "/children";
+  if (!fs::exists(children)) GTEST_SKIP() << "the system does not tell child processes";
+  const int ffmpeg = std::atoi(read(children).c_str());
+  ASSERT_GT(ffmpeg, 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) kill(ffmpeg, signal);
+  for (int k = 0; k < 12; ++k) video.add(make_image(20 * k));
+  video.finish();
+  EXPECT_GT(fs::file_size(file), 100u);
 }
 
 TEST(VideoTrouble, IsNamed) {

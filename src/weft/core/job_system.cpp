@@ -4,8 +4,12 @@
 #include <thread>
 #include <vector>
 #elif WEFT_WITH_TBB
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <optional>
 #endif
 
 namespace weft {
@@ -45,7 +49,10 @@ class PlainThreads final : public JobSystem {
 #elif WEFT_WITH_TBB
 class TbbJobs final : public JobSystem {
  public:
-  explicit TbbJobs(int num_threads) : num_threads_(num_threads), arena_(num_threads) {}
+  explicit TbbJobs(int num_threads) : num_threads_(num_threads), arena_(num_threads) {
+    if (num_threads > tbb::info::default_concurrency())
+      more_than_processors_.emplace(tbb::global_control::max_allowed_parallelism, num_threads);
+  }
 
   int num_threads() const override { return num_threads_; }
 
@@ -55,6 +62,7 @@ class TbbJobs final : public JobSystem {
 
  private:
   int num_threads_;
+  std::optional<tbb::global_control> more_than_processors_;  // else oneTBB ignores them, and prints it
   tbb::task_arena arena_;
 };
 #endif

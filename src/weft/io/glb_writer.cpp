@@ -3,14 +3,11 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <span>
-#include <system_error>
 
 #include "weft/core/error.h"
 #include "weft/mesh/vertex_normals.h"
@@ -413,40 +410,31 @@ class GlbBuilder {
 
 // ---- The file ----
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw InputError(file.string() + ": cannot be written: " + reason);
-}
-
 /// The file's lengths have 32 bits.
 void require_size(const std::filesystem::path& file, const tinygltf::Model& model) {
   constexpr size_t kRoomForJson = size_t{1} << 28;
   constexpr size_t kLargest = std::numeric_limits<uint32_t>::max() - kRoomForJson;
   const size_t size = model.buffers[0].data.size();
-  if (size > kLargest)
-    fail(file, std::to_string(size) + " bytes of frames are too many for glTF; write fewer frames");
+  if (size > kLargest) {
+    throw InputError(file.string() + " cannot be written: " + std::to_string(size) +
+                     " bytes of frames are too many for glTF; write fewer frames");
+  }
 }
 
 }  // namespace
 
-void write_glb(const std::filesystem::path& file, const Animation& animation) {
+void write_glb(StagedFile& file, const Animation& animation) {
   require_valid(animation);
   tinygltf::Model model = GlbBuilder(animation).build();
-  require_size(file, model);
+  require_size(file.file(), model);
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, file.out(), false, true);
+  file.finish();
+}
 
-  std::filesystem::path part = file;
-  part += ".part";
-  errno = 0;
-  std::ofstream out(part, std::ios::binary);
-  if (!out) fail(file, std::generic_category().message(errno));
-  tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true);
-  out.close();
-  std::error_code error;
-  if (!out) error = {errno, std::generic_category()};
-  if (!error) std::filesystem::rename(part, file, error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  fail(file, error.message());
+void write_glb(const std::filesystem::path& file, const Animation& animation) {
+  StagedFile staged(file);
+  write_glb(staged, animation);
+  staged.replace();
 }
 
 }  // namespace weft

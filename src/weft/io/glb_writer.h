@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "weft/core/shapes.h"
+#include "weft/core/staged_file.h"
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
@@ -58,10 +59,12 @@ struct Animation {
 /// `"weft": {"role": "cloth"}` or `{"role": "collider", "shape": "sphere", "center": [0, 0, 0], "radius":
 /// 0.3}`; other shapes are `plane` (point, normal), `capsule` (a, b, radius), `box` (center, half_size,
 /// rotation: nine numbers row by row) and `mesh`. The asset's extras hold `title` and `passing`. All meshes
-/// have the same number of frames (>= 1). Writes to FILE.part first, so that an earlier result is replaced
-/// whole or not at all. Throws InputError if the file cannot be written, with the system's reason, and for an
-/// animation that no viewer could show: without meshes, with unequal numbers of frames, or with coordinates
-/// that are not finite.
+/// have the same number of frames (>= 1). An earlier file is replaced whole or not at all. Throws InputError
+/// if the file cannot be written, with the system's reason, and for an animation that no viewer could show:
+/// without meshes, with unequal numbers of frames, or with coordinates that are not finite.
 void write_glb(const std::filesystem::path& file, const Animation& animation);
+
+/// The same up to finish(): replace() is left to the caller.
+void write_glb(StagedFile& file, const Animation& animation);
 
 }  // namespace weft

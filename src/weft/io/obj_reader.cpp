@@ -19,6 +19,7 @@
 #include <system_error>
 
 #include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 
 namespace weft {
 namespace {
@@ -202,8 +203,9 @@ class ObjParser {
   }
 
   void read_line(std::string_view keyword) {
-    constexpr std::array<std::string_view, 8> kPassedOver = {"vn", "mtllib", "usemtl", "s",
-                                                             "g",  "o",      "l",      "p"};
+    // vv and t are of the garment files of Berkeley.
+    constexpr std::array<std::string_view, 11> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s", "g",
+                                                              "o",  "l",      "p",      "vv",     "t"};
     if (keyword == "v") {
       read_vertex();
     } else if (keyword == "vt") {
@@ -364,14 +366,6 @@ void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex) 
   }
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written: " + system_reason());
-}
-
 }  // namespace
 
 ObjMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_text(file), file.string()); }
@@ -381,7 +375,7 @@ ObjMesh parse_obj(const std::string& text, const std::string& name) { return Obj
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh) {
   std::string text;
   append_mesh(text, mesh, 0);
-  write_text(file, text);
+  write_file(file, text);
 }
 
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects) {
@@ -392,7 +386,7 @@ void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& 
     append_mesh(text, mesh, first_vertex);
     first_vertex += mesh.num_vertices();
   }
-  write_text(file, text);
+  write_file(file, text);
 }
 
 }  // namespace weft

@@ -19,10 +19,10 @@ struct ObjMesh {
 
 /// Reads the vertices and faces of an OBJ file. Quads and polygons, concave ones too, are cut into triangles;
 /// vertices keep the file's order and are never split or merged, for texture coordinates are kept by corner;
-/// normals, materials, lines, points and unknown keywords are passed over. Throws InputError ("FILE:LINE:
-/// what is wrong, what was expected") for a file that cannot be read, a coordinate that is not a finite
-/// number, a face with fewer than three vertices or with an index that does not exist, and a file without
-/// vertices or without faces.
+/// normals, materials, texture maps, lines, points and unknown keywords are passed over. Throws InputError
+/// ("FILE:LINE: what is wrong, what was expected") for a file that cannot be read, a coordinate that is not a
+/// finite number, a face with fewer than three vertices or with an index that does not exist, and a file
+/// without vertices or without faces.
 ObjMesh read_obj(const std::filesystem::path& file);
 
 /// The same from text; `name` stands for the file in messages.

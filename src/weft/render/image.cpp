@@ -1,11 +1,10 @@
 #include "weft/render/image.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
-#include <system_error>
+#include <ostream>
 
 #include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -46,17 +45,18 @@ bool is_picture(const std::filesystem::path& file) {
 
 void write_image(const std::filesystem::path& file, const Image& image) {
   constexpr int kJpegQuality = 92;
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
+  StagedFile staged(file);
+  std::ostream& out = staged.out();
   const auto write = [](void* stream, void* data, int size) {
-    static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(data), size);
+    static_cast<std::ostream*>(stream)->write(static_cast<const char*>(data), size);
   };
   const int done = file.extension() == ".jpg" ? stbi_write_jpg_to_func(write, &out, image.width, image.height,
                                                                        4, image.rgba.data(), kJpegQuality)
                                               : stbi_write_png_to_func(write, &out, image.width, image.height,
                                                                        4, image.rgba.data(), 4 * image.width);
-  if (done && out.flush()) return;
-  throw InputError(file.string() + " cannot be written: " + std::generic_category().message(errno));
+  if (!done) throw InputError(file.string() + " cannot be written: the picture cannot be encoded");
+  staged.finish();
+  staged.replace();
 }
 
 Image read_png(const std::filesystem::path& file) {

@@ -27,7 +27,7 @@ Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap)
 /// Whether the file's ending is one that write_image knows: .png, or .jpg, which forgets alpha.
 bool is_picture(const std::filesystem::path& file);
 
-/// Throws InputError if the file cannot be written.
+/// Replaces the file whole. Throws InputError if it cannot be written.
 void write_image(const std::filesystem::path& file, const Image& image);
 
 /// Throws InputError if the file cannot be read or is no PNG.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <sstream>
 #include <system_error>
@@ -58,6 +59,16 @@ Arguments command(const std::filesystem::path& file, const std::filesystem::path
   return arguments;
 }
 
+/// Ctrl-C and job managers signal the whole group of processes; ffmpeg ends when its input does, with a whole
+/// file.
+void block_signals(posix_spawnattr_t& attributes) {
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&blocked, signal);
+  posix_spawnattr_setsigmask(&attributes, &blocked);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+}
+
 }  // namespace
 
 bool is_video(const std::filesystem::path& file) {
@@ -90,7 +101,11 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-  const int error = posix_spawnp(&process_, "ffmpeg", &actions, nullptr, argv.data(), environ);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  block_signals(attributes);
+  const int error = posix_spawnp(&process_, "ffmpeg", &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   if (error == 0) return;

@@ -14,8 +14,8 @@ bool is_video(const std::filesystem::path& file);
 /// Throws InputError, with what to do, if there is no ffmpeg among the programs.
 void require_ffmpeg(const std::filesystem::path& file);
 
-/// Takes pictures of one size and hands them to ffmpeg. The file appears when finish() has returned; until
-/// then, and if anything fails, an earlier one stays.
+/// Takes pictures of one size and hands them to ffmpeg, which signals that end programs do not end. The file
+/// appears when finish() has returned; until then, and if anything fails, an earlier one stays.
 class VideoWriter {
  public:
   /// Throws InputError if ffmpeg cannot be started, or the file's ending is not known.

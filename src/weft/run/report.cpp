@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "weft/core/error.h"
+#include "weft/core/staged_file.h"
 
 namespace weft {
 namespace {
@@ -66,11 +65,7 @@ std::string to_json(const RunReport& r) {
 }
 
 void write_report(const std::filesystem::path& file, const RunReport& report) {
-  std::ofstream out(file);
-  out << to_json(report);
-  out.close();
-  if (!out)
-    throw InputError("the report " + file.string() + " cannot be written: is the folder there and writable?");
+  write_file(file, to_json(report));
 }
 
 double quantile(std::vector<double> values, double q) {

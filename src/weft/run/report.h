@@ -48,7 +48,7 @@ struct RunReport {
 /// The report as JSON text. What was not measured is null.
 std::string to_json(const RunReport& report);
 
-/// Throws InputError if the file cannot be written.
+/// Replaces the file whole. Throws InputError if it cannot be written.
 void write_report(const std::filesystem::path& file, const RunReport& report);
 
 /// The quantile q in [0, 1] of values (nearest rank); 0 of no values.

@@ -1,0 +1,110 @@
+#include "weft/core/staged_file.h"
+
+#include <cerrno>
+#include <iostream>
+#include <system_error>
+
+#include "weft/core/error.h"
+
+#ifndef _WIN32
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, const std::error_code& reason) {
+  throw InputError(file.string() + " cannot be written: " + reason.message());
+}
+
+/// The reason of the last call that failed.
+std::error_code last_error() { return {errno != 0 ? errno : EIO, std::generic_category()}; }
+
+/// /dev/stdout opened a second time would write over what the first has written to the same file.
+std::ostream* find_standard_stream(const fs::path& file) {
+  std::error_code not_there;
+  if (fs::equivalent(file, "/dev/stdout", not_there)) return &std::cout;
+  if (fs::equivalent(file, "/dev/stderr", not_there)) return &std::cerr;
+  return nullptr;
+}
+
+bool is_pipe_or_device(const fs::path& file) {
+  std::error_code not_there;
+  return fs::is_other(file, not_there);
+}
+
+fs::path resolve_link(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path target = fs::weakly_canonical(file, error);
+  return error ? file : target;
+}
+
+/// From the system's memory to the disk.
+void sync_to_disk(const fs::path& file, const fs::path& part) {
+#ifndef _WIN32
+  const int descriptor = open(part.c_str(), O_WRONLY | O_CLOEXEC);
+  const bool is_synced = descriptor >= 0 && fsync(descriptor) == 0;
+  const std::error_code reason = last_error();
+  if (descriptor >= 0) close(descriptor);
+  if (!is_synced) fail(file, reason);
+#else
+  (void)file, (void)part;
+#endif
+}
+
+}  // namespace
+
+StagedFile::StagedFile(const fs::path& file) : file_(file), standard_(find_standard_stream(file)) {
+  if (standard_) return;
+  if (!is_pipe_or_device(file)) {
+    target_ = resolve_link(file);
+    part_ = target_.parent_path() / ("." + target_.filename().string() + ".partial");
+  }
+  errno = 0;
+  stream_.open(is_direct() ? file_ : part_, std::ios::binary);
+  if (!stream_) fail(file_, last_error());
+}
+
+StagedFile::~StagedFile() {
+  stream_.close();
+  std::error_code ignored;
+  if (!is_direct()) fs::remove(part_, ignored);
+}
+
+void StagedFile::finish() {
+  out().flush();
+  if (!standard_) stream_.close();
+  if (!out()) fail(file_, last_error());
+  if (!is_direct()) sync_to_disk(file_, part_);
+}
+
+void StagedFile::replace() {
+  if (is_direct()) return;
+  std::error_code error;
+  const fs::file_status old = fs::status(target_, error);
+  if (fs::is_regular_file(old)) fs::permissions(part_, old.permissions(), error);
+  fs::rename(part_, target_, error);
+  if (error) fail(file_, error);
+  part_.clear();
+}
+
+void write_file(const fs::path& file, std::string_view content) {
+  StagedFile staged(file);
+  staged.out() << content;
+  staged.finish();
+  staged.replace();
+}
+
+void require_writable(const fs::path& file) {
+  if (is_pipe_or_device(file) || find_standard_stream(file)) return;
+  std::error_code not_there;
+  errno = 0;
+  if (fs::exists(file, not_there) && !std::ofstream(file, std::ios::app)) fail(file, last_error());
+  StagedFile probe(file);
+}
+
+}  // namespace weft

@@ -1,0 +1,81 @@
+#pragma once
+/// The program beside the test, which sends it signals.
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace weft {
+
+/// Its standard output and error go to background.txt.
+class Background {
+ public:
+  /// `hangup`: what becomes of SIGHUP before the program starts; nohup ignores it.
+  explicit Background(std::vector<std::string> arguments, void (*hangup)(int) = SIG_DFL) {
+    arguments.insert(arguments.begin(), WEFT_PROGRAM);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    process_ = fork();
+    if (process_ == 0) {
+      std::signal(SIGHUP, hangup);
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // it does not outlive a test that is stopped
+      if (!std::freopen("background.txt", "w", stdout) || dup2(STDOUT_FILENO, STDERR_FILENO) < 0) _exit(126);
+      execv(WEFT_PROGRAM, argv.data());
+      _exit(127);
+    }
+  }
+
+  ~Background() {
+    send(SIGKILL);
+    wait();
+  }
+
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  /// Waits until the program catches the signal; false if it ends without.
+  bool catches(int signal) const {
+    while (true) {
+      const std::string state = status("State:"), mask = status("SigCgt:");
+      if (mask.empty() || state == "Z") return false;
+      if (std::stoull(mask, nullptr, 16) >> (signal - 1) & 1) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  void send(int signal) const {
+    if (process_ > 0) kill(process_, signal);
+  }
+
+  /// Its exit code, or -1 if a signal has ended it.
+  int wait() {
+    if (process_ <= 0) return -1;
+    int status = 0;
+    waitpid(process_, &status, 0);
+    process_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  /// The word after `key` in what Linux tells of the process; empty once it has ended.
+  std::string status(const std::string& key) const {
+    std::ifstream in("/proc/" + std::to_string(process_) + "/status");
+    for (std::string word; in >> word;) {
+      if (word == key && in >> word) return word;
+    }
+    return "";
+  }
+
+  pid_t process_ = -1;
+};
+
+}  // namespace weft
