@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "common.h"
+#include "progress.h"
 #include "weft/core/error.h"
 #include "weft/core/nearest_name.h"
 #include "weft/core/version.h"
@@ -95,5 +96,6 @@ int main(int argc, char** argv) {
   fill_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large (ulimit -f) is an error of the write
   const int exit_code = run(argc, argv);
-  return finish_standard_output() ? exit_code : kBadInput;
+  if (finish_standard_output()) return exit_code;
+  return interrupted() ? kInterrupted : kBadInput;  // a terminal that is closed takes standard output with it
 }

@@ -107,6 +107,14 @@ PaintSettings paint_settings(const RenderRequest& request) {
   return settings;
 }
 
+/// Of the frames that were asked for, those that the simulation has reached; the last one it has where it
+/// reached none, or none was asked for.
+std::vector<int> choose_frames(std::vector<int> frames, RunOutcome outcome, int last) {
+  if (outcome != RunOutcome::done) std::erase_if(frames, [&](int frame) { return frame > last; });
+  if (frames.empty()) frames = {last};
+  return frames;
+}
+
 /// Paints what there is, even if the simulation has failed or was interrupted; tells how that ended.
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
@@ -123,8 +131,8 @@ RunOutcome render(const RenderRequest& request) {
   if (is_video(request.out)) {
     painter.write_video(request.out, request.every);
   } else {
-    const std::vector<int> last = {painter.last_frame()};
-    painter.write_pictures(request.out, request.frames.empty() ? last : request.frames, request.columns);
+    const std::vector<int> frames = choose_frames(request.frames, outcome, painter.last_frame());
+    painter.write_pictures(request.out, frames, request.columns);
   }
   if (interrupted()) fmt::print("interrupted: what was done is kept\n");
   fmt::print("written {}\n", request.out.string());

@@ -69,6 +69,15 @@ TEST_F(Render, InterruptedVideoHoldsTheFramesThatWereDone) {
   EXPECT_GE(std::atoi(probe.out.c_str()), 2) << "the start and a frame" << probe.err;
 }
 
+TEST_F(Render, InterruptedPictureIsOfTheLastFrameThatWasDone) {
+  Background render(
+      {"render", "paper/fig6_ball", "--frame", "100000", "--size", "100x80", "--out", "ball.png"});
+  ASSERT_TRUE(render.catches(SIGTERM)) << read_text("background.txt");
+  render.send(SIGTERM);
+  EXPECT_EQ(render.wait(), 130) << read_text("background.txt");
+  EXPECT_EQ(read_png("ball.png").width, 100);
+}
+
 TEST_F(Render, DrawsSprings) {
   EXPECT_EQ(shell("weft render paper/fig4_vertical --frame 0 --springs --out springs.png" + kQuick).exit_code,
             0);

@@ -79,14 +79,16 @@ void StagedFile::finish() {
   out().flush();
   if (!standard_) stream_.close();
   if (!out()) fail(file_, last_error());
-  if (!is_direct()) sync_to_disk(file_, part_);
+  if (is_direct()) return;
+  sync_to_disk(file_, part_);
+  std::error_code ignored;
+  const fs::file_status old = fs::status(target_, ignored);
+  if (fs::is_regular_file(old)) fs::permissions(part_, old.permissions(), ignored);
 }
 
 void StagedFile::replace() {
   if (is_direct()) return;
   std::error_code error;
-  const fs::file_status old = fs::status(target_, error);
-  if (fs::is_regular_file(old)) fs::permissions(part_, old.permissions(), error);
   fs::rename(part_, target_, error);
   if (error) fail(file_, error);
   part_.clear();
