@@ -42,7 +42,9 @@ FinishedRun run_to_files(const RunRequest& request) {
   const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
   const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
   prepare_folder(folder, request.report);
-  const RunOptions options{.frames = request.frames, .threads = choose_threads(request.threads)};
+  const RunOptions options{.frames = request.frames,
+                           .threads = choose_threads(request.threads),
+                           .audit = request.audit};
   ProgressBar bar(scene.name);
   catch_interrupts();
   RunResult result = run_scene(scene, options, [&](const Progress& progress) {
@@ -83,6 +85,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "Threads (default: all processors); never changes the result")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
+  command->add_flag("--audit", request->audit,
+                    "Also report the work done in every frame, and the energy it leaves over; slower");
   add_set_option(*command, request->overrides);
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
   command->callback([request, &exit_code] {

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace weft::app {
 namespace {
 
@@ -11,6 +13,14 @@ std::string format_depth(const RunReport& r) {
 
 std::string format_crossings(const RunReport& r) {
   return r.intersections ? fmt::format("{}", *r.intersections) : "–";
+}
+
+/// The frame that left most energy over, if an audit found any that was made from nothing.
+std::string format_left_over(const std::vector<double>& left_over) {
+  const auto most = std::max_element(left_over.begin(), left_over.end());
+  if (*most <= 0) return "no energy from nothing in any frame";
+  return fmt::format("{:.3g} J of energy from nothing at most, in frame {}", *most,
+                     most - left_over.begin() + 1);
 }
 
 double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
@@ -30,6 +40,8 @@ std::string summarise(const RunReport& r) {
                       100 * r.max_strain, 100 * r.mean_strain);
   text += fmt::format("  energy       {:.3g} J kinetic, {:.3g} J potential at the end\n",
                       last(r.kinetic_energy), last(r.potential_energy));
+  if (!r.energy.left_over.empty())
+    text += fmt::format("  audit        {}\n", format_left_over(r.energy.left_over));
   text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
   if (r.intersections) text += fmt::format("  crossings    {} at worst\n", *r.intersections);
   if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));

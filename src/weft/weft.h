@@ -45,5 +45,6 @@
 #include "weft/forces/wind.h"
 // How it moves:
 #include "weft/integrators/integrator.h"
+#include "weft/world/energy_audit.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"

@@ -105,6 +105,15 @@ TEST_F(App, ResultsThatCannotBeWrittenLeaveTheFilesOfAnEarlierRun) {
   EXPECT_EQ(std::distance(fs::directory_iterator("results"), {}), 2) << "nothing is left aside";
 }
 
+TEST_F(App, AuditSaysWhatEnergyIsLeftOver) {
+  const Finished audited = shell("weft run paper/fig6_ball --frames 2 --out audited --audit");
+  EXPECT_EQ(audited.exit_code, 0) << audited.err;
+  EXPECT_TRUE(contains(audited.out, "  audit        ")) << audited.out;
+  EXPECT_EQ(read_json("audited/report.json")["energy"]["left_over"].size(), 2u);
+  EXPECT_FALSE(contains(shell("weft run paper/fig6_ball --frames 2 --out plain").out, "  audit "));
+  EXPECT_EQ(read_json("plain/report.json")["state_hash"], read_json("audited/report.json")["state_hash"]);
+}
+
 TEST_F(App, SetChangesValuesOfTheScene) {
   EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --set solver.integrator=explicit "
                   "--set cloth[0].grid.cells='[4, 4]'")

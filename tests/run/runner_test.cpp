@@ -322,6 +322,44 @@ TEST(Report, QuantilesAreNearestRanks) {
   EXPECT_EQ(quantile({4, 1, 3, 2}, 0.95), 4);
 }
 
+TEST(Report, HasTheEnergiesOfEveryFrameAndTheirSumIsTheTwoItAlwaysHad) {
+  const RunResult result = run_scene(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"}),
+                                     {.frames = 40, .record_animation = false});
+  const EnergySeries& e = result.report.energy;
+  ASSERT_EQ(e.bending.size(), 40u);
+  for (int f = 0; f < 40; ++f) {
+    EXPECT_EQ(e.kinetic[f], result.report.kinetic_energy[f]);
+    const double potential = result.report.potential_energy[f];
+    EXPECT_NEAR(e.elastic[f] + e.bending[f] + e.gravitational[f], potential, 1e-12 * std::abs(potential));
+  }
+  EXPECT_GT(e.bending[39], 0);
+  const nlohmann::json json = nlohmann::json::parse(to_json(result.report))["energy"];
+  EXPECT_EQ(json["elastic"].size(), 40u);
+  for (const char* key : {"work_pins", "work_shapes", "work_wind", "work_hands", "left_over"})
+    EXPECT_TRUE(json.at(key).is_null()) << key << " is not measured without an audit";
+}
+
+TEST(Report, OfAnAuditBalancesAndTheMotionIsTheSame) {
+  // A ball that turns under the sheet on it.
+  const SceneDesc scene =
+      shipped("contact/rotating_ball", {"cloth[0].grid.cells=[12, 12]", "solver.steps_per_frame=2"});
+  RunReport reports[2];
+  for (const bool audit : {false, true})
+    reports[audit] = run_scene(scene, {.frames = 90, .record_animation = false, .audit = audit}).report;
+  EXPECT_EQ(reports[0].state_hash, reports[1].state_hash);
+  const EnergySeries& e = reports[1].energy;
+  ASSERT_EQ(e.left_over.size(), 90u);
+  double work_of_the_ball = 0;
+  for (int f = 1; f < 90; ++f) {
+    const double gain = e.kinetic[f] + e.elastic[f] + e.bending[f] + e.gravitational[f] - e.kinetic[f - 1] -
+                        e.elastic[f - 1] - e.bending[f - 1] - e.gravitational[f - 1];
+    EXPECT_NEAR(e.work_pins[f] + e.work_shapes[f] + e.work_wind[f] + e.work_hands[f] + e.left_over[f], gain,
+                1e-9);
+    work_of_the_ball += e.work_shapes[f];
+  }
+  EXPECT_GT(work_of_the_ball, 1e-4) << "it takes the sheet along";
+}
+
 TEST(Report, CannotBeWrittenIntoAMissingFolder) {
   EXPECT_THROW(write_report("/nonexistent/folder/report.json", {}), InputError);
 }

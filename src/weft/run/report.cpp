@@ -21,6 +21,19 @@ std::string to_string(RunOutcome outcome) {
   return "failed";
 }
 
+/// null for no frames.
+nlohmann::ordered_json json_of(const std::vector<double>& series) {
+  return series.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(series);
+}
+
+nlohmann::ordered_json json_of(const EnergySeries& e) {
+  return {{"kinetic", json_of(e.kinetic)},     {"elastic", json_of(e.elastic)},
+          {"bending", json_of(e.bending)},     {"gravitational", json_of(e.gravitational)},
+          {"work_pins", json_of(e.work_pins)}, {"work_shapes", json_of(e.work_shapes)},
+          {"work_wind", json_of(e.work_wind)}, {"work_hands", json_of(e.work_hands)},
+          {"left_over", json_of(e.left_over)}};
+}
+
 }  // namespace
 
 std::string to_json(const RunReport& r) {
@@ -45,8 +58,8 @@ std::string to_json(const RunReport& r) {
       {"max_strain", r.max_strain},
       {"min_strain", r.min_strain},
       {"mean_strain", r.mean_strain},
-      {"max_stretch", r.max_stretch.empty() ? null : nlohmann::ordered_json(r.max_stretch)},
-      {"min_stretch", r.min_stretch.empty() ? null : nlohmann::ordered_json(r.min_stretch)},
+      {"max_stretch", json_of(r.max_stretch)},
+      {"min_stretch", json_of(r.min_stretch)},
       {"penetration_max", or_null(r.penetration_max)},
       {"intersections", or_null(r.intersections)},
       {"infeasible", or_null(r.infeasible)},
@@ -59,6 +72,7 @@ std::string to_json(const RunReport& r) {
       {"warnings", r.warnings},
       {"kinetic_energy", r.kinetic_energy},
       {"potential_energy", r.potential_energy},
+      {"energy", json_of(r.energy)},
       {"lowest_y", r.lowest_y},
   };
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

@@ -10,6 +10,13 @@ namespace weft {
 
 enum class RunOutcome { done, interrupted, failed };
 
+/// Energies of all cloths at the end of each frame, and what an audit found in it (frames) [J].
+struct EnergySeries {
+  std::vector<double> kinetic, elastic, bending, gravitational;
+  // With RunOptions::audit, else empty: the work of a frame, and what it leaves over (world/energy_audit.h).
+  std::vector<double> work_pins, work_shapes, work_wind, work_hands, left_over;
+};
+
 struct RunReport {
   std::string scene, integrator, version;
   RunOutcome outcome = RunOutcome::done;
@@ -24,9 +31,10 @@ struct RunReport {
   double max_strain = 0, min_strain = 0;  // extremes over the run, of l/l0 − 1 over structural springs [1]
   double mean_strain = 0;                 // mean over springs and frames [1]
   std::vector<double> max_stretch, min_stretch;  // (frames) principal stretches of membranes; none: empty [1]
-  std::vector<double> kinetic_energy;     // (frames) [J]
-  std::vector<double> potential_energy;   // (frames) elastic plus gravity, zero at the world's origin [J]
-  std::vector<double> lowest_y;           // (frames) the first one after the first frame [m]
+  std::vector<double> kinetic_energy;            // (frames) [J]
+  std::vector<double> potential_energy;  // (frames) elastic plus gravity, zero at the world's origin [J]
+  EnergySeries energy;
+  std::vector<double> lowest_y;  // (frames) the first one after the first frame [m]
   // Work of the solver, empty for integrators without it:
   std::vector<int> newton_steps;    // (frames) nonlinear iterations, all cloths [1]
   std::vector<int> cg_iterations;   // (frames) linear iterations inside them [1]

@@ -11,6 +11,7 @@
 #include "weft/run/frame_checks.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_world.h"
+#include "weft/world/energy_audit.h"
 #include "weft/world/measures.h"
 
 namespace weft {
@@ -62,23 +63,28 @@ class Recorder {
   }
 
   void add_frame() {
-    double kinetic = 0, potential = 0, lowest = std::numeric_limits<double>::infinity(), mean_strain = 0;
+    double lowest = std::numeric_limits<double>::infinity(), mean_strain = 0;
     for (int c = 0; c < world_.num_cloths(); ++c) {
       const ClothModel& model = world_.model({c});
       const ClothState& state = world_.state({c});
-      kinetic += compute_kinetic_energy(model, state);
-      potential +=
-          compute_elastic_energy(model, state) + compute_gravity_energy(model, state, world_.gravity());
       lowest = std::min(lowest, compute_lowest_y(state));
       mean_strain += add_strain(compute_strain(model, state)) / world_.num_cloths();
     }
-    report_.kinetic_energy.push_back(kinetic);
-    report_.potential_energy.push_back(potential);
     report_.lowest_y.push_back(lowest);
+    add_energy(compute_energy(world_));
     add_stretches();
     ++report_.frames;
     report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
     judge_frame();
+  }
+
+  void add_audit(const EnergyAudit& frame) {
+    EnergySeries& energy = report_.energy;
+    energy.work_pins.push_back(frame.work_pins);
+    energy.work_shapes.push_back(frame.work_shapes);
+    energy.work_wind.push_back(frame.work_wind);
+    energy.work_hands.push_back(frame.work_hands);
+    energy.left_over.push_back(frame.left_over);
   }
 
  private:
@@ -87,6 +93,15 @@ class Recorder {
     report_.intersections = std::max(report_.intersections.value_or(0), check.intersections);
     if (!check.deepest) return;
     report_.penetration_max = std::max(report_.penetration_max.value_or(0), check.penetration());
+  }
+
+  void add_energy(const WorldEnergy& energy) {
+    report_.kinetic_energy.push_back(energy.kinetic);
+    report_.potential_energy.push_back(energy.potential());
+    report_.energy.kinetic.push_back(energy.kinetic);
+    report_.energy.elastic.push_back(energy.elastic);
+    report_.energy.bending.push_back(energy.bending);
+    report_.energy.gravitational.push_back(energy.gravitational);
   }
 
   void add_stretches() {
@@ -144,19 +159,20 @@ class Run {
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
     recorder_.judge_start(scene);
+    built_.world.track_contacts(options.audit);
     if (options.record_animation) film_.add_frame();
   }
 
   RunResult go(const OnFrame& on_frame) {
     RunReport& report = result_.report;
     for (int frame = 1; frame <= num_frames_ && report.outcome == RunOutcome::done; ++frame) {
-      stopwatch_.start();
-      const bool ok = simulate_frame(frame);
-      const double seconds = stopwatch_.stop();
-      if (!ok) break;
+      double seconds = 0;  // wall time of its steps
+      EnergyAudit audit;
+      if (!simulate_frame(frame, seconds, audit)) break;
       spent_ += seconds;
       frame_ms_.push_back(1000 * seconds);
       recorder_.add_frame();
+      if (options_.audit) recorder_.add_audit(audit);
       if (options_.record_animation) film_.add_frame();
       const Progress progress{frame, num_frames_, spent_, spent_ / frame * (num_frames_ - frame)};
       if (on_frame && !on_frame(progress) && frame < num_frames_) report.outcome = RunOutcome::interrupted;
@@ -168,11 +184,16 @@ class Run {
 
  private:
   /// False if the simulation failed: then the report says where and why.
-  bool simulate_frame(int frame) {
+  bool simulate_frame(int frame, double& seconds, EnergyAudit& audit) {
     World& world = built_.world;
     for (int s = 0; s < scene_.steps_per_frame; ++s) {
+      std::optional<AuditStart> start;
+      if (options_.audit) start = begin_energy_audit(world);
+      stopwatch_.start();
       world.set_wind(wind_at(scene_.wind, world.time()));
       const StepReport done = world.step(1 / (scene_.fps * scene_.steps_per_frame));
+      seconds += stopwatch_.stop();
+      if (start) audit += finish_energy_audit(*start, world);
       ++num_steps_;
       add_work(done, frame);
       if (done.ok) {

@@ -15,6 +15,9 @@ struct RunOptions {
   std::optional<int> frames;     // instead of the scene's duration · fps [1]
   int threads = 1;               // >= 1; the result does not depend on it
   bool record_animation = true;  // keep every frame for a .glb
+  /// Audit the energy of every step (world/energy_audit.h). The motion stays the same; a step's time includes
+  /// the tracking of contacts, not the audit.
+  bool audit = false;
 };
 
 /// Where a run is.

@@ -46,6 +46,7 @@ class Hands {
   }
   void set_target(int grab, const Vec3& target) { grabs_.at(static_cast<std::size_t>(grab)).target = target; }
   bool are_empty() const { return grabs_.empty(); }
+  const std::vector<Grab>& grabs() const { return grabs_; }
 
   /// Changes the velocities of what is held, and returns the model to integrate with.
   const ClothModel& begin(const std::shared_ptr<const ClothModel>& model, const std::vector<char>& is_pinned,

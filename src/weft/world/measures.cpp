@@ -20,34 +20,53 @@ double compute_kinetic_energy(const ClothModel& model, const ClothState& state) 
 
 namespace {
 
-double compute_elastic_energy(const ClothElements& elements, const ClothState& state) {
+enum class ElasticKind { stretch, bending };
+
+/// Calls add(kind, energy) for the elements' bending stencils, and each membrane and hinge.
+template <class Add>
+void visit_energies(const ClothElements& elements, const ClothState& state, const Add& add) {
   std::vector<Vec3> x;
   for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.x.get(i));
-  double energy = bending_energy(elements.bending, x);
+  add(ElasticKind::bending, bending_energy(elements.bending, x));
   const MembraneLaw law = elements.law();
   for (const auto& [v, rest] : elements.membranes)
-    energy += membrane_energy(rest, law, {x[v[0]], x[v[1]], x[v[2]]});
+    add(ElasticKind::stretch, membrane_energy(rest, law, {x[v[0]], x[v[1]], x[v[2]]}));
   for (const HingeElement& h : elements.hinges) {
     const auto& v = h.vertices;
-    energy += hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]});
+    add(ElasticKind::bending, hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]}));
   }
-  return energy;
 }
 
-}  // namespace
-
-double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
-  double energy = model.elements ? compute_elastic_energy(*model.elements, state) : 0;
+/// The same for the elements and each spring.
+template <class Add>
+void visit_energies(const ClothModel& model, const ClothState& state, const Add& add) {
+  if (model.elements) visit_energies(*model.elements, state, add);
   const std::vector<Spring>& springs = model.topology->springs;
   const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const auto& [i, j, kind, rest_length] = springs[s];
     const Vec3 d = state.x.get(j) - state.x.get(i);
-    energy += spring_energy(model.stiffness(static_cast<int>(s)), rest_length, d);
+    const ElasticKind part = kind == SpringKind::bend ? ElasticKind::bending : ElasticKind::stretch;
+    add(part, spring_energy(model.stiffness(static_cast<int>(s)), rest_length, d));
     if (kind != SpringKind::bend)
-      energy += rest_length * limit_response(limit, d.norm() / rest_length - 1).energy;
+      add(part, rest_length * limit_response(limit, d.norm() / rest_length - 1).energy);
   }
+}
+
+}  // namespace
+
+double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
+  double energy = 0;
+  visit_energies(model, state, [&](ElasticKind, double part) { energy += part; });
   return energy;
+}
+
+ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state) {
+  ElasticParts parts;
+  visit_energies(model, state, [&](ElasticKind kind, double part) {
+    (kind == ElasticKind::bending ? parts.bending : parts.stretch) += part;
+  });
+  return parts;
 }
 
 double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity) {

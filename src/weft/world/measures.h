@@ -14,6 +14,14 @@ double compute_kinetic_energy(const ClothModel& model, const ClothState& state);
 /// Of all springs and elements [J].
 double compute_elastic_energy(const ClothModel& model, const ClothState& state);
 
+/// The same energy in its two parts.
+struct ElasticParts {
+  double stretch =
+      0;  // of stretching and shearing: structural and shear springs, membranes, strain limits [J]
+  double bending = 0;  // of bending springs, curvature stencils and hinges [J]
+};
+ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state);
+
 /// −Σ m g·x, zero where everything is at the world's origin [J].
 double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity);
 

@@ -112,6 +112,7 @@ class World {
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
   const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
+  const std::vector<Grab>& grabs(ClothId cloth) const { return at(cloth).hands.grabs(); }
   const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
   const std::vector<Collider>& colliders() const { return colliders_; }
 
@@ -124,6 +125,7 @@ class World {
   std::vector<std::array<std::string, 2>> passing_pairs() const;
 
   const Vec3& gravity() const { return environment_.gravity; }
+  const Wind& wind() const { return environment_.wind; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
 
   /// Everything that moves; restoring it and stepping again gives the same bits again.

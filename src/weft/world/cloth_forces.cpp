@@ -1,0 +1,114 @@
+#include "weft/world/cloth_forces.h"
+
+#include <array>
+
+#include "weft/forces/bending.h"
+#include "weft/forces/damping.h"
+#include "weft/forces/hinge.h"
+#include "weft/forces/membrane.h"
+#include "weft/forces/spring.h"
+
+namespace weft {
+namespace {
+
+std::vector<Vec3> to_vectors(const Vec3Array& values) {
+  std::vector<Vec3> vectors;
+  for (std::size_t i = 0; i < values.size(); ++i) vectors.push_back(values.get(i));
+  return vectors;
+}
+
+/// The values of an element's vertices.
+template <std::size_t N>
+std::array<Vec3, N> gather(const std::array<int, N>& vertices, const std::vector<Vec3>& values) {
+  std::array<Vec3, N> own;
+  for (std::size_t k = 0; k < N; ++k) own[k] = values[vertices[k]];
+  return own;
+}
+
+template <std::size_t N>
+void scatter(const std::array<int, N>& vertices, const std::array<Vec3, N>& own, std::vector<Vec3>& force) {
+  for (std::size_t k = 0; k < N; ++k) force[vertices[k]] += own[k];
+}
+
+void add_elastic_forces(const ClothElements& elements, const std::vector<Vec3>& x, std::vector<Vec3>& force) {
+  add_bending_force(elements.bending, x, force);
+  const MembraneLaw law = elements.law();
+  for (const auto& [vertices, rest] : elements.membranes)
+    scatter(vertices, membrane_force(rest, law, gather(vertices, x)), force);
+  for (const HingeElement& h : elements.hinges)
+    scatter(h.vertices, hinge_force(h.stiffness, 0, gather(h.vertices, x)), force);
+}
+
+/// −τ A Bᵀ C B v, B the derivative of Green strain.
+void add_membrane_damping(const ClothElements& elements, const std::vector<Vec3>& x,
+                          const std::vector<Vec3>& v, std::vector<Vec3>& force) {
+  for (const auto& [vertices, rest] : elements.membranes) {
+    const std::array<Mat3, 3> derivative = membrane_strain_derivative(rest, gather(vertices, x));
+    Vec3 rate = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) rate += derivative[k] * v[vertices[k]];
+    const Vec3 stress = elements.damping * rest.area * (elements.stiffness * rate);
+    for (int k = 0; k < 3; ++k) force[vertices[k]] -= derivative[k].transpose() * stress;
+  }
+}
+
+/// −τ k times the rate of the curvature's length, and of the hinges' angles.
+void add_bending_damping(const ClothElements& elements, const std::vector<Vec3>& x,
+                         const std::vector<Vec3>& v, std::vector<Vec3>& force) {
+  const BendingRows& rows = elements.bending;
+  for (int r = 0; r < rows.num_rows(); ++r) {
+    const Vec3 curvature = bending_curvature(rows, r, x);
+    if (curvature.isZero(0)) continue;
+    const Vec3 direction = curvature.normalized();
+    const double moment = elements.damping * rows.stiffness[r] * direction.dot(bending_curvature(rows, r, v));
+    for (int k = rows.begin[r]; k < rows.begin[r + 1]; ++k)
+      force[rows.vertex[k]] -= moment * rows.weight[k] * direction;
+  }
+  for (const HingeElement& h : elements.hinges) {
+    const HingeCorners gradient = hinge_angle_gradient(gather(h.vertices, x));
+    double rate = 0;
+    for (int k = 0; k < 4; ++k) rate += gradient[k].dot(v[h.vertices[k]]);
+    for (int k = 0; k < 4; ++k) force[h.vertices[k]] -= elements.damping * h.stiffness * rate * gradient[k];
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state) {
+  std::vector<Vec3> force(state.x.size(), Vec3::Zero());
+  if (model.elements) add_elastic_forces(*model.elements, to_vectors(state.x), force);
+  const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
+  for (int s = 0; s < static_cast<int>(model.topology->springs.size()); ++s) {
+    const auto& [i, j, kind, rest_length] = model.topology->springs[s];
+    const Vec3 d = state.x.get(j) - state.x.get(i);
+    const double length = d.norm();
+    Vec3 pull = spring_force(model.stiffness(s), rest_length, d);
+    if (kind != SpringKind::bend && length > 0)
+      pull += limit_response(limit, length / rest_length - 1).tension / length * d;
+    force[i] += pull;
+    force[j] -= pull;
+  }
+  return force;
+}
+
+std::vector<Vec3> compute_damping_forces(const ClothModel& model, const ClothState& state) {
+  std::vector<Vec3> force(state.x.size(), Vec3::Zero());
+  if (model.elements && model.elements->damping > 0) {
+    const std::vector<Vec3> x = to_vectors(state.x), v = to_vectors(state.v);
+    add_membrane_damping(*model.elements, x, v, force);
+    add_bending_damping(*model.elements, x, v, force);
+  }
+  if (model.material.damping == 0 && model.material.damping_time == 0) return force;
+  for (int s = 0; s < static_cast<int>(model.topology->springs.size()); ++s) {
+    const Spring& spring = model.topology->springs[s];
+    const Vec3 d = state.x.get(spring.j) - state.x.get(spring.i),
+               w = state.v.get(spring.j) - state.v.get(spring.i);
+    const double b = model.damping(s);
+    const Vec3 pull = model.material.damping_kind == DampingKind::plain ? plain_damping_force(b, w)
+                                                                        : projected_damping_force(b, d, w);
+    force[spring.i] += pull;
+    force[spring.j] -= pull;
+  }
+  return force;
+}
+
+}  // namespace weft
