@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace weft {
 namespace {
@@ -33,6 +34,47 @@ TEST(ContactExperiments, ABallTakesTheSheetAlongAsFarAsFrictionCan) {
     const Spin spin = spin_ball({.cells = 24}, friction);
     EXPECT_NEAR(spin.turned_sheet, spin.expected, 0.1 * spin.expected) << friction;
   }
+}
+
+TEST(ContactExperiments, ATurntableTakesTheSheetAlongUntilFrictionIsAllUsedUp) {
+  for (const char* integrator : {"newton", "implicit_euler"}) {
+    const ContactExperiment setup{.integrator = integrator, .cells = 12};
+    const Turntable slow = turn_table(setup, 0.1, 4);
+    EXPECT_EQ(slow.expected, 4) << "0.1 g is enough for the corners";
+    EXPECT_NEAR(slow.acceleration, 4, 0.02 * 4) << integrator;
+    EXPECT_EQ(slow.friction.sliding, 0) << integrator;
+    const Turntable fast = turn_table(setup, 0.1, 20);
+    EXPECT_NEAR(fast.expected, 0.1 * 9.81 * (std::sqrt(2.0) + std::asinh(1.0)) / 0.3, 0.02 * fast.expected)
+        << "of a square of 0.3 m; of 12 cells its inertia is 2/12² more";
+    // Implicit Euler, which contact takes part in, loses (ω h)² of a turning body's momentum per step: 1 % in
+    // all.
+    EXPECT_NEAR(fast.acceleration, fast.expected, 0.025 * fast.expected) << integrator;
+    EXPECT_NEAR(fast.torque, 1, 0.025) << integrator;
+    EXPECT_NEAR(fast.friction.torque, fast.friction.torque_limit, 0.02 * fast.friction.torque_limit)
+        << integrator;
+    EXPECT_NEAR(fast.friction.tangential, fast.friction.limit, 0.02 * fast.friction.limit) << integrator;
+  }
+}
+
+TEST(ContactExperiments, ASheetThatMovesTakesAnotherAlong) {
+  for (const char* integrator : {"newton", "implicit_euler"}) {
+    const ContactExperiment setup{.integrator = integrator, .cells = 8};
+    const CarriedSheet slow = carry_sheet(setup, 0.3, 1);
+    EXPECT_NEAR(slow.acceleration, 1, 0.01) << integrator << " sticks";
+    const CarriedSheet fast = carry_sheet(setup, 0.3, 6);
+    EXPECT_NEAR(fast.expected, 0.3 * 9.81, 1e-9);
+    EXPECT_NEAR(fast.acceleration, fast.expected,
+                (integrator == std::string("newton") ? 0.2 : 0.03) * fast.expected)
+        << integrator << " slides; with newton friction is too weak (docs/contact.md)";
+  }
+}
+
+TEST(ContactExperiments, TheAuditOfASheetOnABallAgreesWithItsAngularMomentum) {
+  const Spin spin = spin_ball({.cells = 24}, 0.03);
+  EXPECT_GT(spin.friction.sliding, 60 * 100) << "it slides all the time";
+  // Contacts bear 9 % more than the weight.
+  EXPECT_NEAR(spin.torque, 1, 0.1);
+  EXPECT_NEAR(spin.friction.torque, spin.friction.torque_limit, 0.15 * spin.friction.torque_limit);
 }
 
 TEST(ContactExperiments, AFoldInFreeFallGainsWhatGravityGives) {

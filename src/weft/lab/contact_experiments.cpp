@@ -11,6 +11,7 @@ namespace weft {
 namespace {
 
 constexpr double kGravity = 9.81;
+constexpr double kSliding = 5e-3;  // what is slower may stick [m/s]
 constexpr double kPi = 3.14159265358979323846;
 const ClothMaterial kSoft{.structural = 100, .shear = 30, .bend = 0.2, .damping = 1e-3, .friction = 0.3};
 
@@ -43,10 +44,42 @@ Vec3 middle_of(const World& world, ClothId cloth) {
   return compute_center_of_mass(world.model(cloth), world.state(cloth));
 }
 
+/// About the vertical through the origin [kg·m²/s].
+double angular_momentum_of(const World& world, ClothId cloth) {
+  return compute_angular_momentum(world.model(cloth), world.state(cloth), Vec3::Zero()).y();
+}
+
 double mass_of(const World& world, ClothId cloth) {
   double mass = 0;
   for (const double m : world.model(cloth).mass) mass += m;
   return mass;
+}
+
+/// ⟨r⟩/⟨r²⟩ of a square about its middle: a (√2 + asinh 1)/6 over a²/6 [1/m].
+double square_lever(double size) { return (std::sqrt(2.0) + std::asinh(1.0)) / size; }
+
+/// From rest at `start`, with constant acceleration as implicit Euler has it: a h² n (n + 1)/2 after n steps.
+/// pose_at(way) is the key frame, without its time.
+template <class PoseAt>
+RigidMotion accelerate(const ContactExperiment& setup, double start, double seconds, double acceleration,
+                       const PoseAt& pose_at) {
+  const double h = 1.0 / setup.steps_per_second;
+  std::vector<KeyFrame> keys;
+  for (int n = 0; n <= std::lround(seconds / h); ++n) {
+    KeyFrame key = pose_at(0.5 * acceleration * h * h * n * (n + 1));
+    key.time = start + n * h;
+    keys.push_back(key);
+  }
+  return RigidMotion(keys);
+}
+
+/// Of what a contact is with, where it is [m/s].
+Vec3 other_velocity(const World& world, const ContactPoint& contact, double step) {
+  if (contact.other_cloth >= 0) return world.state({contact.other_cloth}).v.get(contact.other_vertex);
+  const Collider& collider = world.colliders()[contact.collider];
+  const Vec3 center = pivot(collider.shape);
+  const Pose before = collider.motion.at(world.time() - step), now = collider.motion.at(world.time());
+  return (contact.position - apply(before, center, apply_inverse(now, center, contact.position))) / step;
 }
 
 template <class AfterStep>
@@ -56,6 +89,50 @@ void run(World& world, const ContactExperiment& setup, double seconds, const Aft
     world.step(1.0 / setup.steps_per_second);
     after_step();
   }
+}
+
+}  // namespace
+
+FrictionAudit& FrictionAudit::operator+=(const FrictionAudit& next) {
+  sliding += next.sliding;
+  tangential += next.tangential;
+  limit += next.limit;
+  torque += next.torque;
+  torque_limit += next.torque_limit;
+  return *this;
+}
+
+FrictionAudit audit_friction(const World& world, double step, double friction, const Axis& axis) {
+  FrictionAudit audit;
+  for (const ContactPoint& contact : world.contact_points()) {
+    const auto tangent = [&](const Vec3& v) -> Vec3 { return v - v.dot(contact.normal) * contact.normal; };
+    const Vec3 velocity = world.state({contact.cloth}).v.get(contact.particle);
+    if (tangent(velocity - other_velocity(world, contact, step)).norm() < kSliding) continue;
+    const Vec3 force = tangent(contact.force), lever = contact.position - axis.point;
+    const double most = friction * contact.force.dot(contact.normal);
+    ++audit.sliding;
+    audit.tangential += force.norm();
+    audit.limit += most;
+    audit.torque += lever.cross(force).dot(axis.direction);
+    audit.torque_limit += most * lever.cross(axis.direction).norm();
+  }
+  return audit;
+}
+
+namespace {
+
+/// Runs and audits a sheet that something turns about the vertical through the origin; returns the torque
+/// that its angular momentum tells of, over the audit's limit, 0 where nothing slides [1].
+template <class AfterStep>
+double watch_turning(World& world, const ContactExperiment& setup, double seconds, ClothId sheet,
+                     double friction, FrictionAudit& audit, const AfterStep& after_step) {
+  const double step = 1.0 / setup.steps_per_second, before = angular_momentum_of(world, sheet);
+  run(world, setup, seconds, [&] {
+    audit += audit_friction(world, step, friction);
+    after_step();
+  });
+  if (audit.torque_limit == 0) return 0;
+  return (angular_momentum_of(world, sheet) - before) / (step * audit.torque_limit);
 }
 
 }  // namespace
@@ -174,16 +251,59 @@ Spin spin_ball(const ContactExperiment& setup, double friction) {
     const Vec3 side = world.state(sheet).position(setup.cells) - world.state(sheet).position(0);
     return std::atan2(-side.z(), side.x());
   };
-  double turned = 0, last = heading();
-  run(world, setup, 2, [&] {
+  run(world, setup, 1, [] {});
+  Spin spin{.turned_ball = radians(angle_at(1))};
+  double last = heading();
+  spin.torque = watch_turning(world, setup, 1, sheet, friction, spin.friction, [&] {
     const double now = heading();
-    turned += std::remainder(now - last, 2 * kPi);
+    spin.turned_sheet += std::remainder(now - last, 2 * kPi);
     last = now;
   });
-  const double ball = radians(angle_at(1));
-  // Of a square of side a: ⟨r⟩ = a (√2 + asinh 1)/6, ⟨r²⟩ = a²/6.
-  const double sliding = 0.5 * friction * kGravity * (std::sqrt(2.0) + std::asinh(1.0)) / kSize;
-  return {ball, turned, std::min(ball, sliding)};
+  spin.expected = std::min(spin.turned_ball, 0.5 * friction * kGravity * square_lever(kSize));
+  return spin;
+}
+
+Turntable turn_table(const ContactExperiment& setup, double friction, double floor_acceleration) {
+  constexpr double kSize = 0.3, kSettle = 0.25, kSeconds = 0.3;
+  World world = make_world(setup);
+  const auto turned_by = [](double angle) { return KeyFrame{.angles_deg = {0, angle * 180 / kPi, 0}}; };
+  world.add_collider({"table", Plane{Vec3::Zero(), Vec3::UnitY()}, friction,
+                      accelerate(setup, kSettle, kSeconds, floor_acceleration, turned_by)});
+  const ClothId sheet =
+      add_sheet(world, "sheet", setup.cells, kSize, Mat3::Identity(), Vec3(0, kSoft.thickness / 2, 0));
+  run(world, setup, kSettle, [] {});
+  double lever = 0, inertia = 0;  // Σ m r, Σ m r²
+  for (int i = 0; i < world.model(sheet).num_particles(); ++i) {
+    const Vec3 p = world.state(sheet).position(i);
+    const double m = world.model(sheet).mass[i], r = std::hypot(p.x(), p.z());
+    lever += m * r;
+    inertia += m * r * r;
+  }
+  Turntable result{.expected = std::min(floor_acceleration, friction * kGravity * lever / inertia)};
+  result.torque = watch_turning(world, setup, kSeconds, sheet, friction, result.friction, [] {});
+  result.acceleration = angular_momentum_of(world, sheet) / inertia / kSeconds;
+  return result;
+}
+
+CarriedSheet carry_sheet(const ContactExperiment& setup, double friction, double lower_acceleration) {
+  constexpr double kSize = 0.2, kLowerSize = 0.8, kSettle = 0.25, kSeconds = 0.3;
+  World world = make_world(setup);
+  const ClothId lower =
+      add_sheet(world, "lower", 3 * setup.cells, kLowerSize, Mat3::Identity(), Vec3::Zero());
+  const ClothId upper = add_sheet(world, "upper", setup.cells, kSize, rotation_from_angles_deg({0, 7, 0}),
+                                  Vec3(0.2, kSoft.thickness, 0));
+  world.set_friction("lower", "upper", friction);
+  const auto moved_by = [](double way) { return KeyFrame{.translation = {way, 0, 0}}; };
+  Pin all{.particles = {}, .motion = accelerate(setup, kSettle, kSeconds, lower_acceleration, moved_by)};
+  for (int i = 0; i < world.model(lower).num_particles(); ++i) all.particles.push_back(i);
+  world.set_pins(lower, {all});
+  run(world, setup, kSettle, [] {});
+  CarriedSheet result{.expected = std::min(lower_acceleration, friction * kGravity)};
+  run(world, setup, kSeconds,
+      [&] { result.friction += audit_friction(world, 1.0 / setup.steps_per_second, friction); });
+  const Vec3 momentum = compute_momentum(world.model(upper), world.state(upper));
+  result.acceleration = momentum.x() / mass_of(world, upper) / kSeconds;
+  return result;
 }
 
 FoldedFall drop_fold(const ContactExperiment& setup, double seconds) {

@@ -4,13 +4,39 @@
 
 #include <string>
 
+#include "weft/core/vec.h"
+
 namespace weft {
+
+class World;
 
 struct ContactExperiment {
   std::string integrator = "newton";
   int cells = 24;             // per side of the cloth [1]
   int steps_per_second = 60;  // [1/s]
 };
+
+/// Coulomb's law over the contacts that slide, faster than 5 mm/s: of one step, or summed over several.
+struct FrictionAudit {
+  int sliding = 0;          // contacts [1]
+  double tangential = 0;    // Σ |T| [N]
+  double limit = 0;         // µ Σ N [N]
+  double torque = 0;        // of T on cloth, about the axis [N·m]
+  double torque_limit = 0;  // µ Σ N r, r the distance from the axis: if all slide around it [N·m]
+
+  FrictionAudit& operator+=(const FrictionAudit& next);
+};
+
+/// A vertical axis by default.
+struct Axis {
+  Vec3 point = Vec3::Zero();       // [m]
+  Vec3 direction = Vec3::UnitY();  // unit length
+};
+
+/// Of the contacts that a world tracked in its last step, of length `step` [s], all of the same coefficient
+/// of friction [1]. Cloth's velocity is that of the nearest particle. What the solver has left over at a
+/// particle counts as its contacts' force, so that Σ |T| also tells how far the solve was from its end.
+FrictionAudit audit_friction(const World& world, double step, double friction, const Axis& axis = {});
 
 /// A sheet that starts at rest on a slope.
 struct Slide {
@@ -45,9 +71,31 @@ RestingSheet rest_on(const ContactExperiment& setup, Support support, double sec
 /// no sheet stays.
 struct Spin {
   double turned_ball = 0, turned_sheet = 0;  // after that second [rad]
-  double expected = 0;  // of a rigid flat sheet: µ g ⟨r⟩/(2⟨r²⟩), or the ball's [rad]
+  double expected = 0;     // of a rigid flat sheet: µ g ⟨r⟩/(2⟨r²⟩), or the ball's [rad]
+  FrictionAudit friction;  // over that second
+  double torque = 0;       // by the sheet's angular momentum, over the audit's limit [1]
 };
 Spin spin_ball(const ContactExperiment& setup, double friction);
+
+/// A square sheet on a floor that turns under it, about the vertical through its middle, faster and faster
+/// from rest on.
+struct Turntable {
+  double acceleration = 0;  // of the sheet's mean angular velocity in 0.3 s [rad/s²]
+  /// The floor's, or a rigid sheet's µ g ⟨r⟩/⟨r²⟩ if that is less, of its particles: of many (√2 + asinh 1) µ
+  /// g over the side [rad/s²].
+  double expected = 0;
+  FrictionAudit friction;
+  double torque = 0;  // as in Spin [1]
+};
+Turntable turn_table(const ContactExperiment& setup, double friction, double floor_acceleration);
+
+/// A sheet on a larger one that is pinned everywhere and moves sideways, faster and faster from rest on.
+struct CarriedSheet {
+  double acceleration = 0;  // of its mean velocity in 0.3 s [m/s²]
+  double expected = 0;      // the lower one's, or µ g if that is less [m/s²]
+  FrictionAudit friction;
+};
+CarriedSheet carry_sheet(const ContactExperiment& setup, double friction, double lower_acceleration);
 
 /// A sheet folded in two that falls freely, its halves within reach of each other.
 struct FoldedFall {
