@@ -21,6 +21,8 @@ namespace weft::bench {
 namespace {
 
 constexpr int kQuickFrames = 20;
+constexpr int kFineSteps = 16;  // per frame, for strains to compare with
+constexpr double kTableFriction = 0.1, kSheetFriction = 0.3;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> shipped_scenes() {
@@ -233,6 +235,54 @@ void bench_laws(const ContactExperiment& setup) {
                spin.turned_ball, friction, spin.turned_sheet, spin.expected,
                100 * (spin.turned_sheet / spin.expected - 1));
   }
+  for (const double acceleration : {4.0, 20.0}) {
+    const Turntable table = turn_table(setup, kTableFriction, acceleration);
+    fmt::print("| turntable at {} rad/s²: the sheet, rad/s² | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
+               acceleration, kTableFriction, table.acceleration, table.expected,
+               100 * (table.acceleration / table.expected - 1));
+  }
+  for (const double acceleration : {1.0, 2.0, 6.0}) {
+    const CarriedSheet sheet = carry_sheet(setup, kSheetFriction, acceleration);
+    fmt::print("| sheet on a sheet at {} m/s²: the upper one, m/s² | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
+               acceleration, kSheetFriction, sheet.acceleration, sheet.expected,
+               100 * (sheet.acceleration / sheet.expected - 1));
+  }
+  std::fflush(stdout);
+}
+
+/// Coulomb's law contact by contact, and for the sheet as a whole.
+void bench_friction_audit(const ContactExperiment& setup, bool quick) {
+  fmt::print(
+      "\nOver the contacts that slide, all steps together: Σ|T| over µ ΣN; the torque about the axis over "
+      "µ Σ N r,\nby the contacts' forces and by the sheet's angular momentum. 1: Coulomb's law.\n\n"
+      "| experiment | cells | µ | measured over the law | Σ\\|T\\| | torque, contacts | torque, momentum |\n"
+      "|---|--:|--:|--:|--:|--:|--:|\n");
+  const auto print_row = [](const char* what, int cells, double friction, double share,
+                            const FrictionAudit& f, double torque) {
+    fmt::print("| {} | {} | {} | {:.3f} | {:.2f} | {:.3f} | {:.3f} |\n", what, cells, friction, share,
+               f.tangential / f.limit, f.torque / f.torque_limit, torque);
+    std::fflush(stdout);
+  };
+  const Turntable table = turn_table(setup, kTableFriction, 20);
+  print_row("turntable at 20 rad/s²", setup.cells, kTableFriction, table.acceleration / table.expected,
+            table.friction, table.torque);
+  const CarriedSheet sheet = carry_sheet(setup, kSheetFriction, 6);
+  fmt::print("| sheet on a sheet at 6 m/s² | {} | {} | {:.3f} | {:.2f} | – | – |\n", setup.cells,
+             kSheetFriction, sheet.acceleration / sheet.expected,
+             sheet.friction.tangential / sheet.friction.limit);
+  for (const double friction : {0.02, 0.03}) {
+    for (const int cells : {24, 32, 48, 64}) {
+      if (quick && cells == 64) continue;
+      ContactExperiment own = setup;
+      own.cells = cells;
+      const Spin spin = spin_ball(own, friction);
+      print_row("ball that turns", cells, friction, spin.turned_sheet / spin.expected, spin.friction,
+                spin.torque);
+    }
+  }
+}
+
+void bench_momentum(const ContactExperiment& setup) {
   const FoldedFall fall = drop_fold(setup, 0.5);
   const Collision collision = collide_sheets(setup, 0.5);
   fmt::print(
@@ -244,6 +294,56 @@ void bench_laws(const ContactExperiment& setup) {
       100 * std::abs(fall.worst_gain - 1), collision.contacts, collision.momentum_change);
 }
 
+/// The largest rise of energy in a frame of a scene in which nothing is driven, the first frame left out.
+struct EnergyRise {
+  double rise = 0;    // [J]
+  int frame = 0;      // in which; 0: there is none
+  double fallen = 0;  // gravitational energy lost until then [J]
+};
+
+EnergyRise find_energy_rise(const RunReport& report) {
+  EnergyRise worst;
+  const std::vector<double>& height = report.energy.gravitational;
+  const auto total = [&](int f) { return report.kinetic_energy[f] + report.potential_energy[f]; };
+  for (int f = 1; f < report.frames; ++f) {
+    const double rise = total(f) - total(f - 1);
+    if (rise > worst.rise) worst = {rise, f + 1, height[0] - height[f]};
+  }
+  return worst;
+}
+
+/// `frames` 0: all.
+void bench_energy_of(const char* name, const char* damping, const Overrides& overrides, int frames) {
+  SceneDesc scene = read_scene(find_scene(name), overrides);
+  const RunOptions options{.frames = frames > 0 ? frames : scene.num_frames(), .record_animation = false};
+  scene.steps_per_frame = 1;
+  const RunReport coarse = run_scene(scene, options).report;
+  scene.steps_per_frame = kFineSteps;
+  const RunReport fine = run_scene(scene, options).report;
+  const EnergyRise worst = find_energy_rise(coarse);
+  fmt::print("| {} | {} | {} | {:.3g} | {} | {:.2f} % | {:+.1f} % | {:+.1f} % |\n", name, damping,
+             coarse.frames, worst.rise, worst.frame, worst.fallen > 0 ? 100 * worst.rise / worst.fallen : 0.0,
+             100 * coarse.max_strain, 100 * fine.max_strain);
+  std::fflush(stdout);
+}
+
+void bench_energy(bool quick) {
+  fmt::print(
+      "\n## Energy\n\n"
+      "Nothing is driven: every rise of kinetic and potential energy is made from nothing. With one step per "
+      "frame the\nlargest rise in a frame, its share of the gravitational energy that fell until then, and "
+      "the "
+      "worst strain of structural\nsprings; and that with {0} steps per frame.\n\n"
+      "| scene | damping | frames | rise J | in frame | share | strain | {0} steps |\n"
+      "|---|---|--:|--:|--:|--:|--:|--:|\n",
+      kFineSteps);
+  const int frames = quick ? 100 : 0;
+  bench_energy_of("paper/fig3_horizontal_real", "as shipped", {}, frames);
+  bench_energy_of("paper/fig3_horizontal_real", "none", {"cloth[0].fabric.damping=0"}, frames);
+  bench_energy_of("paper/fig5_falling_real", "as shipped", {}, frames);
+  bench_energy_of("garment_fall", "as shipped", {}, frames);
+}
+
 }  // namespace
 
 bool bench_contact(const ContactBenchOptions& options) {
@@ -253,6 +353,9 @@ bool bench_contact(const ContactBenchOptions& options) {
   bench_layers(options.quick);
   bench_rest(setup, options.quick ? 4 : 20);
   bench_laws(setup);
+  bench_friction_audit(setup, options.quick);
+  bench_momentum(setup);
+  bench_energy(options.quick);
   return is_clean;
 }
 

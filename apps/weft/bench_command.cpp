@@ -116,7 +116,8 @@ void add_collision(CLI::App& bench, int& exit_code) {
 void add_contact(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<bench::ContactBenchOptions>();
   CLI::App* command = bench.add_subcommand(
-      "contact", "What contact holds and what it costs: every scene checked at every frame, rest, friction");
+      "contact",
+      "What contact holds and what it costs: every scene checked at every frame, rest, friction, energy");
   command->add_option("--scenes", options->scenes, "Which (default: all of contact/)")->delimiter(',');
   command->add_option("--threads", options->threads, "Numbers of threads")
       ->delimiter(',')
