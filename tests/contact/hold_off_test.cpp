@@ -91,7 +91,7 @@ TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
   double deepest = -1;
   for (int s = 0; s < 4 * c.steps_per_second; ++s) {
     const StepReport report = world.step(1.0 / c.steps_per_second);
-    ASSERT_TRUE(report.ok) << report.troubles.at(0).sentence;
+    ASSERT_TRUE(report.ok);
     deepest = std::max(deepest, deepest_sample(world, cloth, c.collider));
   }
   RecordProperty("deepest_um", std::to_string(deepest * 1e6));

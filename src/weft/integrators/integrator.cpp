@@ -18,6 +18,10 @@ bool feels_air(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton";
 }
 
+bool can_divide_steps(std::string_view integrator) {
+  return integrator == "newton" || integrator == "implicit_euler";
+}
+
 bool has_double_precision(std::string_view integrator) { return feels_air(integrator); }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {

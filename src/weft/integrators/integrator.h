@@ -128,6 +128,9 @@ bool moves_elements(std::string_view integrator);
 /// Whether it knows the air's drag and lift (Wind::air); the others know the paper's wind alone.
 bool feels_air(std::string_view integrator);
 
+/// Whether a step of it can be divided where it is too long for an impact (World::set_division).
+bool can_divide_steps(std::string_view integrator);
+
 /// Whether it can work in double precision.
 bool has_double_precision(std::string_view integrator);
 

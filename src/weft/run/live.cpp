@@ -7,6 +7,7 @@
 #include "weft/run/reach.h"
 #include "weft/run/report.h"
 #include "weft/run/runner.h"
+#include "weft/run/warnings.h"
 
 namespace weft {
 namespace {
@@ -229,8 +230,9 @@ void LiveSimulation::tell(const StepReport& report) {
   status_.substeps = report.substeps;
   status_.iterations = report.iterations;
   status_.failure.clear();
-  for (const Trouble& trouble : report.troubles) {
-    const std::string sentence = "cloth \"" + trouble.cloth + "\": " + trouble.sentence;
+  status_.divisions = report.divisions;
+  for (const StepWarning& warning : report.warnings) {
+    const std::string sentence = describe(built_.world, warning);
     if (!report.ok) {
       status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + sentence;
       continue;

@@ -44,7 +44,7 @@ struct LiveStatus {
   std::string integrator;
   std::string model;  // of the cloths' springs
   Wind wind;
-  int substeps = 0, iterations = 0;  // of the last step [1]
+  int substeps = 0, iterations = 0, divisions = 1;  // of the last step [1]
 
   double ms_per_step = 0;           // median over the last steps, wall time [ms]
   double ms_per_step_p95 = 0;       // 95th percentile, likewise [ms]

@@ -2,6 +2,7 @@
 /// What a run tells: figures that were measured, and null for those that were not.
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,9 +37,12 @@ struct RunReport {
   EnergySeries energy;
   std::vector<double> lowest_y;  // (frames) the first one after the first frame [m]
   // Work of the solver, empty for integrators without it:
-  std::vector<int> newton_steps;    // (frames) nonlinear iterations, all cloths [1]
-  std::vector<int> cg_iterations;   // (frames) linear iterations inside them [1]
-  std::optional<int> guard_events;  // how often the guard stepped in, over the run [1]
+  std::vector<int> newton_steps;      // (frames) nonlinear iterations, all cloths [1]
+  std::vector<int> cg_iterations;     // (frames) linear iterations inside them [1]
+  std::optional<int> guard_events;    // how often the guard stepped in, over the run [1]
+  std::vector<int> divisions;         // (frames) parts that steps were made in (World::set_division) [1]
+  int retries = 0;                    // parts that were too long and were taken again [1]
+  std::map<std::string, int> faults;  // why, by the worst of a step: "stretch", "energy", … [1]
   // What the last line of contact (contact/last_line.h) had to do, over the run; empty without contact:
   std::optional<int> contact_hits;   // pairs of features left to it [1]
   std::optional<int> contact_zones;  // zones that it moved rigidly [1]

@@ -4,12 +4,14 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "weft/core/error.h"
 #include "weft/core/version.h"
 #include "weft/run/film.h"
 #include "weft/run/frame_checks.h"
 #include "weft/run/stopwatch.h"
+#include "weft/run/warnings.h"
 #include "weft/scene/scene_world.h"
 #include "weft/world/energy_audit.h"
 #include "weft/world/measures.h"
@@ -127,22 +129,30 @@ class Recorder {
   RunReport& report_;
 };
 
-/// One sentence per kind of trouble, with how often it came.
-class Troubles {
+/// One sentence per kind of warning of steps, with how often it came: that of the worst.
+class StepWarnings {
  public:
   void add(const StepReport& step) {
-    for (const Trouble& t : step.troubles) ++count_["cloth \"" + t.cloth + "\": " + t.sentence];
+    for (const StepWarning& w : step.warnings) {
+      Seen& seen = seen_[{w.code, w.cloth, w.fault}];
+      if (seen.count++ == 0 || std::abs(w.value) > std::abs(seen.worst.value)) seen.worst = w;
+    }
   }
 
-  void tell(int num_steps, std::vector<std::string>& warnings) const {
-    for (const auto& [sentence, count] : count_) {
-      warnings.push_back(sentence + " (" + std::to_string(count) + " of " + std::to_string(num_steps) +
-                         " steps)");
+  void tell(const World& world, int num_steps, std::vector<std::string>& warnings) const {
+    for (const auto& [kind, seen] : seen_) {
+      warnings.push_back(describe(world, seen.worst) + " (" + std::to_string(seen.count) + " of " +
+                         std::to_string(num_steps) + " steps)");
     }
   }
 
  private:
-  std::map<std::string, int> count_;
+  struct Seen {
+    StepWarning worst;
+    int count = 0;
+  };
+
+  std::map<std::tuple<WarningCode, int, StepFault>, Seen> seen_;
 };
 
 /// A run under way.
@@ -197,13 +207,12 @@ class Run {
       ++num_steps_;
       add_work(done, frame);
       if (done.ok) {
-        troubles_.add(done);
+        step_warnings_.add(done);
         continue;
       }
-      const Trouble& trouble = done.troubles.back();
       result_.report.outcome = RunOutcome::failed;
       result_.report.failure =
-          "frame " + std::to_string(frame) + ", cloth \"" + trouble.cloth + "\": " + trouble.sentence;
+          "frame " + std::to_string(frame) + ", " + describe(world, done.warnings.back());
       return false;
     }
     return true;
@@ -211,6 +220,10 @@ class Run {
 
   void add_work(const StepReport& done, int frame) {
     RunReport& report = result_.report;
+    report.divisions.resize(frame, 0);
+    report.divisions.back() += done.divisions;
+    report.retries += done.retries;
+    if (done.fault) ++report.faults[to_string(*done.fault)];
     if (scene_.contact) add_contact(done, frame);
     if (done.guard_events) report.guard_events = report.guard_events.value_or(0) + *done.guard_events;
     if (!done.linear_iterations) return;
@@ -225,15 +238,15 @@ class Run {
     report.contact_hits = report.contact_hits.value_or(0) + done.hits;
     report.contact_zones = report.contact_zones.value_or(0) + done.zones;
     if (!report.infeasible) report.infeasible.emplace();
-    for (const std::string& pair : done.infeasible) {
+    for (const InfeasiblePair& pair : done.infeasible) {
       if (static_cast<int>(report.infeasible->size()) == kMostInfeasible) break;
-      report.infeasible->push_back("frame " + std::to_string(frame) + ": " + pair);
+      report.infeasible->push_back("frame " + std::to_string(frame) + ": " + describe(built_.world, pair));
     }
   }
 
   void finish() {
     RunReport& report = result_.report;
-    troubles_.tell(num_steps_, report.warnings);
+    step_warnings_.tell(built_.world, num_steps_, report.warnings);
     report.seconds_simulated = built_.world.time();
     report.ms_per_frame_median = quantile(frame_ms_, 0.5);
     report.ms_per_frame_p95 = quantile(frame_ms_, 0.95);
@@ -249,7 +262,7 @@ class Run {
   Recorder recorder_;
   Film film_;
   Stopwatch stopwatch_;
-  Troubles troubles_;
+  StepWarnings step_warnings_;
   std::vector<double> frame_ms_;
   double spent_ = 0;  // on simulation, wall time [s]
   int num_steps_ = 0;

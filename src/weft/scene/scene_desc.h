@@ -135,9 +135,11 @@ struct SceneDesc {
   std::vector<ContactDesc> contacts;
   WindDesc wind;
   IntegratorSettings solver;
-  int steps_per_frame = 1;  // >= 1
-  bool contact = true;      // whether colliders, cloth itself and other cloths hold cloth off
-  bool untangle = false;    // set apart what crosses at the start
+  int steps_per_frame = 1;       // >= 1
+  std::optional<bool> adaptive;  // whether steps are divided where they are too long; empty: with newton
+  int max_steps_per_frame = 16;  // into as many in all, >= 1
+  bool contact = true;           // whether colliders, cloth itself and other cloths hold cloth off
+  bool untangle = false;         // set apart what crosses at the start
   CrossedStart crossed_start = CrossedStart::warn;
 
   int num_frames() const;  // round(duration · fps), at least 1

@@ -171,11 +171,22 @@ void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
   }
 }
 
+void read_adaptive(TomlTable& solver, SceneDesc& scene) {
+  const TomlValue value = solver.get("adaptive");
+  bool is_adaptive = false;
+  if (!value || !value.read(is_adaptive)) return;
+  scene.adaptive = is_adaptive;
+  if (is_adaptive && !can_divide_steps(scene.solver.integrator))
+    value.mistake(scene.solver.integrator + " keeps its steps: only newton and implicit_euler divide theirs");
+}
+
 void read_solver(TomlTable table, SceneDesc& scene) {
   IntegratorSettings& solver = scene.solver;
   read_integrator(table, solver.integrator);
   judge_integrator(table, scene);
   table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
+  read_adaptive(table, scene);
+  table.read("max_steps_per_frame", scene.max_steps_per_frame, IntegerRule{1, 4096});
   read_iterations(table, solver);
   table.read_choice<NewtonQuality>(
       "quality", solver.newton.quality,

@@ -277,6 +277,7 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   world.set_jobs(std::move(jobs));
   world.set_gravity(scene.gravity);
   world.set_integrator(scene.solver);
+  world.set_division({scene.adaptive, 1 / (scene.fps * scene.max_steps_per_frame)});
   world.set_wind(wind_at(scene.wind, 0));
   world.set_contact(scene.contact);
   for (const ColliderSceneDesc& desc : scene.colliders)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "weft/core/error.h"
 #include "weft/core/hash.h"
@@ -29,10 +30,11 @@ void validate(const ClothMaterial& m, const std::string& cloth) {
 }
 
 void require_elements_move(const std::string& integrator, const std::string& cloth) {
-  require(moves_elements(integrator), "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
-                                          " cannot move, for it knows springs alone; use newton, "
-                                          "implicit_euler or xpbd, or give spring_structural, spring_shear and "
-                                          "spring_bend instead of the fabric");
+  require(moves_elements(integrator),
+          "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
+              " cannot move, for it knows springs alone; use newton, "
+              "implicit_euler or xpbd, or give spring_structural, spring_shear and "
+              "spring_bend instead of the fabric");
 }
 
 void require_air(const Wind& wind, const std::string& integrator) {
@@ -75,13 +77,11 @@ void add(const std::optional<int>& count, std::optional<int>& sum) {
   if (count) sum = sum.value_or(0) + *count;
 }
 
-std::string advice(const std::string& integrator) {
-  if (integrator == "explicit")
-    return "raise solver.explicit.substeps (0 chooses them), or soften the springs";
-  if (integrator == "implicit_euler" || integrator == "newton") return "raise solver.steps_per_frame";
-  if (integrator == "xpbd") return "raise solver.xpbd.substeps or solver.steps_per_frame";
-  return "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
-}
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr int kMaxParts = 1 << 12;  // of one step [1]
+constexpr int kCalmParts = 4;       // in a row, before parts become longer
+constexpr double kFarTooLong = 4;   // severity of a part that is cut in four [1]
+constexpr double kCalm = 0.5;       // severity of a part that could have been longer [1]
 
 }  // namespace
 
@@ -313,7 +313,11 @@ void World::stop_crossings(StepReport& report) {
   const LastLineReport stopped = contact_system_.stop_crossings(*jobs_);
   report.hits += stopped.hits;
   report.zones += stopped.zones;
-  for (const Infeasible& pair : stopped.infeasible) report.infeasible.push_back(describe(pair));
+  for (const Infeasible& found : stopped.infeasible) {
+    const InfeasiblePair pair = describe(found);
+    if (std::find(report.infeasible.begin(), report.infeasible.end(), pair) == report.infeasible.end())
+      report.infeasible.push_back(pair);
+  }
 }
 
 std::string World::name_of(const ContactSystem::Place& place) const {
@@ -321,15 +325,15 @@ std::string World::name_of(const ContactSystem::Place& place) const {
   return "cloth \"" + cloths_[place.cloth].name + '"';
 }
 
-/// `cloth "sheet" particle 12 and collider "ball"`
-std::string World::describe(const Infeasible& pair) const {
-  const auto name_vertex = [&](int vertex) {
-    const ContactSystem::Place place = contact_system_.place_of(vertex);
-    const std::string particle = place.cloth < 0 ? "" : " particle " + std::to_string(place.index);
-    return name_of(place) + particle;
-  };
-  const std::string other = pair.shape >= 0 ? name_of({-1, pair.shape, 0}) : name_vertex(pair.other);
-  return name_vertex(pair.vertex) + " and " + other;
+InfeasiblePair World::describe(const Infeasible& pair) const {
+  ContactSystem::Place a = contact_system_.place_of(pair.vertex), b{.collider = pair.shape};
+  if (pair.shape < 0) b = contact_system_.place_of(pair.other);
+  if (a.cloth < 0) std::swap(a, b);
+  return {.cloth = a.cloth,
+          .particle = a.cloth < 0 ? -1 : a.index,
+          .other_cloth = b.cloth,
+          .other_particle = b.cloth < 0 ? -1 : b.index,
+          .collider = b.collider};
 }
 
 /// One sentence for every two things that cross.
@@ -383,47 +387,160 @@ std::vector<ContactPoint> World::contact_points() const {
   return contact_system_.contact_points();
 }
 
+void World::set_division(const StepDivision& division) {
+  require(std::isfinite(division.shortest) && division.shortest > 0,
+          "the shortest part of a step must be more than 0 s");
+  require(!division.enabled.value_or(false) || can_divide_steps(integrator_settings_.integrator),
+          integrator_settings_.integrator + " keeps its steps; only newton and implicit_euler divide theirs");
+  division_ = division;
+}
+
+bool World::divides() const {
+  if (!contact_ || integrator_settings_.is_double) return false;
+  const std::string& integrator = integrator_settings_.integrator;
+  return can_divide_steps(integrator) && division_.enabled.value_or(integrator == "newton");
+}
+
+/// Whether something else than gravity may do work on cloth.
+bool World::is_driven() const {
+  const auto moves = [](const auto& thing) { return !thing.motion.is_still(); };
+  if (environment_.wind.drag > 0 || environment_.wind.air.density > 0) return true;
+  const auto is_deforming = [](const Collider& c) {
+    const auto* mesh = std::get_if<MeshShape>(&c.shape);
+    return mesh && mesh->sequence;
+  };
+  return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
+         std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
+         std::any_of(cloths_.begin(), cloths_.end(), [&](const Cloth& cloth) {
+           return !cloth.hands.are_empty() || std::any_of(cloth.pins.begin(), cloth.pins.end(), moves);
+         });
+}
+
+/// A power of two.
+int World::num_parts_at_most(double dt) const {
+  if (!divides()) return 1;
+  constexpr double kRounding = 1e-9;
+  int parts = 1;
+  while (parts < kMaxParts && dt / (2 * parts) >= division_.shortest * (1 - kRounding)) parts *= 2;
+  return parts;
+}
+
+/// Takes all cloths from `before` to `time` in a step of dt, and says how good it was.
+StepCheck World::try_part(const Snapshot& before, double time, double dt, StepReport& report) {
+  has_converged_.assign(cloths_.size(), 1);
+  is_wild_.assign(cloths_.size(), 0);
+  advance(time, dt, report);
+  for (int c = 0; c < num_cloths(); ++c) {
+    const int broken = find_non_finite(cloths_[c].state);
+    if (broken >= 0) return {StepFault::non_finite, kForever, 0, c, broken};
+  }
+  for (int c = 0; c < num_cloths(); ++c) {
+    if (is_wild_[c]) report.warnings.push_back({WarningCode::contact_skipped, c});
+    if (!has_converged_[c]) report.warnings.push_back({WarningCode::not_converged, c});
+  }
+  if (!divides()) return {};
+  checked_.clear();
+  for (int c = 0; c < num_cloths(); ++c)
+    checked_.push_back({*cloths_[c].model, before.states[c], cloths_[c].state});
+  StepCheck check = check_step(checked_, environment_.gravity, dt, is_driven());
+  for (int c = 0; c < num_cloths(); ++c) {
+    if (is_wild_[c]) check.include({StepFault::skipped, 1, 0, c, -1});
+  }
+  if (!report.infeasible.empty())
+    check.include({StepFault::infeasible, 1, 0, report.infeasible[0].cloth, report.infeasible[0].particle});
+  return check;
+}
+
+void World::accept(const StepReport& part, StepReport& report) {
+  report.substeps = std::max(report.substeps, part.substeps);
+  report.iterations += part.iterations;
+  add(part.linear_iterations, report.linear_iterations);
+  add(part.guard_events, report.guard_events);
+  report.hits += part.hits;
+  report.zones += part.zones;
+  for (const StepWarning& warning : part.warnings) {
+    const auto is_same = [&](const StepWarning& w) {
+      return w.code == warning.code && w.cloth == warning.cloth;
+    };
+    if (std::none_of(report.warnings.begin(), report.warnings.end(), is_same))
+      report.warnings.push_back(warning);
+  }
+  for (const InfeasiblePair& pair : part.infeasible) {
+    if (std::find(report.infeasible.begin(), report.infeasible.end(), pair) == report.infeasible.end())
+      report.infeasible.push_back(pair);
+  }
+}
+
+/// As if the step had not been made.
+StepReport World::fail(const StepCheck& check, StepReport report) {
+  report.ok = false;
+  report.warnings.push_back({WarningCode::non_finite, check.cloth, check.particle});
+  restore(before_step_);
+  return report;
+}
+
 StepReport World::step(double dt) {
   if (!std::isfinite(dt) || dt <= 0)
     throw InputError("the time step must be a finite number of seconds above 0");
   StepReport report;
-  save(before_);
-  has_converged_.assign(cloths_.size(), 1);
-  is_wild_.assign(cloths_.size(), 0);
+  save(before_step_);
   for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
-  report.substeps = num_substeps(dt);
-  for (int s = 1; s <= report.substeps; ++s) {
-    advance(time_ + dt * s / report.substeps, dt / report.substeps, report);
-  }
-  for (int c = 0; c < num_cloths(); ++c) {
-    Cloth& cloth = cloths_[c];
-    const int broken = find_non_finite(cloth.state);
-    if (broken >= 0) {
-      report.ok = false;
-      report.troubles.push_back({cloth.name, broken,
-                                 "the motion of particle " + std::to_string(broken) + " became infinite; " +
-                                     advice(integrator_settings_.integrator)});
-      restore(before_);
-      return report;
+  const int most = num_parts_at_most(dt);  // the step's units
+  int parts = 1;                           // that it would have at the present length
+  while (most > 1 && part_ > 0 && parts < most && dt / parts > 1.5 * part_) parts *= 2;
+  report.divisions = 0;
+  StepCheck worst;
+  const double start = time_;
+  for (int done = 0; done < most;) {
+    const int size = most / parts;
+    StepReport part;
+    std::vector<Vec3> grab_impulses;
+    if (done > 0) save(before_part_);
+    const Snapshot& before = done > 0 ? before_part_ : before_step_;
+    if (most > 1) {
+      for (const Cloth& cloth : cloths_) grab_impulses.push_back(cloth.grab_impulse);
     }
-    follow_cloth(cloth.state);
-    if (is_wild_[c]) {
-      report.troubles.push_back(
-          {cloth.name, -1,
-           "the cloth moved by more than its own size within a step, and contact was left out; " +
-               advice(integrator_settings_.integrator)});
+    part.substeps = num_substeps(dt * size / most);
+    StepCheck check;
+    for (int s = 1; s <= part.substeps && check.severity < 1; ++s) {
+      const double length = dt * size / most;
+      check = try_part(before, start + dt * done / most + length * s / part.substeps, length / part.substeps,
+                       part);
     }
-    if (has_converged_[c]) continue;
-    report.troubles.push_back({cloth.name, -1,
-                               "the solver ran out of iterations before it reached its tolerance; raise "
-                               "solver.iterations or solver.steps_per_frame"});
+    const bool is_shortest = parts == most;
+    if (check.severity >= 1 && !is_shortest) {
+      restore_motion(before);
+      for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].grab_impulse = grab_impulses[c];
+      parts = std::min(most, check.severity > kFarTooLong ? 4 * parts : 2 * parts);
+      calm_ = 0;
+      ++report.retries;
+      worst.include(check);
+      continue;
+    }
+    if (check.fault == StepFault::non_finite && check.severity >= 1) return fail(check, std::move(report));
+    if (check.severity >= 1 && most > 1)
+      part.warnings.push_back(
+          {WarningCode::cap_reached, check.cloth, check.particle, check.value, check.fault});
+    accept(part, report);
+    ++report.divisions;
+    done += size;
+    calm_ = check.severity < kCalm ? calm_ + 1 : 0;
+    if (parts > 1 && calm_ >= kCalmParts && done % (2 * size) == 0) {
+      parts /= 2;
+      calm_ = 0;
+    }
+    for (Cloth& cloth : cloths_) follow_cloth(cloth.state);
   }
-  time_ += dt;
+  if (report.retries > 0) report.fault = worst.fault;
+  part_ = parts > 1 ? dt / parts : 0;
+  time_ = start + dt;
   return report;
 }
 
 void World::save(Snapshot& snapshot) const {
   snapshot.time = time_;
+  snapshot.part = part_;
+  snapshot.calm = calm_;
   snapshot.states.resize(cloths_.size());
   for (std::size_t c = 0; c < cloths_.size(); ++c) snapshot.states[c] = cloths_[c].state;
 }
@@ -442,6 +559,12 @@ void World::restore(const Snapshot& snapshot) {
             "the snapshot's cloth \"" + cloths_[c].name + "\" has another number of particles");
   }
   time_ = snapshot.time;
+  part_ = snapshot.part;
+  calm_ = snapshot.calm;
+  restore_motion(snapshot);
+}
+
+void World::restore_motion(const Snapshot& snapshot) {
   for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = snapshot.states[c];
 }
 

@@ -14,6 +14,7 @@
 #include "weft/contact/contact_system.h"
 #include "weft/integrators/integrator.h"
 #include "weft/world/grab.h"
+#include "weft/world/step_warning.h"
 
 namespace weft {
 
@@ -38,23 +39,30 @@ struct Pin {
   Vec3 pivot = Vec3::Zero();  // what the motion turns about [m]
 };
 
-/// Numerical trouble of a step, by name.
-struct Trouble {
-  std::string cloth;
-  int particle = -1;     // the first one concerned, -1 if none in particular
-  std::string sentence;  // what happened and which knob to turn
-};
-
 struct StepReport {
   bool ok = true;                        // false: the step failed, and every cloth is as it was before it
-  std::vector<Trouble> troubles;         // with ok = true: the step was made, but less exactly than asked for
+  std::vector<StepWarning> warnings;     // with ok = true: the step was made, but less exactly than asked for
   int substeps = 0;                      // of the cloth that needed most [1]
+  int divisions = 1;                     // parts that the step was divided into (StepDivision) [1]
+  int retries = 0;                       // parts that were too long, and were taken again [1]
+  std::optional<StepFault> fault;        // of the worst part that was taken again
   int iterations = 0;                    // of nonlinear solvers, all cloths [1]
   std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
   std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
   int hits = 0;                          // pairs left to the last line of contact (contact/last_line.h) [1]
   int zones = 0;                         // zones that it moved rigidly [1]
-  std::vector<std::string> infeasible;   // what prescribed motions have pushed through each other, by name
+  std::vector<InfeasiblePair>
+      infeasible;  // what prescribed motions have pushed through each other, each once
+};
+
+/// Division of steps: a step in contact that comes out stretched, crushed or with more energy than it should
+/// have (step_check.h) is taken again from its start in two parts, and so on. Later steps begin with the
+/// length that was needed, and join again when calm. A step that is not divided is the step that would be
+/// taken without.
+struct StepDivision {
+  std::optional<bool>
+      enabled;  // empty: for `newton`; true: for `implicit_euler` too; others keep their steps
+  double shortest = 1.0 / 960;  // part of a step, > 0; longer is faster and worse in impacts [s]
 };
 
 /// What World::untangle found and did.
@@ -97,6 +105,9 @@ class World {
   }  // for contact_points(); costs some percent
   /// Throws InputError for an unknown name, and for one that knows springs alone if a cloth is a fabric.
   void set_integrator(const IntegratorSettings& settings);
+  /// Throws InputError for a shortest part that is not above 0, and for `enabled` with an integrator that
+  /// cannot.
+  void set_division(const StepDivision& division);
   void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
 
   /// Sets cloth apart that crosses itself, other cloth or colliders where it is now (contact/untangle.h), so
@@ -127,11 +138,14 @@ class World {
   const Vec3& gravity() const { return environment_.gravity; }
   const Wind& wind() const { return environment_.wind; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
+  const StepDivision& division() const { return division_; }
 
   /// Everything that moves; restoring it and stepping again gives the same bits again.
   struct Snapshot {
     double time = 0;
     std::vector<ClothState> states;
+    double part = 0;  // the length that steps are divided into, 0: they are not [s]
+    int calm = 0;     // parts in a row that could have been longer
   };
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);  // of this world: throws InputError if the cloths do not match
@@ -162,11 +176,18 @@ class World {
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;
+  bool divides() const;
+  bool is_driven() const;
+  int num_parts_at_most(double dt) const;
   void advance(double time, double dt, StepReport& report);
+  StepCheck try_part(const Snapshot& before, double time, double dt, StepReport& report);
+  void accept(const StepReport& part, StepReport& report);
+  void restore_motion(const Snapshot& snapshot);
+  StepReport fail(const StepCheck& check, StepReport report);
   void begin_contact(double time, double dt);
   void stop_crossings(StepReport& report);
   void show_contact_cloths();
-  std::string describe(const Infeasible& pair) const;
+  InfeasiblePair describe(const Infeasible& pair) const;
   std::vector<std::string> describe(const Knots& knots) const;
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
@@ -178,6 +199,9 @@ class World {
   bool contact_ = true, tracks_contacts_ = false;
   Environment environment_;  // its pins and contacts are filled in for each cloth
   IntegratorSettings integrator_settings_;
+  StepDivision division_;
+  double part_ = 0;  // the length that steps are divided into, 0: they are not [s]
+  int calm_ = 0;     // parts in a row that could have been longer
   std::shared_ptr<JobSystem> jobs_;
   std::vector<Cloth> cloths_;
   std::vector<Collider> colliders_;
@@ -189,7 +213,8 @@ class World {
   std::vector<Vec3> pin_positions_;            // of all cloths
   std::vector<char> has_converged_, is_wild_;  // (cloths)
   std::vector<Pose> poses_;
-  Snapshot before_;
+  Snapshot before_step_, before_part_;
+  std::vector<CheckedCloth> checked_;
 };
 
 }  // namespace weft

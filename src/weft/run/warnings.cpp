@@ -1,0 +1,134 @@
+#include "weft/run/warnings.h"
+
+#include <cstdio>
+
+namespace weft {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string shorter_steps(const std::string& integrator) {
+  if (integrator == "explicit")
+    return "raise solver.explicit.substeps (0 chooses them), or soften the springs";
+  if (integrator == "implicit_euler") return "raise solver.steps_per_frame, or set solver.adaptive = true";
+  if (integrator == "newton") return "raise solver.max_steps_per_frame or solver.steps_per_frame";
+  if (integrator == "xpbd") return "raise solver.xpbd.substeps or solver.steps_per_frame";
+  return "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
+}
+
+std::string describe_cap(const StepWarning& w) {
+  switch (w.fault) {
+    case StepFault::stretch:
+      return "a spring gained " + number(100 * w.value) + " % in the shortest step";
+    case StepFault::collapse:
+      return "a triangle lost all but " + number(100 * w.value) + " % of its area in the shortest step";
+    case StepFault::energy:
+      return "energy rose by " + number(w.value) + " J without work in the shortest step";
+    case StepFault::infeasible:
+      return "the shortest step left no room between prescribed motions";
+    case StepFault::skipped:
+    case StepFault::non_finite:
+      break;
+  }
+  return "the cloth moved by more than its own size in the shortest step";
+}
+
+std::string describe_what(const StepWarning& w, const std::string& advice) {
+  switch (w.code) {
+    case WarningCode::not_converged:
+      return "the solver ran out of iterations before it reached its tolerance; raise solver.iterations or "
+             "solver.steps_per_frame";
+    case WarningCode::contact_skipped:
+      return "the cloth moved by more than its own size within a step, and contact was left out; " + advice;
+    case WarningCode::non_finite:
+      return "the motion of particle " + std::to_string(w.particle) + " became infinite; " + advice;
+    case WarningCode::cap_reached:
+      return describe_cap(w) + "; " + advice;
+    case WarningCode::yarn_strain:
+      return "yarns stay " + number(100 * w.value) + " % too long at particle " + std::to_string(w.particle) +
+             "; " + advice;
+    case WarningCode::flat_triangle:
+      return "a triangle at particle " + std::to_string(w.particle) + " has " + number(100 * w.value) +
+             " % of its area; " + advice;
+    case WarningCode::energy_rise:
+      return "energy rose by " + number(w.value) + " J without work; " + advice;
+    case WarningCode::crossings:
+      return number(w.value) +
+             " pairs of triangles cross; solver.untangle = true sets apart what crosses at the start, "
+             "and for the rest " +
+             advice;
+    case WarningCode::passages:
+      return number(w.value) + " pairs of features went through each other; " + advice;
+    case WarningCode::infeasible:
+      break;
+  }
+  return "prescribed motions leave no room for " + number(w.value) +
+         " pairs; move pins and colliders apart, or slower";
+}
+
+}  // namespace
+
+std::string to_string(WarningCode code) {
+  switch (code) {
+    case WarningCode::not_converged:
+      return "not_converged";
+    case WarningCode::contact_skipped:
+      return "contact_skipped";
+    case WarningCode::non_finite:
+      return "non_finite";
+    case WarningCode::cap_reached:
+      return "cap_reached";
+    case WarningCode::yarn_strain:
+      return "yarn_strain";
+    case WarningCode::flat_triangle:
+      return "flat_triangle";
+    case WarningCode::energy_rise:
+      return "energy_rise";
+    case WarningCode::crossings:
+      return "crossings";
+    case WarningCode::passages:
+      return "passages";
+    case WarningCode::infeasible:
+      break;
+  }
+  return "infeasible";
+}
+
+std::string to_string(StepFault fault) {
+  switch (fault) {
+    case StepFault::stretch:
+      return "stretch";
+    case StepFault::collapse:
+      return "collapse";
+    case StepFault::energy:
+      return "energy";
+    case StepFault::infeasible:
+      return "infeasible";
+    case StepFault::skipped:
+      return "skipped";
+    case StepFault::non_finite:
+      break;
+  }
+  return "non_finite";
+}
+
+std::string describe(const World& world, const StepWarning& warning) {
+  const std::string what = describe_what(warning, shorter_steps(world.integrator().integrator));
+  return warning.cloth < 0 ? what : "cloth \"" + world.name({warning.cloth}) + "\": " + what;
+}
+
+std::string describe(const World& world, const InfeasiblePair& pair) {
+  const auto collider = [&] { return "collider \"" + world.colliders()[pair.collider].name + '"'; };
+  const auto particle = [&](int cloth, int index) {
+    return "cloth \"" + world.name({cloth}) + "\" particle " + std::to_string(index);
+  };
+  const std::string first = pair.cloth < 0 ? collider() : particle(pair.cloth, pair.particle);
+  return first + " and " +
+         (pair.other_cloth < 0 ? collider() : particle(pair.other_cloth, pair.other_particle));
+}
+
+}  // namespace weft

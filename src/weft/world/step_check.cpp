@@ -1,0 +1,94 @@
+#include "weft/world/step_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+constexpr double kStretch = 0.08;         // that a spring may gain in a step, over its rest length [1]
+constexpr double kLeastArea = 0.3;        // of a triangle's own: above, no loss is a fault [1]
+constexpr double kAreaKept = 0.5;         // of what it was when the step began [1]
+constexpr double kEnergyShare = 0.005;    // that energy may rise by, of the kinetic energy at the start …
+constexpr double kEnergyOfWeight = 0.05;  // … and of the work of gravity in a step from rest, m g² h² [1]
+
+StepCheck check_stretch(const CheckedCloth& cloth, int index) {
+  StepCheck worst{.fault = StepFault::stretch};
+  const Vec3Array &x = cloth.before.x, &y = cloth.after.x;
+  const auto length_sq = [](const Vec3Array& at, int i, int j) {
+    const float dx = at.x()[j] - at.x()[i], dy = at.y()[j] - at.y()[i], dz = at.z()[j] - at.z()[i];
+    return dx * dx + dy * dy + dz * dz;
+  };
+  float most = 0;
+  for (const Spring& s : cloth.model.topology->springs) {
+    if (s.kind != SpringKind::structural) continue;
+    const auto rest = static_cast<float>(s.rest_length);
+    const float now_sq = length_sq(y, s.i, s.j), limit = rest * (1 + most);
+    if (now_sq <= limit * limit) continue;  // what it was at least as long as at rest
+    const float before = std::max(rest, std::sqrt(length_sq(x, s.i, s.j)));
+    const float gained = (std::sqrt(now_sq) - before) / rest;
+    if (gained <= most) continue;
+    most = gained;
+    worst = {StepFault::stretch, gained / kStretch, gained, index, s.i};
+  }
+  return worst;
+}
+
+StepCheck check_area(const CheckedCloth& cloth, int index) {
+  StepCheck worst{.fault = StepFault::collapse};
+  const TriangleMesh& mesh = cloth.model.topology->mesh;
+  const auto area_sq = [](const Vec3Array& at, const Triangle& t) {
+    const Eigen::Vector3f o(at.x()[t[0]], at.y()[t[0]], at.z()[t[0]]);
+    const Eigen::Vector3f a = Eigen::Vector3f(at.x()[t[1]], at.y()[t[1]], at.z()[t[1]]) - o,
+                          b = Eigen::Vector3f(at.x()[t[2]], at.y()[t[2]], at.z()[t[2]]) - o;
+    return static_cast<double>(a.cross(b).squaredNorm());
+  };
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &o = mesh.positions[t[0]], a = mesh.positions[t[1]] - o, b = mesh.positions[t[2]] - o;
+    const double rest_sq = a.cross(b).squaredNorm(), now_sq = area_sq(cloth.after.x, t);
+    if (now_sq >= kLeastArea * kLeastArea * rest_sq) continue;
+    const double kept = std::sqrt(now_sq / area_sq(cloth.before.x, t));
+    const double severity = kAreaKept / std::max(kept, 1e-3);
+    if (severity > worst.severity)
+      worst = {StepFault::collapse, severity, std::sqrt(now_sq / rest_sq), index, t[0]};
+  }
+  return worst;
+}
+
+/// Elastic energy is measured only where the rest has risen.
+StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step) {
+  double rise = 0, kinetic = 0, mass = 0;
+  for (const CheckedCloth& c : cloths) {
+    const double before = compute_kinetic_energy(c.model, c.before);
+    kinetic += before;
+    rise += compute_kinetic_energy(c.model, c.after) - before +
+            compute_gravity_energy(c.model, c.after, gravity) -
+            compute_gravity_energy(c.model, c.before, gravity);
+    for (const double m : c.model.mass) mass += m;
+  }
+  const double tolerance =
+      kEnergyShare * kinetic + kEnergyOfWeight * mass * gravity.squaredNorm() * step * step;
+  if (rise <= 0.5 * tolerance) return {};
+  for (const CheckedCloth& c : cloths)
+    rise += compute_elastic_energy(c.model, c.after) - compute_elastic_energy(c.model, c.before);
+  return {StepFault::energy, std::max(0.0, rise / tolerance), rise, -1, -1};
+}
+
+}  // namespace
+
+StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven) {
+  StepCheck worst;
+  bool is_in_contact = false;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (!cloths[c].after.history.had_contact) continue;
+    is_in_contact = true;
+    worst.include(check_stretch(cloths[c], static_cast<int>(c)));
+    worst.include(check_area(cloths[c], static_cast<int>(c)));
+  }
+  if (is_in_contact && !is_driven) worst.include(check_energy(cloths, gravity, step));
+  return worst;
+}
+
+}  // namespace weft
