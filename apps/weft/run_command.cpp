@@ -42,9 +42,8 @@ FinishedRun run_to_files(const RunRequest& request) {
   const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
   const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
   prepare_folder(folder, request.report);
-  const RunOptions options{.frames = request.frames,
-                           .threads = choose_threads(request.threads),
-                           .audit = request.audit};
+  const RunOptions options{
+      .frames = request.frames, .threads = choose_threads(request.threads), .audit = request.audit};
   ProgressBar bar(scene.name);
   catch_interrupts();
   RunResult result = run_scene(scene, options, [&](const Progress& progress) {
@@ -88,6 +87,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--audit", request->audit,
                     "Also report the work done in every frame, and the energy it leaves over; slower");
   add_set_option(*command, request->overrides);
+  command->add_flag("--strict", request->strict, "Exit with 1 if the last lines say that something is wrong");
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
   command->callback([request, &exit_code] {
     const FinishedRun run = run_to_files(*request);
@@ -95,7 +95,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
     if (run.report.outcome == RunOutcome::interrupted) fmt::print("  interrupted: what was done is kept\n");
     fmt::print("  written      {}\n               {}\n", run.animation_file.string(),
                run.report_file.string());
+    fmt::print("{}", describe_problems(run.report));
     exit_code = exit_code_of(run.report.outcome);
+    if (request->strict && exit_code == kDone && !run.report.problems.empty()) exit_code = kSimulationFailed;
   });
 }
 

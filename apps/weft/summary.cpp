@@ -51,6 +51,15 @@ std::string summarise(const RunReport& r) {
   return text;
 }
 
+std::string describe_problems(const RunReport& r) {
+  std::string text;
+  for (const RunProblem& p : r.problems) {
+    text += fmt::format("  wrong: {} ({}{})\n", p.sentence, to_string(p.code),
+                        p.frames > 1 ? fmt::format(", {} times", p.frames) : "");
+  }
+  return text;
+}
+
 std::string table_head() {
   return fmt::format("{:<26} {:>9} {:>7} {:>9} {:>16} {:>10} {:>9} {:>12}\n", "scene", "particles", "frames",
                      "ms/frame", "strain", "lowest", "crossings", "penetration");

@@ -10,6 +10,9 @@ namespace weft::app {
 /// Several lines for one run.
 std::string summarise(const RunReport& report);
 
+/// A line for each problem of the run, with the key to turn; empty if there is none.
+std::string describe_problems(const RunReport& report);
+
 /// Head and one line per run for a table of runs.
 std::string table_head();
 std::string table_line(const RunReport& report);

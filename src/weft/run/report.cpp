@@ -37,6 +37,10 @@ nlohmann::ordered_json json_of(const EnergySeries& e) {
 }  // namespace
 
 std::string to_json(const RunReport& r) {
+  nlohmann::ordered_json problems = nlohmann::ordered_json::array();
+  for (const RunProblem& p : r.problems)
+    problems.push_back(
+        {{"code", to_string(p.code)}, {"frames", p.frames}, {"value", p.value}, {"sentence", p.sentence}});
   const nlohmann::ordered_json null = nullptr;
   const auto or_null = [](const auto& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
@@ -73,6 +77,7 @@ std::string to_json(const RunReport& r) {
       {"cg_iterations", r.cg_iterations.empty() ? null : nlohmann::ordered_json(r.cg_iterations)},
       {"state_hash", r.state_hash},
       {"warnings", r.warnings},
+      {"problems", problems},
       {"kinetic_energy", r.kinetic_energy},
       {"potential_energy", r.potential_energy},
       {"energy", json_of(r.energy)},

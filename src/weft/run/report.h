@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "weft/run/problems.h"
+
 namespace weft {
 
 enum class RunOutcome { done, interrupted, failed };
@@ -55,6 +57,7 @@ struct RunReport {
       penetration_max;     // deepest point of cloth inside a collider; empty without colliders [m]
   std::string state_hash;  // sixteen hexadecimal digits
   std::vector<std::string> warnings;
+  std::vector<RunProblem> problems;  // why the result should not be trusted; empty: nothing was found
 };
 
 /// The report as JSON text. What was not measured is null.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <map>
-#include <tuple>
 
 #include "weft/core/error.h"
 #include "weft/core/version.h"
@@ -33,7 +31,7 @@ std::string hex(std::uint64_t value) {
 class Recorder {
  public:
   Recorder(const SceneDesc& scene, const World& world, RunReport& report)
-      : world_(world), frames_(world), report_(report) {
+      : world_(world), frames_(world), problems_(world), report_(report) {
     report.scene = scene.name;
     report.integrator = scene.solver.integrator;
     report.version = kVersion;
@@ -77,8 +75,11 @@ class Recorder {
     add_stretches();
     ++report_.frames;
     report_.mean_strain += (mean_strain - report_.mean_strain) / report_.frames;
-    judge_frame();
+    judge_frame(report_.kinetic_energy.back() + report_.potential_energy.back());
   }
+
+  void add_step(const StepReport& step) { problems_.add_step(step); }
+  void finish() { report_.problems = problems_.problems(); }
 
   void add_audit(const EnergyAudit& frame) {
     EnergySeries& energy = report_.energy;
@@ -90,8 +91,9 @@ class Recorder {
   }
 
  private:
-  void judge_frame() {
+  void judge_frame(double energy) {
     const verify::FrameCheck check = verify::check_frame(frames_.now().frame, 0);
+    problems_.add_frame(energy, check.intersections);
     report_.intersections = std::max(report_.intersections.value_or(0), check.intersections);
     if (!check.deepest) return;
     report_.penetration_max = std::max(report_.penetration_max.value_or(0), check.penetration());
@@ -126,33 +128,8 @@ class Recorder {
 
   const World& world_;
   WorldFrames frames_;
+  ProblemFinder problems_;
   RunReport& report_;
-};
-
-/// One sentence per kind of warning of steps, with how often it came: that of the worst.
-class StepWarnings {
- public:
-  void add(const StepReport& step) {
-    for (const StepWarning& w : step.warnings) {
-      Seen& seen = seen_[{w.code, w.cloth, w.fault}];
-      if (seen.count++ == 0 || std::abs(w.value) > std::abs(seen.worst.value)) seen.worst = w;
-    }
-  }
-
-  void tell(const World& world, int num_steps, std::vector<std::string>& warnings) const {
-    for (const auto& [kind, seen] : seen_) {
-      warnings.push_back(describe(world, seen.worst) + " (" + std::to_string(seen.count) + " of " +
-                         std::to_string(num_steps) + " steps)");
-    }
-  }
-
- private:
-  struct Seen {
-    StepWarning worst;
-    int count = 0;
-  };
-
-  std::map<std::tuple<WarningCode, int, StepFault>, Seen> seen_;
 };
 
 /// A run under way.
@@ -204,10 +181,9 @@ class Run {
       const StepReport done = world.step(1 / (scene_.fps * scene_.steps_per_frame));
       seconds += stopwatch_.stop();
       if (start) audit += finish_energy_audit(*start, world);
-      ++num_steps_;
       add_work(done, frame);
       if (done.ok) {
-        step_warnings_.add(done);
+        recorder_.add_step(done);
         continue;
       }
       result_.report.outcome = RunOutcome::failed;
@@ -246,7 +222,7 @@ class Run {
 
   void finish() {
     RunReport& report = result_.report;
-    step_warnings_.tell(built_.world, num_steps_, report.warnings);
+    recorder_.finish();
     report.seconds_simulated = built_.world.time();
     report.ms_per_frame_median = quantile(frame_ms_, 0.5);
     report.ms_per_frame_p95 = quantile(frame_ms_, 0.95);
@@ -262,10 +238,8 @@ class Run {
   Recorder recorder_;
   Film film_;
   Stopwatch stopwatch_;
-  StepWarnings step_warnings_;
   std::vector<double> frame_ms_;
   double spent_ = 0;  // on simulation, wall time [s]
-  int num_steps_ = 0;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "weft/world/measures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "weft/forces/bending.h"
@@ -124,6 +125,38 @@ std::optional<Stretches> compute_principal_stretches(const ClothModel& model, co
     all = {std::min(all.min, least), std::max(all.max, most)};
   }
   return all;
+}
+
+YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state) {
+  YarnStrain worst;
+  const auto include = [&](double strain, int particle) {
+    if (strain > worst.max) worst = {strain, particle};
+  };
+  if (model.elements && !model.elements->membranes.empty()) {
+    for (const auto& [v, rest] : model.elements->membranes) {
+      const Vec3 green = membrane_strain(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
+      include(std::sqrt(1 + 2 * std::max(green.x(), green.y())) - 1, v[0]);
+    }
+    return worst;
+  }
+  for (const Spring& s : model.topology->springs) {
+    if (s.kind == SpringKind::structural)
+      include((state.x.get(s.j) - state.x.get(s.i)).norm() / s.rest_length - 1, s.i);
+  }
+  return worst;
+}
+
+AreaShare compute_least_area(const ClothModel& model, const ClothState& state) {
+  AreaShare least{std::numeric_limits<double>::infinity(), -1};
+  const TriangleMesh& mesh = model.topology->mesh;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const std::vector<Vec3>& rest = mesh.positions;
+    const Vec3 x = state.x.get(i);
+    const double area = (state.x.get(j) - x).cross(state.x.get(k) - x).norm(),
+                 area_at_rest = (rest[j] - rest[i]).cross(rest[k] - rest[i]).norm();
+    if (area < least.min * area_at_rest) least = {area / area_at_rest, i};
+  }
+  return least;
 }
 
 double compute_lowest_y(const ClothState& state) {

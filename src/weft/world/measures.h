@@ -45,6 +45,21 @@ struct Stretches {
 };
 std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state);
 
+/// The largest strain along warp, weft or a structural spring, and a particle of it. Sheared cloth shows none
+/// in its membranes [1].
+struct YarnStrain {
+  double max = 0;
+  int particle = -1;
+};
+YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state);
+
+/// The least area of a triangle over its area at rest, and a particle of it [1].
+struct AreaShare {
+  double min = 0;
+  int particle = -1;
+};
+AreaShare compute_least_area(const ClothModel& model, const ClothState& state);
+
 double compute_lowest_y(const ClothState& state);  // [m]
 
 }  // namespace weft

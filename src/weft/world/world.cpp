@@ -401,7 +401,6 @@ bool World::divides() const {
   return can_divide_steps(integrator) && division_.enabled.value_or(integrator == "newton");
 }
 
-/// Whether something else than gravity may do work on cloth.
 bool World::is_driven() const {
   const auto moves = [](const auto& thing) { return !thing.motion.is_still(); };
   if (environment_.wind.drag > 0 || environment_.wind.air.density > 0) return true;

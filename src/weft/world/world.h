@@ -132,6 +132,9 @@ class World {
   /// forces are what cloth's momentum needs; where cloth trembles those of a single step are not its weight.
   std::vector<ContactPoint> contact_points() const;
 
+  /// Whether something else than gravity may do work on cloth: wind, hands, or pins and colliders that move.
+  bool is_driven() const;
+
   /// The names of things that go through each other (pairs).
   std::vector<std::array<std::string, 2>> passing_pairs() const;
 
@@ -177,7 +180,6 @@ class World {
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;
   bool divides() const;
-  bool is_driven() const;
   int num_parts_at_most(double dt) const;
   void advance(double time, double dt, StepReport& report);
   StepCheck try_part(const Snapshot& before, double time, double dt, StepReport& report);

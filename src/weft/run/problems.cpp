@@ -1,0 +1,103 @@
+#include "weft/run/problems.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/world/measures.h"
+
+namespace weft {
+namespace {
+
+constexpr int kInARow = 5;             // frames that strain and flatness may last
+constexpr double kUsualStrain = 0.15;  // of fabrics without a limit [1]
+constexpr double kLeastArea = 0.1;     // of a triangle's own [1]
+constexpr double kEnergyShare = 0.02;  // of what had fallen [1]
+
+double strain_limit(const ClothModel& model) {
+  if (!model.elements) return kUsualStrain;
+  for (const StrainLimit& limit : {model.elements->limit, model.elements->spring_limit}) {
+    if (limit.stiffness > 0) return std::max(kUsualStrain, limit.allowed());
+  }
+  return kUsualStrain;
+}
+
+}  // namespace
+
+/// The worst of each code, cloth and fault.
+void ProblemFinder::see(const StepWarning& warning) {
+  const auto is_same = [&](const Seen& s) {
+    return s.worst.code == warning.code && s.worst.cloth == warning.cloth && s.worst.fault == warning.fault;
+  };
+  auto seen = std::find_if(others_.begin(), others_.end(), is_same);
+  if (seen == others_.end()) seen = others_.insert(others_.end(), Seen{warning});
+  if (warning.value > seen->worst.value) seen->worst = warning;
+  ++seen->frames;
+}
+
+void ProblemFinder::add_step(const StepReport& step) {
+  for (const StepWarning& warning : step.warnings) see(warning);
+  for (const InfeasiblePair& pair : step.infeasible) {
+    if (std::find(infeasible_.begin(), infeasible_.end(), pair) == infeasible_.end())
+      infeasible_.push_back(pair);
+  }
+}
+
+void ProblemFinder::add_frame(double energy, int crossings) {
+  strained_.resize(world_.num_cloths());
+  flat_.resize(world_.num_cloths());
+  for (int c = 0; c < world_.num_cloths(); ++c) look_at_cloth(c);
+  look_at_energy(energy);
+  crossings_ = crossings;
+  ++num_frames_;
+}
+
+void ProblemFinder::look_at_cloth(int c) {
+  const ClothModel& model = world_.model({c});
+  const ClothState& state = world_.state({c});
+  const YarnStrain strain = compute_yarn_strain(model, state);
+  const AreaShare area = compute_least_area(model, state);
+  const StepWarning strained{WarningCode::yarn_strain, c, strain.particle, strain.max},
+      flat{WarningCode::flat_triangle, c, area.particle, area.min};
+  keep(strained_[c], strained, strain.max > strain_limit(model), strain.max > strained_[c].worst.value);
+  keep(flat_[c], flat, area.min < kLeastArea, area.min < flat_[c].worst.value);
+}
+
+void ProblemFinder::keep(Seen& seen, const StepWarning& warning, bool is_wrong, bool is_worse) {
+  if (!is_wrong) {
+    seen.in_a_row = 0;
+    return;
+  }
+  if (seen.frames++ == 0 || is_worse) seen.worst = warning;
+  seen.is_told |= ++seen.in_a_row > kInARow;
+}
+
+void ProblemFinder::look_at_energy(double energy) {
+  if (num_frames_ == 0) most_energy_ = least_energy_ = energy;
+  const double rise = num_frames_ == 0 ? 0 : energy - energy_;
+  if (!world_.is_driven() && rise > kEnergyShare * (most_energy_ - least_energy_))
+    see({.code = WarningCode::energy_rise, .value = rise});
+  most_energy_ = std::max(most_energy_, energy);
+  least_energy_ = std::min(least_energy_, energy);
+  energy_ = energy;
+}
+
+std::vector<RunProblem> ProblemFinder::problems() const {
+  std::vector<RunProblem> result;
+  const auto add = [&](const StepWarning& w, int frames) {
+    result.push_back({w.code, frames, w.value, describe(world_, w)});
+  };
+  for (const std::vector<Seen>* all : {&strained_, &flat_}) {
+    for (const Seen& seen : *all) {
+      if (seen.is_told) add(seen.worst, seen.frames);
+    }
+  }
+  for (const Seen& seen : others_) add(seen.worst, seen.frames);
+  if (!infeasible_.empty())
+    add({.code = WarningCode::infeasible, .value = static_cast<double>(infeasible_.size())}, 1);
+  if (crossings_ > 0) add({.code = WarningCode::crossings, .value = static_cast<double>(crossings_)}, 1);
+  std::stable_sort(result.begin(), result.end(),
+                   [](const auto& a, const auto& b) { return a.code < b.code; });
+  return result;
+}
+
+}  // namespace weft

@@ -1,0 +1,59 @@
+#pragma once
+/// What is wrong with a run, told from its frames and steps: a result that looks finished but should not be
+/// trusted.
+
+#include <string>
+#include <vector>
+
+#include "weft/run/warnings.h"
+
+namespace weft {
+
+struct RunProblem {
+  WarningCode code = WarningCode::not_converged;
+  int frames = 0;        // in which it was seen; of what is told at the end 1 [1]
+  double value = 0;      // the worst, as StepWarning has it
+  std::string sentence;  // what happened, and which key to turn
+};
+
+/// Gathers problems frame by frame.
+///
+///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
+///     flat_triangle  under a tenth of its area, likewise
+///     energy_rise    in a frame, by more than 2 % of the energy that had fallen, where nothing is driven
+///     cap_reached, contact_skipped, not_converged   by steps
+///     infeasible     pairs, each once
+///     crossings      in the last frame
+class ProblemFinder {
+ public:
+  explicit ProblemFinder(const World& world) : world_(world) {}
+
+  void add_step(const StepReport& step);
+
+  /// `energy`: kinetic and potential, of all cloths [J]; `crossings`: pairs of triangles that cross.
+  void add_frame(double energy, int crossings);
+
+  /// The worst of each code and cloth, in the order of codes.
+  std::vector<RunProblem> problems() const;
+
+ private:
+  struct Seen {
+    StepWarning worst;
+    int frames = 0, in_a_row = 0;
+    bool is_told = false;
+  };
+
+  void see(const StepWarning& warning);
+  void look_at_cloth(int cloth);
+  void look_at_energy(double energy);
+  static void keep(Seen& seen, const StepWarning& warning, bool is_wrong, bool is_worse);
+
+  const World& world_;
+  std::vector<Seen> strained_, flat_;  // (cloths)
+  std::vector<Seen> others_;
+  std::vector<InfeasiblePair> infeasible_;
+  int num_frames_ = 0, crossings_ = 0;
+  double energy_ = 0, most_energy_ = 0, least_energy_ = 0;  // in the last frame, and in all [J]
+};
+
+}  // namespace weft
