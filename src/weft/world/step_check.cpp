@@ -14,26 +14,37 @@ constexpr double kAreaKept = 0.5;         // of what it was when the step began 
 constexpr double kEnergyShare = 0.005;    // that energy may rise by, of the kinetic energy at the start …
 constexpr double kEnergyOfWeight = 0.05;  // … and of the work of gravity in a step from rest, m g² h² [1]
 
-StepCheck check_stretch(const CheckedCloth& cloth, int index) {
+/// What structural springs have gained in a step: the most of one, over its rest length, and about how much
+/// energy all.
+struct Stretching {
   StepCheck worst{.fault = StepFault::stretch};
+  double energy = 0;  // [J]
+};
+
+Stretching check_stretch(const CheckedCloth& cloth, int index) {
+  Stretching result;
   const Vec3Array &x = cloth.before.x, &y = cloth.after.x;
-  const auto length_sq = [](const Vec3Array& at, int i, int j) {
+  const auto length = [](const Vec3Array& at, int i, int j) {
     const float dx = at.x()[j] - at.x()[i], dy = at.y()[j] - at.y()[i], dz = at.z()[j] - at.z()[i];
-    return dx * dx + dy * dy + dz * dz;
+    return std::sqrt(dx * dx + dy * dy + dz * dz);
   };
+  const ClothElements* elements = cloth.model.elements.get();
+  const double membrane = elements ? 0.5 * (elements->stiffness(0, 0) + elements->stiffness(1, 1)) : 0;
   float most = 0;
-  for (const Spring& s : cloth.model.topology->springs) {
+  const std::vector<Spring>& springs = cloth.model.topology->springs;
+  for (std::size_t n = 0; n < springs.size(); ++n) {
+    const Spring& s = springs[n];
     if (s.kind != SpringKind::structural) continue;
     const auto rest = static_cast<float>(s.rest_length);
-    const float now_sq = length_sq(y, s.i, s.j), limit = rest * (1 + most);
-    if (now_sq <= limit * limit) continue;  // what it was at least as long as at rest
-    const float before = std::max(rest, std::sqrt(length_sq(x, s.i, s.j)));
-    const float gained = (std::sqrt(now_sq) - before) / rest;
+    const float before = length(x, s.i, s.j) - rest, after = length(y, s.i, s.j) - rest;
+    const double stiffness = membrane > 0 ? membrane : cloth.model.stiffness(static_cast<int>(n));
+    result.energy += 0.5 * stiffness * static_cast<double>((after - before) * (after + before));
+    const float gained = (after - std::max(before, 0.0f)) / rest;
     if (gained <= most) continue;
     most = gained;
-    worst = {StepFault::stretch, gained / kStretch, gained, index, s.i};
+    result.worst = {StepFault::stretch, gained / kStretch, gained, index, s.i};
   }
-  return worst;
+  return result;
 }
 
 StepCheck check_area(const CheckedCloth& cloth, int index) {
@@ -57,8 +68,9 @@ StepCheck check_area(const CheckedCloth& cloth, int index) {
   return worst;
 }
 
-/// Elastic energy is measured only where the rest has risen.
-StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step) {
+/// All elastic energy is measured only where the rest, with `stretching` for it, has risen.
+StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step,
+                       double stretching) {
   double rise = 0, kinetic = 0, mass = 0;
   for (const CheckedCloth& c : cloths) {
     const double before = compute_kinetic_energy(c.model, c.before);
@@ -70,7 +82,7 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
   }
   const double tolerance =
       kEnergyShare * kinetic + kEnergyOfWeight * mass * gravity.squaredNorm() * step * step;
-  if (rise <= 0.5 * tolerance) return {};
+  if (rise + stretching <= 0.5 * tolerance) return {};
   for (const CheckedCloth& c : cloths)
     rise += compute_elastic_energy(c.model, c.after) - compute_elastic_energy(c.model, c.before);
   return {StepFault::energy, std::max(0.0, rise / tolerance), rise, -1, -1};
@@ -81,13 +93,16 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
 StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven) {
   StepCheck worst;
   bool is_in_contact = false;
+  double stretching = 0;  // [J]
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (!cloths[c].after.history.had_contact) continue;
     is_in_contact = true;
-    worst.include(check_stretch(cloths[c], static_cast<int>(c)));
+    const Stretching stretched = check_stretch(cloths[c], static_cast<int>(c));
+    stretching += stretched.energy;
+    worst.include(stretched.worst);
     worst.include(check_area(cloths[c], static_cast<int>(c)));
   }
-  if (is_in_contact && !is_driven) worst.include(check_energy(cloths, gravity, step));
+  if (is_in_contact && !is_driven) worst.include(check_energy(cloths, gravity, step, stretching));
   return worst;
 }
 

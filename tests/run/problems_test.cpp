@@ -1,0 +1,120 @@
+/// What a run says is wrong with it, one problem at a time.
+
+#include "weft/run/problems.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support.h"
+
+namespace weft {
+namespace {
+
+/// A sheet of a metre whose particles the tests put where they like.
+World make_sheet() {
+  World world;
+  world.add_cloth(
+      {.name = "sheet", .topology = build_grid_topology(test::square(4), SpringModel::alternating)});
+  world.add_collider({"floor", Plane{.point = {0, -10, 0}}, 0.3, {}});
+  return world;
+}
+
+void scale(World& world, const Vec3& by) {
+  World::Snapshot snapshot = world.snapshot();
+  Vec3Array& x = snapshot.states[0].x;
+  for (std::size_t i = 0; i < x.size(); ++i) x.set(i, x.get(i).cwiseProduct(by));
+  world.restore(snapshot);
+}
+
+std::vector<WarningCode> codes_of(const ProblemFinder& finder) {
+  std::vector<WarningCode> codes;
+  for (const RunProblem& p : finder.problems()) codes.push_back(p.code);
+  return codes;
+}
+
+using Codes = std::vector<WarningCode>;
+
+TEST(Problems, NoneOfClothAtRest) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  for (int frame = 0; frame < 20; ++frame) finder.add_frame(1.0 - 0.01 * frame, 0);
+  EXPECT_EQ(codes_of(finder), Codes());
+}
+
+TEST(Problems, YarnsThatStayTooLong) {
+  World world = make_sheet();
+  scale(world, {1.2, 1, 1});
+  ProblemFinder finder(world);
+  for (int frame = 0; frame < 5; ++frame) finder.add_frame(0, 0);
+  EXPECT_EQ(codes_of(finder), Codes()) << "five frames are a jerk";
+  finder.add_frame(0, 0);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::yarn_strain});
+  const RunProblem problem = finder.problems()[0];
+  EXPECT_NEAR(problem.value, 0.2, 1e-5);
+  EXPECT_EQ(problem.frames, 6);
+  EXPECT_NE(problem.sentence.find("cloth \"sheet\""), std::string::npos);
+  EXPECT_NE(problem.sentence.find("solver.max_steps_per_frame"), std::string::npos);
+}
+
+TEST(Problems, TrianglesThatStayFlat) {
+  World world = make_sheet();
+  scale(world, {1, 1, 0.05});
+  ProblemFinder finder(world);
+  for (int frame = 0; frame < 6; ++frame) finder.add_frame(0, 0);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::flat_triangle});
+  EXPECT_NEAR(finder.problems()[0].value, 0.05, 1e-5);
+}
+
+TEST(Problems, EnergyFromNothing) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  for (const double energy : {5.0, 4.0, 4.01, 4.0}) finder.add_frame(energy, 0);
+  EXPECT_EQ(codes_of(finder), Codes()) << "a hundredth of what has fallen";
+  finder.add_frame(4.1, 0);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::energy_rise});
+  EXPECT_NEAR(finder.problems()[0].value, 0.1, 1e-12);
+}
+
+TEST(Problems, EnergyOfWhatIsDrivenIsNone) {
+  World world = make_sheet();
+  world.set_wind({.velocity = {3, 0, 0}, .drag = 0.25});
+  ProblemFinder finder(world);
+  for (const double energy : {5.0, 4.0, 6.0}) finder.add_frame(energy, 0);
+  EXPECT_EQ(codes_of(finder), Codes());
+}
+
+TEST(Problems, CrossingsThatAreLeft) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  finder.add_frame(0, 12);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::crossings});
+  EXPECT_NE(finder.problems()[0].sentence.find("solver.untangle"), std::string::npos);
+  finder.add_frame(0, 0);
+  EXPECT_EQ(codes_of(finder), Codes()) << "what has come apart is no problem any more";
+}
+
+TEST(Problems, OfStepsTheWorstAndHowOften) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  for (const double value : {0.2, 0.5, 0.3}) {
+    StepReport step;
+    step.warnings = {{WarningCode::cap_reached, 0, 7, value, StepFault::stretch}};
+    finder.add_step(step);
+  }
+  ASSERT_EQ(codes_of(finder), Codes{WarningCode::cap_reached});
+  EXPECT_EQ(finder.problems()[0].value, 0.5);
+  EXPECT_EQ(finder.problems()[0].frames, 3);
+}
+
+TEST(Problems, EachInfeasiblePairOnce) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  StepReport step;
+  step.infeasible = {{.cloth = 0, .particle = 3, .collider = 0}, {.cloth = 0, .particle = 4, .collider = 0}};
+  for (int s = 0; s < 10; ++s) finder.add_step(step);
+  ASSERT_EQ(codes_of(finder), Codes{WarningCode::infeasible});
+  EXPECT_EQ(finder.problems()[0].value, 2);
+  EXPECT_EQ(describe(world, step.infeasible[0]), "cloth \"sheet\" particle 3 and collider \"floor\"");
+}
+
+}  // namespace
+}  // namespace weft
