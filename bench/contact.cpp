@@ -38,8 +38,7 @@ struct FrameTimes {
   double mean = 0, worst = 0;
 };
 
-/// Returns whether nothing crossed.
-bool bench_scene(const std::string& name, int frames, int threads) {
+RunReport bench_scene(const std::string& name, int frames, int threads) {
   const SceneDesc scene = read_scene(find_scene(name));
   FrameTimes times;
   double spent = 0;
@@ -59,22 +58,54 @@ bool bench_scene(const std::string& name, int frames, int threads) {
              report.infeasible ? report.infeasible->size() : 0, report.contact_hits.value_or(0),
              report.contact_zones.value_or(0));
   std::fflush(stdout);
-  return report.outcome == RunOutcome::done && report.intersections == 0;
+  return report;
 }
 
+/// A row of shares of the time of steps, by kinds of work, and of counts.
+void print_work(const RunReport& report) {
+  const WorkTimes& w = report.work;
+  fmt::print("| {} | {} | {:.2f} |", report.scene, report.threads, 1000 * w.total / report.frames);
+  for (const double seconds : {w.lists, w.narrow_phase, w.rows, w.set_up, w.product, w.v_cycle, w.projection,
+                               w.ccd, w.total - w.kinds(), w.retries})
+    fmt::print(" {:.1f} |", 100 * seconds / w.total);
+  fmt::print(" {} |", w.pairs_listed);
+  for (const std::size_t count : {w.pairs_tested, w.active, w.list_renewals, w.looks})
+    fmt::print(" {:.1f} |", static_cast<double>(count) / report.frames);
+  fmt::print("\n");
+}
+
+void print_where_frames_go(const std::vector<RunReport>& reports) {
+  fmt::print(
+      "## Where a frame goes\n\n"
+      "Shares of the time of steps in %, on the thread that calls them; `retries` are parts that were thrown "
+      "away, and count in the others too. Pairs in the longest list of the run, and counts per frame.\n\n"
+      "| scene | threads | ms | lists | narrow phase | rows | set up | product | V-cycle | projection | CCD "
+      "| "
+      "rest | retries | longest list | tested | active | renewals | looks |\n"
+      "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const RunReport& report : reports) {
+    if (report.frames > 0) print_work(report);
+  }
+  fmt::print("\n");
+}
+
+/// Returns whether nothing crossed.
 bool bench_scenes(const ContactBenchOptions& options) {
   fmt::print(
       "## Scenes\n\n"
       "| scene | particles | frames | threads | mean ms | worst ms | intersections | penetration m | "
       "infeasible | hits | zones |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-  bool is_clean = true;
+  std::vector<RunReport> reports;
   const int frames = options.frames > 0 ? options.frames : options.quick ? kQuickFrames : 0;
   for (const std::string& name : options.scenes.empty() ? shipped_scenes() : options.scenes) {
-    for (const int threads : options.threads) is_clean &= bench_scene(name, frames, threads);
+    for (const int threads : options.threads) reports.push_back(bench_scene(name, frames, threads));
   }
   fmt::print("\n");
-  return is_clean;
+  print_where_frames_go(reports);
+  return std::all_of(reports.begin(), reports.end(), [](const RunReport& report) {
+    return report.outcome == RunOutcome::done && report.intersections == 0;
+  });
 }
 
 /// Sheets that lie on each other and on a floor.

@@ -221,7 +221,7 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
                           "version",      "ms_per_frame",    "cpu_ms_per_frame",  "max_strain",
                           "min_strain",   "mean_strain",     "kinetic_energy",    "potential_energy",
                           "lowest_y",     "penetration_max", "intersections",     "infeasible",
-                          "guard_events", "state_hash",      "warnings"}) {
+                          "guard_events", "state_hash",      "warnings",          "work"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_GT(json["ms_per_frame"]["median"], 0);
@@ -236,6 +236,28 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   EXPECT_EQ(json["triangles"], 2 * 32 * 32);
   EXPECT_EQ(json["springs"], 2 * 33 * 32 + 32 * 32 + 2 * 33 * 31);
   EXPECT_NEAR(json["seconds_simulated"], 0.05, 1e-12);
+}
+
+TEST(Report, TellsWhereTheTimeOfTheStepsWent) {
+  const SceneDesc scene = shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"});
+  double spent = 0;
+  const RunReport report =
+      run_scene(scene, {.frames = 30, .record_animation = false}, [&](const Progress& progress) {
+        spent = progress.seconds_spent;
+        return true;
+      }).report;
+  const nlohmann::json work = nlohmann::json::parse(to_json(report))["work"];
+  const nlohmann::json& seconds = work["seconds"];
+  double kinds = 0;
+  for (const auto& [kind, value] : seconds.items()) {
+    EXPECT_GE(value, 0) << kind;
+    if (kind != "total" && kind != "retries") kinds += value.get<double>();
+  }
+  EXPECT_NEAR(kinds, report.work.kinds(), 1e-9 * kinds) << "the report has every kind";
+  EXPECT_LE(kinds, seconds["total"]);
+  EXPECT_LE(seconds["total"], spent);
+  EXPECT_GT(seconds["lists"], 0);
+  EXPECT_NEAR(work["per_frame"]["looks"].get<double>() * 30, static_cast<double>(report.work.looks), 1e-6);
 }
 
 TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {

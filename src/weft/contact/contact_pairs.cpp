@@ -33,6 +33,7 @@ constexpr double kTouching = 1e-9;
 }  // namespace
 
 void ContactSystem::collect_pairs(JobSystem& jobs) {
+  const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& make) {
     collect_in_order(
         jobs, static_cast<int>(pairs.size()), kPairGrain, chunks_,
@@ -46,6 +47,7 @@ void ContactSystem::collect_pairs(JobSystem& jobs) {
   };
   const std::vector<FeaturePair>& vertex_triangle = proximity_.vertex_triangle();
   const std::vector<FeaturePair>& edge_edge = proximity_.edge_edge();
+  if (step_.clock) step_.clock->add_look(vertex_triangle.size() + edge_edge.size());
   collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_triangle(vertex_triangle[p], c); });
   collect(edge_edge, [&](int p, Constraint& c) { return make_edge_edge(edge_edge[p], c); });
   if (!bodies_.empty())

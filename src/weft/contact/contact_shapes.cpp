@@ -49,6 +49,7 @@ bool ContactSystem::has_plain_shapes() const {
 
 /// `stretch`: how much longer than the lists have it an edge may be [m].
 void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
+  const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   if (!has_plain_shapes()) return;
   longest_edge_ = proximity_.longest_edge() + stretch;
   for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {

@@ -65,6 +65,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
     shapes_.push_back({&c, shape_at(c, start), shape_at(c, step.time), c.motion.at(start),
                        c.motion.at(step.time), weft::pivot(c.shape)});
   }
+  proximity_.measure(step.clock);
   renumber(colliders);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothModel& model = *cloths_[c].model;
@@ -257,6 +258,18 @@ void ContactSystem::end_of(int cloth, std::span<const char> pushing) {
     motion_.end[v] = cloths_[cloth].state->position(v - first_vertex_[cloth]);
   }
   note_pushes(cloth, pushing);
+  if (step_.clock) count_pushes(cloth, pushing);
+}
+
+/// Of two cloths that touch each other, the first feature's has it, unless that is pinned.
+void ContactSystem::count_pushes(int cloth, std::span<const char> pushing) {
+  for (std::size_t n = 0; n < pushing.size(); ++n) {
+    const Constraint& c = constraints_[found_[n]];
+    const int first = c.vertex[0] < first_vertex_.back() ? mesh_of(first_vertex_, c.vertex[0]) : cloth;
+    const bool has_told = first != cloth && c.inverse_mass_of(inverse_mass_, first_vertex_[first],
+                                                              first_vertex_[first + 1]) > 0;
+    if (pushing[n] && !has_told) ++step_.clock->times.active;
+  }
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
@@ -272,7 +285,10 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   collect_pairs(jobs);
   if (constraints_.empty()) return;
   // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
-  project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
+  {
+    const WorkScope scope(step_.clock, &WorkTimes::projection);
+    project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
+  }
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
   collect_pairs(jobs);
@@ -298,6 +314,7 @@ void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3
 }
 
 void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
+  const WorkScope scope(step_.clock, &WorkTimes::rows);
   contacts.clear();
   found_.clear();
   const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
@@ -364,8 +381,10 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
     origins_.push_back(cloths_[c].state->origin);
   }
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
+  const WorkScope scope(step_.clock, &WorkTimes::ccd);
   const LastLineReport report = last_line_.hold(
-      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_}, proximity_, motion_, jobs);
+      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_, step_.clock}, proximity_,
+      motion_, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -409,6 +428,7 @@ void ContactSystem::settle_positions() {
 }
 
 void ContactSystem::project(JobSystem& jobs) {
+  const WorkScope scope(step_.clock, &WorkTimes::projection);
   arrived_ = motion_.end;
   settle_positions();
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -420,6 +440,9 @@ void ContactSystem::project(JobSystem& jobs) {
   project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
   for (const Constraint& c : constraints_)
     add_touch(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
+  if (step_.clock && !is_predicted_)
+    step_.clock->times.active += std::count_if(constraints_.begin(), constraints_.end(),
+                                               [](const Constraint& c) { return c.is_active; });
   take_back_slides();
   settle_positions();
   mark_touched();

@@ -15,6 +15,7 @@
 #include "weft/contact/proximity.h"
 #include "weft/contact/untangle.h"
 #include "weft/core/job_system.h"
+#include "weft/core/work_times.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
@@ -41,6 +42,7 @@ struct ContactStep {
   double step = 0;                          // its length [s]
   bool tracks = false;                      // whether contact_points() will be asked for
   std::span<const ContactRule> rules = {};  // of two for the same pair the last one counts
+  WorkClock* clock = nullptr;               // of the whole step; null: not measured
 };
 
 /// Contact of all cloths with all colliders and with each other, step by step:
@@ -155,6 +157,7 @@ class ContactSystem {
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
   void collect_pairs(JobSystem& jobs);
+  void count_pushes(int cloth, std::span<const char> pushing);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;

@@ -93,6 +93,8 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
 void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   hits_.clear();
   proximity_->update(*motion_, jobs);
+  if (step_.clock && !only_moved_)
+    step_.clock->add_look(proximity_->vertex_triangle().size() + proximity_->edge_edge().size());
   const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& test) {
     collect_in_order(
         jobs, static_cast<int>(pairs.size()), kPairGrain, chunks_,

@@ -46,6 +46,7 @@ struct LastLineStep {
   const std::vector<Vec3>* origins = nullptr;   // (cloths) of which positions are stored as float offsets
   const std::vector<char>* is_solid = nullptr;  // (num_vertices) on a closed mesh
   const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) go through each other; or empty
+  WorkClock* clock = nullptr;                 // counts looks; null: they are not counted
 };
 
 class LastLine {

@@ -70,6 +70,7 @@ bool Proximity::pass(int triangle, int other) const {
 }
 
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
+  const WorkScope scope(clock_, &WorkTimes::lists);
   if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness) {
     rebuild(motion, jobs);
   } else {
@@ -80,6 +81,7 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
     if (are_many || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
   }
   while (wildest_ < 0 && slack_ < made_with_) rebuild(motion, jobs);
+  if (clock_) ++clock_->times.list_renewals;
 }
 
 /// What two features do in straight lines keeps their pair, as long as each corner stays within the slack of

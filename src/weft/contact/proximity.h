@@ -9,6 +9,7 @@
 #include "weft/contact/patches.h"
 #include "weft/contact/surface.h"
 #include "weft/core/job_system.h"
+#include "weft/core/work_times.h"
 #include "weft/geometry/aabb_tree.h"
 
 namespace weft {
@@ -54,6 +55,9 @@ class Proximity {
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
   /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
+
+  /// From now on updates are measured; null: they are not.
+  void measure(WorkClock* clock) { clock_ = clock; }
 
   /// The vertex that moved farthest when the last update gave up, -1 if it did not.
   int wildest() const { return wildest_; }
@@ -142,6 +146,7 @@ class Proximity {
   bool is_sharp(int vertex, const std::vector<Float4>& x) const;
   void find_fans(JobSystem& jobs);
 
+  WorkClock* clock_ = nullptr;
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;

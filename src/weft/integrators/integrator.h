@@ -20,6 +20,7 @@
 
 #include "weft/contact/contact.h"
 #include "weft/core/job_system.h"
+#include "weft/core/work_times.h"
 #include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
@@ -40,6 +41,7 @@ struct Environment {
   PinTargets pins;
   std::vector<Contact> contacts;      // for integrators that resolve them
   bool tells_contact_forces = false;  // whether contact_forces() will be asked for
+  WorkClock* clock = nullptr;         // of the whole step; null: not measured
 };
 
 struct ExplicitSettings {

@@ -48,6 +48,7 @@ class NewtonIntegrator final : public Integrator {
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
     fit(model, environment.pins);
+    clock_ = environment.clock;
     contacts_.begin(environment.contacts, model, environment.pins, step, step * step * environment.gravity);
     if (state.history.step == 0) invent_history(model, environment.gravity, step, jobs, state);
     const StepScheme scheme = choose_scheme(model, environment, step, jobs, state);
@@ -201,9 +202,14 @@ class NewtonIntegrator final : public Integrator {
     if (coasts_) std::swap(correction_, trial_);
   }
 
+  double contact_energy(const Vec3Array& offset) const {
+    const WorkScope scope(contact_clock(), &WorkTimes::rows);
+    return contacts_.energy(positions(offset));
+  }
+
   double energy_at(const Vec3Array& offset, JobSystem& jobs) {
     const double energy = potential_.energy(offset, jobs);
-    return energy + contacts_.energy(positions(offset)) + air_.energy(rows_, offset);
+    return energy + contact_energy(offset) + air_.energy(rows_, offset);
   }
 
   /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
@@ -259,12 +265,17 @@ class NewtonIntegrator final : public Integrator {
   /// The potential with its force and Hessian, and the preconditioner that goes with it.
   double linearise(bool is_first, JobSystem& jobs) {
     double energy = potential_.linearise(correction_, jobs, force_);
-    energy += contacts_.linearise(positions(correction_), force_);
+    energy += linearise_contacts();
     energy += air_.linearise(rows_, correction_, force_);
     update_stiffer_couplings(is_first, jobs);
     update_for_contacts(jobs);
     set_at_pins(Vec3::Zero(), force_);
     return energy;
+  }
+
+  double linearise_contacts() {
+    const WorkScope scope(contact_clock(), &WorkTimes::rows);
+    return contacts_.linearise(positions(correction_), force_);
   }
 
   /// Where strain limit or stretch curves make cloth stiffer, so they make the preconditioner. At the first
@@ -304,6 +315,7 @@ class NewtonIntegrator final : public Integrator {
       for (int k = 0; k < contact.num_particles; ++k) free_pieces_.hold(contact.particle[k]);
     });
     if (!is_in_contact_ && !was_in_contact) return;
+    const WorkScope scope(clock_, &WorkTimes::set_up);
     diagonal_ = stiff_diagonal_ = potential_.weight;
     contacts_.add_to_preconditioners(rows_, stiff_diagonal_, diagonal_, filter_);
     preconditioner_.set_diagonal(diagonal_, jobs);
@@ -313,6 +325,11 @@ class NewtonIntegrator final : public Integrator {
                                         has_stiffer_couplings_ ? built_stiffer_ : std::vector<double>());
     has_stiff_springs_ = true;
     stiff_preconditioner_.set_diagonal(stiff_diagonal_, jobs);
+  }
+
+  double add_contact_product(const Vec3Array& p, Vec3Array& q) const {
+    const WorkScope scope(contact_clock(), &WorkTimes::product);
+    return contacts_.add_product(p, q);
   }
 
   CgReport solve(const Effort& effort, int more, JobSystem& jobs) {
@@ -326,7 +343,7 @@ class NewtonIntegrator final : public Integrator {
     settings.enough = std::max(settings.enough / more, kNoise);
     const auto multiply = [&](const Vec3Array& p, Vec3Array& q) {
       double dot = potential_.multiply(p, jobs, q);
-      dot += contacts_.add_product(p, q);
+      dot += add_contact_product(p, q);
       dot += air_.add_product(rows_, p, q);
       set_at_pins(Vec3::Zero(), q);
       return dot;
@@ -338,6 +355,7 @@ class NewtonIntegrator final : public Integrator {
       return stiff_preconditioner_.apply(r, its_jobs, z);
     };
     const auto precondition = [&](const Vec3Array& r, Vec3Array& z) {
+      const WorkScope scope(clock_, &WorkTimes::v_cycle);
       return filter_.apply(stiff, free, r, jobs, z);
     };
     return gradients_.solve(multiply, precondition, force_, settings, jobs, direction_);
@@ -350,6 +368,8 @@ class NewtonIntegrator final : public Integrator {
     if (!air_.is_active()) free_pieces_.remove_mean(rows_, potential_.weight, trial_);
     return energy_at(trial_, jobs);
   }
+
+  WorkClock* contact_clock() const { return contacts_.empty() ? nullptr : clock_; }
 
   OffsetPositions positions(const Vec3Array& offset) const { return {rows_, potential_.target, offset}; }
 
@@ -375,6 +395,7 @@ class NewtonIntegrator final : public Integrator {
   }
 
   NewtonSettings settings_;
+  WorkClock* clock_ = nullptr;  // of the step
   std::shared_ptr<const ClothTopology> topology_;
   PaddedRows rows_;
   std::vector<int> pinned_;

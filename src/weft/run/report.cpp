@@ -34,6 +34,28 @@ nlohmann::ordered_json json_of(const EnergySeries& e) {
           {"left_over", json_of(e.left_over)}};
 }
 
+/// Seconds of the whole run; counts per frame, but for the longest list of the run.
+nlohmann::ordered_json json_of(const WorkTimes& w, int frames) {
+  const auto per_frame = [&](std::size_t count) { return static_cast<double>(count) / std::max(1, frames); };
+  return {{"seconds",
+           {{"total", w.total},
+            {"lists", w.lists},
+            {"narrow_phase", w.narrow_phase},
+            {"rows", w.rows},
+            {"set_up", w.set_up},
+            {"product", w.product},
+            {"v_cycle", w.v_cycle},
+            {"projection", w.projection},
+            {"ccd", w.ccd},
+            {"retries", w.retries}}},
+          {"pairs_listed", w.pairs_listed},
+          {"per_frame",
+           {{"looks", per_frame(w.looks)},
+            {"pairs_tested", per_frame(w.pairs_tested)},
+            {"active", per_frame(w.active)},
+            {"list_renewals", per_frame(w.list_renewals)}}}};
+}
+
 }  // namespace
 
 std::string to_json(const RunReport& r) {
@@ -75,6 +97,7 @@ std::string to_json(const RunReport& r) {
       {"faults", r.faults},
       {"newton_steps", r.newton_steps.empty() ? null : nlohmann::ordered_json(r.newton_steps)},
       {"cg_iterations", r.cg_iterations.empty() ? null : nlohmann::ordered_json(r.cg_iterations)},
+      {"work", json_of(r.work, r.frames)},
       {"state_hash", r.state_hash},
       {"warnings", r.warnings},
       {"problems", problems},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "weft/core/work_times.h"
 #include "weft/run/problems.h"
 
 namespace weft {
@@ -45,6 +46,7 @@ struct RunReport {
   std::vector<int> divisions;         // (frames) parts that steps were made in (World::set_division) [1]
   int retries = 0;                    // parts that were too long and were taken again [1]
   std::map<std::string, int> faults;  // why, by the worst of a step: "stretch", "energy", … [1]
+  WorkTimes work;                     // of all steps, where their time went
   // What the last line of contact (contact/last_line.h) had to do, over the run; empty without contact:
   std::optional<int> contact_hits;   // pairs of features left to it [1]
   std::optional<int> contact_zones;  // zones that it moved rigidly [1]

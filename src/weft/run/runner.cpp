@@ -199,6 +199,7 @@ class Run {
     report.divisions.resize(frame, 0);
     report.divisions.back() += done.divisions;
     report.retries += done.retries;
+    report.work += done.work;
     if (done.fault) ++report.faults[to_string(*done.fault)];
     if (scene_.contact) add_contact(done, frame);
     if (done.guard_events) report.guard_events = report.guard_events.value_or(0) + *done.guard_events;

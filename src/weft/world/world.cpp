@@ -261,8 +261,9 @@ void World::begin_contact(double time, double dt) {
     pin_positions_.insert(pin_positions_.end(), cloth.targets.position.begin(), cloth.targets.position.end());
     is_predicted |= cloth.integrator->resolves_contacts();
   }
-  contact_system_.begin_step(contact_cloths_, colliders_,
-                             {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_});
+  contact_system_.begin_step(
+      contact_cloths_, colliders_,
+      {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_, .clock = &clock_});
   if (is_predicted) contact_system_.predict(environment_.gravity, pin_positions_, *jobs_);
 }
 
@@ -284,6 +285,7 @@ void World::advance(double time, double dt, StepReport& report) {
     environment_.time = time;
     environment_.contacts.clear();
     environment_.tells_contact_forces = tracks_contacts_;
+    environment_.clock = &clock_;
     if (contact_ && cloth.integrator->resolves_contacts()) {
       contact_system_.find_contacts(c, environment_.contacts);
     }
@@ -475,6 +477,7 @@ StepReport World::fail(const StepCheck& check, StepReport report) {
   report.ok = false;
   report.warnings.push_back({WarningCode::non_finite, check.cloth, check.particle});
   restore(before_step_);
+  report.work = clock_.stop();
   return report;
 }
 
@@ -482,6 +485,7 @@ StepReport World::step(double dt) {
   if (!std::isfinite(dt) || dt <= 0)
     throw InputError("the time step must be a finite number of seconds above 0");
   StepReport report;
+  clock_.start();
   save(before_step_);
   for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
   const int most = num_parts_at_most(dt);  // the step's units
@@ -492,6 +496,7 @@ StepReport World::step(double dt) {
   const double start = time_;
   for (int done = 0; done < most;) {
     const int size = most / parts;
+    const double began = clock_.seconds();
     StepReport part;
     std::vector<Vec3> grab_impulses;
     if (done > 0) save(before_part_);
@@ -514,6 +519,7 @@ StepReport World::step(double dt) {
       calm_ = 0;
       ++report.retries;
       worst.include(check);
+      clock_.times.retries += clock_.seconds() - began;
       continue;
     }
     if (check.fault == StepFault::non_finite && check.severity >= 1) return fail(check, std::move(report));
@@ -533,6 +539,7 @@ StepReport World::step(double dt) {
   if (report.retries > 0) report.fault = worst.fault;
   part_ = parts > 1 ? dt / parts : 0;
   time_ = start + dt;
+  report.work = clock_.stop();
   return report;
 }
 

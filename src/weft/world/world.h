@@ -12,6 +12,7 @@
 
 #include "weft/contact/collider.h"
 #include "weft/contact/contact_system.h"
+#include "weft/core/work_times.h"
 #include "weft/integrators/integrator.h"
 #include "weft/world/grab.h"
 #include "weft/world/step_warning.h"
@@ -53,6 +54,7 @@ struct StepReport {
   int zones = 0;                         // zones that it moved rigidly [1]
   std::vector<InfeasiblePair>
       infeasible;  // what prescribed motions have pushed through each other, each once
+  WorkTimes work;  // of all parts, those that were taken again too
 };
 
 /// Division of steps: a step in contact that comes out stretched, crushed or with more energy than it should
@@ -210,6 +212,7 @@ class World {
   std::vector<ContactRule> rules_;  // one per pair
 
   // Work space of step(), kept so that it allocates nothing.
+  WorkClock clock_;
   ContactSystem contact_system_;
   std::vector<ContactCloth> contact_cloths_;
   std::vector<Vec3> pin_positions_;            // of all cloths

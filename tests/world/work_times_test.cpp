@@ -1,0 +1,130 @@
+#include "weft/core/work_times.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support.h"
+#include "weft/world/world.h"
+
+namespace weft {
+namespace {
+
+using test::square;
+
+constexpr double kStep = 1.0 / 60;
+constexpr double kRounding = 1e-12;  // of sums of seconds [1]
+constexpr WorkClock::Kind kContact[] = {&WorkTimes::lists,  &WorkTimes::narrow_phase, &WorkTimes::rows,
+                                        &WorkTimes::set_up, &WorkTimes::product,      &WorkTimes::projection,
+                                        &WorkTimes::ccd};
+
+void spend(double seconds) {
+  WorkClock own;
+  own.start();
+  while (own.seconds() < seconds) {
+  }
+}
+
+/// A level sheet of 12×12 cells at this height [m].
+ClothDesc make_sheet(double height) {
+  ClothDesc desc{.topology = build_grid_topology(square(12), SpringModel::alternating),
+                 .material = {.structural = 2000, .shear = 1000, .bend = 20, .thickness = 2e-3}};
+  desc.positions = desc.topology->mesh.positions;
+  for (Vec3& p : desc.positions) p.y() += height;
+  return desc;
+}
+
+/// One sheet, held everywhere, and another that settles on it. No plain shapes: every contact is a pair.
+World make_layers() {
+  World world;
+  const ClothId lower = world.add_cloth(make_sheet(0));
+  Pin all;
+  for (int i = 0; i < world.model(lower).num_particles(); ++i) all.particles.push_back(i);
+  world.set_pins(lower, {all});
+  world.add_cloth(make_sheet(2e-3));
+  world.set_division({.enabled = false});
+  return world;
+}
+
+TEST(WorkClock, CountsABlockWithinABlockOnce) {
+  constexpr double kWork = 2e-3;
+  WorkClock clock;
+  clock.start();
+  {
+    const WorkScope outer(&clock, &WorkTimes::projection);
+    spend(kWork);
+    {
+      const WorkScope inner(&clock, &WorkTimes::lists);
+      spend(kWork);
+    }
+    spend(kWork);
+  }
+  spend(kWork);
+  const WorkTimes times = clock.stop();
+  EXPECT_GE(times.projection, 2 * kWork);
+  EXPECT_GE(times.lists, kWork);
+  EXPECT_LE(times.kinds(), times.total - kWork + kRounding);
+}
+
+TEST(WorkTimes, OfASheetOnASheetHaveEveryKindAndAreNoMoreThanTheSteps) {
+  World world = make_layers();
+  WorkClock outside;
+  WorkTimes sum;
+  outside.start();
+  for (int s = 0; s < 20; ++s) {
+    const StepReport report = world.step(kStep);
+    ASSERT_TRUE(report.ok);
+    EXPECT_LE(report.work.active, static_cast<std::size_t>(report.work.pairs_listed)) << "step " << s;
+    sum += report.work;
+  }
+  for (const WorkClock::Kind kind : kContact) EXPECT_GT(sum.*kind, 0);
+  EXPECT_GT(sum.v_cycle, 0);
+  EXPECT_EQ(sum.retries, 0) << "steps were not to be divided";
+  EXPECT_LE(sum.kinds(), sum.total * (1 + kRounding));
+  EXPECT_LE(sum.total, outside.seconds());
+  EXPECT_GT(sum.active, 0u);
+  EXPECT_GE(sum.looks, 20u) << "the last line looks in every step";
+  EXPECT_GE(sum.pairs_tested, static_cast<std::size_t>(sum.pairs_listed));
+  EXPECT_LE(sum.pairs_tested, sum.looks * sum.pairs_listed);
+}
+
+TEST(WorkTimes, WithoutContactAreThoseOfTheSolveAlone) {
+  World world = make_layers();
+  world.set_contact(false);
+  for (int s = 0; s < 5; ++s) {
+    const WorkTimes work = world.step(kStep).work;
+    for (const WorkClock::Kind kind : kContact) EXPECT_EQ(work.*kind, 0);
+    EXPECT_GT(work.v_cycle, 0);
+    EXPECT_GE(work.total, work.v_cycle);
+    EXPECT_EQ(work.looks + work.pairs_tested + work.active + work.list_renewals, 0u);
+    EXPECT_EQ(work.pairs_listed, 0);
+  }
+}
+
+TEST(WorkTimes, OfFreeFallHaveAtMostTwoSearchesPerSecond) {
+  World world;
+  world.add_cloth(make_sheet(0));
+  WorkTimes second;
+  for (int s = 0; s < 60; ++s) second += world.step(kStep).work;
+  EXPECT_GE(second.list_renewals, 1u);
+  EXPECT_LE(second.list_renewals, 2u) << "what all cloth moves in common does not count";
+  EXPECT_EQ(second.active, 0u);
+}
+
+TEST(WorkTimes, OfPartsThatWereThrownAwayAreToldApart) {
+  World world;
+  world.add_collider({"ball", Sphere{{0.5, 0, 0.5}, 0.3}, 0.3, {}});
+  ClothDesc sheet = make_sheet(0.35);
+  sheet.velocity = {0, -20, 0};
+  world.add_cloth(sheet);
+  int retries = 0;
+  for (int s = 0; s < 4; ++s) {
+    const StepReport report = world.step(kStep);
+    ASSERT_TRUE(report.ok);
+    retries += report.retries;
+    EXPECT_EQ(report.retries > 0, report.work.retries > 0) << "step " << s;
+    EXPECT_LT(report.work.retries, report.work.total);
+  }
+  EXPECT_GT(retries, 0);
+}
+
+}  // namespace
+}  // namespace weft
