@@ -42,8 +42,10 @@ FinishedRun run_to_files(const RunRequest& request) {
   const SceneDesc scene = read_scene(find_scene(request.scene), request.overrides);
   const fs::path folder = request.out.empty() ? fs::path("out") / scene.name : request.out;
   prepare_folder(folder, request.report);
-  const RunOptions options{
-      .frames = request.frames, .threads = choose_threads(request.threads), .audit = request.audit};
+  const RunOptions options{.frames = request.frames,
+                           .threads = choose_threads(request.threads),
+                           .audit = request.audit,
+                           .check_passages = request.check_passages};
   ProgressBar bar(scene.name);
   catch_interrupts();
   RunResult result = run_scene(scene, options, [&](const Progress& progress) {
@@ -86,6 +88,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_name("T");
   command->add_flag("--audit", request->audit,
                     "Also report the work done in every frame, and the energy it leaves over; slower");
+  command->add_flag("!--no-passages", request->check_passages,
+                    "Do not check what goes through what within steps");
   add_set_option(*command, request->overrides);
   command->add_flag("--strict", request->strict, "Exit with 1 if the last lines say that something is wrong");
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");

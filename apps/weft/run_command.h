@@ -15,9 +15,10 @@ struct RunRequest {
   std::filesystem::path out;     // folder for animation.glb and report.json; empty: out/ and the scene's name
   std::filesystem::path report;  // a second copy of the report; empty: none
   std::optional<int> frames;
-  int threads = 0;      // 0: all processors
-  bool audit = false;   // of energy, in the report
-  bool strict = false;  // problems are an error
+  int threads = 0;             // 0: all processors
+  bool audit = false;          // of energy, in the report
+  bool strict = false;         // problems are an error
+  bool check_passages = true;  // within steps
   Overrides overrides;
 };
 

@@ -23,6 +23,10 @@ std::string format_left_over(const std::vector<double>& left_over) {
                      most - left_over.begin() + 1);
 }
 
+std::string first_passage_in_words(const RunReport& r) {
+  return r.first_passage.empty() ? "" : ", the first in " + r.first_passage;
+}
+
 double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
 
 }  // namespace
@@ -44,6 +48,7 @@ std::string summarise(const RunReport& r) {
     text += fmt::format("  audit        {}\n", format_left_over(r.energy.left_over));
   text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
   if (r.intersections) text += fmt::format("  crossings    {} at worst\n", *r.intersections);
+  if (r.passages) text += fmt::format("  passages     {}{}\n", *r.passages, first_passage_in_words(r));
   if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));
   text += fmt::format("  state hash   {}\n", r.state_hash);
   for (const std::string& warning : r.warnings) text += "  warning: " + warning + "\n";

@@ -118,7 +118,7 @@ WorldFrames::WorldFrames(const World& world) : world_(world) {
   }
 }
 
-FrameToCheck WorldFrames::now() const {
+FrameToCheck WorldFrames::at(double time) const {
   FrameToCheck result;
   for (int c = 0; c < world_.num_cloths(); ++c) {
     add_cloth(world_.name({c}), world_.model({c}).topology->mesh.triangles, positions_of(world_.state({c})),
@@ -126,8 +126,8 @@ FrameToCheck WorldFrames::now() const {
   }
   for (std::size_t k = 0; k < world_.colliders().size(); ++k) {
     const Collider& collider = world_.colliders()[k];
-    const Solid shape = place(shape_at(collider, world_.time()), is_closed_[k], result);
-    result.frame.colliders.push_back({collider.name, shape});
+    const Solid shape = place(shape_at(collider, time), is_closed_[k], result);
+    result.frame.colliders.push_back({collider.name, shape, collider.motion.at(time).rotation});
   }
   result.frame.passing = world_.passing_pairs();
   return result;
@@ -160,7 +160,7 @@ FrameToCheck AnimationFrames::at(int frame) const {
             ? std::visit(placement, *body.shape)
             : Solid(place_mesh(body.frames.empty() ? body.mesh.positions : to_positions(body.frames[frame]),
                                body.mesh.triangles, placement, is_closed_[k], result));
-    result.frame.colliders.push_back({body.name, shape});
+    result.frame.colliders.push_back({body.name, shape, placement.rotation});
   }
   result.frame.passing = animation_.passing;
   return result;

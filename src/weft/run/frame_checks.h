@@ -27,7 +27,10 @@ class WorldFrames {
   explicit WorldFrames(const World& world);
 
   /// Valid as long as the world's cloths and colliders stay the same ones.
-  FrameToCheck now() const;
+  FrameToCheck now() const { return at(world_.time()); }
+
+  /// The cloths as they are now, and the colliders where they are at another time: within a step [s].
+  FrameToCheck at(double time) const;
 
  private:
   const World& world_;

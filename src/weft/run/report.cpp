@@ -88,6 +88,8 @@ std::string to_json(const RunReport& r) {
       {"min_stretch", json_of(r.min_stretch)},
       {"penetration_max", or_null(r.penetration_max)},
       {"intersections", or_null(r.intersections)},
+      {"passages", or_null(r.passages)},
+      {"first_passage", r.first_passage.empty() ? null : nlohmann::ordered_json(r.first_passage)},
       {"infeasible", or_null(r.infeasible)},
       {"contact_hits", or_null(r.contact_hits)},
       {"contact_zones", or_null(r.contact_zones)},

@@ -54,7 +54,10 @@ struct RunReport {
       infeasible;  // `frame 12: cloth "sheet" particle 7 and …`, the first
   // What the independent checker (verify/checker.h) found in the frames, the start not counted:
   std::optional<int>
-      intersections;  // crossing pairs of triangles in the worst frame; empty without frames [1]
+      intersections;            // crossing pairs of triangles in the worst frame; empty without frames [1]
+  std::optional<int> passages;  // pairs of features that went through each other (verify/passages.h), over
+                                // the run; empty where that was not checked [1]
+  std::string first_passage;    // `frame 12: cloth "sheet" particle 7 passes …`; empty: there is none
   std::optional<double>
       penetration_max;     // deepest point of cloth inside a collider; empty without colliders [m]
   std::string state_hash;  // sixteen hexadecimal digits

@@ -11,6 +11,7 @@
 #include "weft/run/stopwatch.h"
 #include "weft/run/warnings.h"
 #include "weft/scene/scene_world.h"
+#include "weft/verify/passages.h"
 #include "weft/world/energy_audit.h"
 #include "weft/world/measures.h"
 
@@ -132,6 +133,30 @@ class Recorder {
   RunReport& report_;
 };
 
+/// Shows the checker the motion of every substep.
+class PassageCounter {
+ public:
+  PassageCounter(const World& world, RunReport& report)
+      : frames_(world), watch_(frames_.now().frame), report_(report) {
+    report_.passages = 0;
+  }
+
+  void add_moment(double time, int frame) {
+    const FrameToCheck moment = frames_.at(time);
+    const std::vector<verify::FeaturePair> passages = watch_.advance(moment.frame);
+    if (passages.empty()) return;
+    if (report_.passages == 0)
+      report_.first_passage =
+          "frame " + std::to_string(frame) + ": " + verify::describe(moment.frame, passages[0]);
+    *report_.passages += static_cast<int>(passages.size());
+  }
+
+ private:
+  WorldFrames frames_;
+  verify::PassageWatch watch_;
+  RunReport& report_;
+};
+
 /// A run under way.
 class Run {
  public:
@@ -148,14 +173,16 @@ class Run {
     recorder_.judge_start(scene);
     built_.world.track_contacts(options.audit);
     if (options.record_animation) film_.add_frame();
+    if (options.check_passages) watch_passages();
   }
 
   RunResult go(const OnFrame& on_frame) {
     RunReport& report = result_.report;
     for (int frame = 1; frame <= num_frames_ && report.outcome == RunOutcome::done; ++frame) {
-      double seconds = 0;  // wall time of its steps
+      seconds_in_frame_ = 0;
       EnergyAudit audit;
-      if (!simulate_frame(frame, seconds, audit)) break;
+      if (!simulate_frame(frame, audit)) break;
+      const double seconds = seconds_in_frame_;
       spent_ += seconds;
       frame_ms_.push_back(1000 * seconds);
       recorder_.add_frame();
@@ -170,8 +197,18 @@ class Run {
   }
 
  private:
+  /// With the stopwatch held.
+  void watch_passages() {
+    passages_.emplace(built_.world, result_.report);
+    built_.world.set_observer([this](double time) {
+      seconds_in_frame_ += stopwatch_.stop();
+      passages_->add_moment(time, result_.report.frames + 1);
+      stopwatch_.start();
+    });
+  }
+
   /// False if the simulation failed: then the report says where and why.
-  bool simulate_frame(int frame, double& seconds, EnergyAudit& audit) {
+  bool simulate_frame(int frame, EnergyAudit& audit) {
     World& world = built_.world;
     for (int s = 0; s < scene_.steps_per_frame; ++s) {
       std::optional<AuditStart> start;
@@ -179,7 +216,7 @@ class Run {
       stopwatch_.start();
       world.set_wind(wind_at(scene_.wind, world.time()));
       const StepReport done = world.step(1 / (scene_.fps * scene_.steps_per_frame));
-      seconds += stopwatch_.stop();
+      seconds_in_frame_ += stopwatch_.stop();
       if (start) audit += finish_energy_audit(*start, world);
       add_work(done, frame);
       if (done.ok) {
@@ -238,7 +275,9 @@ class Run {
   RunResult result_;
   Recorder recorder_;
   Film film_;
+  std::optional<PassageCounter> passages_;
   Stopwatch stopwatch_;
+  double seconds_in_frame_ = 0;  // wall time of its steps [s]
   std::vector<double> frame_ms_;
   double spent_ = 0;  // on simulation, wall time [s]
 };

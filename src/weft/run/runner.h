@@ -18,6 +18,7 @@ struct RunOptions {
   /// Audit the energy of every step (world/energy_audit.h). The motion stays the same; a step's time includes
   /// the tracking of contacts, not the audit.
   bool audit = false;
+  bool check_passages = true;  // what goes through what within steps; no part of the time that is measured
 };
 
 /// Where a run is.

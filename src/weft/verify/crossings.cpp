@@ -1,11 +1,10 @@
 #include "weft/verify/crossings.h"
 
 #include <algorithm>
-#include <limits>
-#include <tuple>
 #include <utility>
 
 #include "weft/verify/predicates.h"
+#include "weft/verify/sweep.h"
 
 namespace weft::verify {
 namespace {
@@ -169,138 +168,26 @@ struct Around {
 
 // ---- All pairs ----
 
-/// Pairs of triangles whose boxes overlap: a sweep along one axis in each of many strips along a second.
-/// Boxes are kept in floats: rounding never changes the order of two numbers, so it hides no overlap.
-class Sweep {
- public:
-  explicit Sweep(std::span<const SurfaceView> surfaces) {
-    for (std::size_t s = 0; s < surfaces.size(); ++s) add(static_cast<int>(s), surfaces[s]);
-    choose_axes();
-    std::sort(boxes_.begin(), boxes_.end(), [this](const Box& p, const Box& q) {
-      return std::pair(p.low[sweep_axis_], p.id) < std::pair(q.low[sweep_axis_], q.id);
-    });
-    fill_strips();
-  }
-
-  /// Calls visit(p, q) once for every two triangles whose boxes overlap.
-  template <class Visit>
-  void for_each_pair(Visit visit) const {
-    std::vector<int> hits(boxes_.size());
-    for (int s = 0; s < static_cast<int>(strips_.size()); ++s) {
-      const Strip& strip = strips_[s];
-      for (std::size_t i = 0; i < strip.boxes.size(); ++i) {
-        const int num_hits = strip.collect_overlaps(i, hits.data());
-        const Box& box = boxes_[strip.boxes[i]];
-        for (int h = 0; h < num_hits; ++h) {
-          const Box& other = boxes_[strip.boxes[hits[h]]];
-          const bool is_first_in_common = std::max(box.first_strip, other.first_strip) == s;
-          if (is_first_in_common) visit(box.id, other.id);
-        }
-      }
-    }
-  }
-
- private:
-  static constexpr int kMostStrips = 1024;
-  static constexpr float kBoxesPerStrip = 3;  // width of a strip, in mean widths of boxes
-
-  struct Box {
-    std::array<float, 3> low, high;
-    TriangleId id;
-    int first_strip = 0;
-  };
-
-  /// The boxes that reach into a strip in the order of the sweep, as columns.
-  struct Strip {
-    std::vector<int> boxes;
-    std::vector<float> start, end, low_y, high_y, low_z, high_z;
-
-    /// Places of boxes after place i that overlap box i; how many.
-    int collect_overlaps(std::size_t i, int* hits) const {
-      const int num_boxes = static_cast<int>(boxes.size());
-      const float to = end[i], ly = low_y[i], hy = high_y[i], lz = low_z[i], hz = high_z[i];
-      int count = 0;
-      for (int j = static_cast<int>(i) + 1; j < num_boxes && start[j] <= to; ++j) {
-        hits[count] = j;
-        count += int{low_y[j] <= hy} & int{high_y[j] >= ly} & int{low_z[j] <= hz} & int{high_z[j] >= lz};
-      }
-      return count;
-    }
-  };
-
-  void add(int surface, const SurfaceView& view) {
+Sweep boxes_of(std::span<const SurfaceView> surfaces) {
+  std::vector<Sweep::Box> boxes;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const SurfaceView& view = surfaces[s];
     for (std::size_t t = 0; t < view.triangles.size(); ++t) {
       const auto& [a, b, c] = view.triangles[t];
       const Vec3 &x = view.positions[a], &y = view.positions[b], &z = view.positions[c];
-      const Eigen::Vector3f low = x.cwiseMin(y).cwiseMin(z).cast<float>();
-      const Eigen::Vector3f high = x.cwiseMax(y).cwiseMax(z).cast<float>();
-      boxes_.push_back(
-          {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, {surface, static_cast<int>(t)}});
+      boxes.emplace_back(x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z),
+                         TriangleId{static_cast<int>(s), static_cast<int>(t)});
     }
   }
-
-  /// The sweep goes where the boxes vary most, the strips lie where they vary second most.
-  void choose_axes() {
-    Vec3 sum = Vec3::Zero(), sum_sq = Vec3::Zero();
-    for (const Box& box : boxes_) {
-      const Vec3 low(box.low[0], box.low[1], box.low[2]);
-      sum += low;
-      sum_sq += low.cwiseAbs2();
-    }
-    const double count = std::max<double>(1, static_cast<double>(boxes_.size()));
-    const Vec3 variance = sum_sq / count - (sum / count).cwiseAbs2();
-    std::array<int, 3> axes = {0, 1, 2};
-    std::sort(axes.begin(), axes.end(), [&](int i, int j) { return variance[i] > variance[j]; });
-    std::tie(sweep_axis_, strip_axis_, third_axis_) = std::tie(axes[0], axes[1], axes[2]);
-  }
-
-  void fill_strips() {
-    float low = std::numeric_limits<float>::max(), high = -low;
-    double widths = 0;
-    for (const Box& box : boxes_) {
-      low = std::min(low, box.low[strip_axis_]);
-      high = std::max(high, box.high[strip_axis_]);
-      widths += box.high[strip_axis_] - box.low[strip_axis_];
-    }
-    const double width = kBoxesPerStrip * widths / std::max<double>(1, static_cast<double>(boxes_.size()));
-    const double wanted = width > 0 ? (static_cast<double>(high) - low) / width : 1;
-    strips_.resize(static_cast<std::size_t>(std::clamp(wanted, 1.0, double{kMostStrips})));
-    const auto strip_at = [&](float x) {
-      const double place =
-          high > low ? (static_cast<double>(x) - low) / (static_cast<double>(high) - low) : 0;
-      return std::min(static_cast<int>(place * static_cast<double>(strips_.size())),
-                      static_cast<int>(strips_.size()) - 1);
-    };
-    for (int k = 0; k < static_cast<int>(boxes_.size()); ++k) {
-      Box& box = boxes_[k];
-      box.first_strip = strip_at(box.low[strip_axis_]);
-      const int last = strip_at(box.high[strip_axis_]);
-      for (int s = box.first_strip; s <= last; ++s) add_to_strip(k, strips_[s]);
-    }
-  }
-
-  void add_to_strip(int k, Strip& strip) const {
-    const Box& box = boxes_[k];
-    strip.boxes.push_back(k);
-    strip.start.push_back(box.low[sweep_axis_]);
-    strip.end.push_back(box.high[sweep_axis_]);
-    strip.low_y.push_back(box.low[strip_axis_]);
-    strip.high_y.push_back(box.high[strip_axis_]);
-    strip.low_z.push_back(box.low[third_axis_]);
-    strip.high_z.push_back(box.high[third_axis_]);
-  }
-
-  std::vector<Box> boxes_;  // in the order of the sweep
-  int sweep_axis_ = 0, strip_axis_ = 1, third_axis_ = 2;
-  std::vector<Strip> strips_;
-};
+  return Sweep(std::move(boxes));
+}
 
 class Finder {
  public:
   explicit Finder(std::span<const SurfaceView> surfaces) : surfaces_(surfaces) {}
 
   std::vector<Crossing> find() {
-    Sweep(surfaces_).for_each_pair([this](TriangleId p, TriangleId q) { judge(p, q); });
+    boxes_of(surfaces_).for_each_pair([this](TriangleId p, TriangleId q) { judge(p, q); });
     judge_edges_in_triangles();
     judge_edges_on_edges();
     std::sort(crossings_.begin(), crossings_.end());

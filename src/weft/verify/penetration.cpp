@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+using Bounds = Eigen::AlignedBox3d;
+
 // ---- Boxes ----
 
 /// A face of a box in its own coordinates: depth below it is half_size − sign · x[axis].
@@ -92,31 +94,12 @@ double greatest_depth(const Faces& faces, const Corners& triangle) {
   return deepest;
 }
 
-// ---- Bounds ----
-
-using Bounds = Eigen::AlignedBox3d;
-
-Bounds bounds_of(const Sphere& s) {
-  return {s.center - Vec3::Constant(s.radius), s.center + Vec3::Constant(s.radius)};
-}
-
-Bounds bounds_of(const Plane&) { return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}; }
-
-Bounds bounds_of(const Capsule& c) {
-  return {c.a.cwiseMin(c.b) - Vec3::Constant(c.radius), c.a.cwiseMax(c.b) + Vec3::Constant(c.radius)};
-}
-
-Bounds bounds_of(const OrientedBox& box) {
-  const Vec3 reach = box.rotation.cwiseAbs() * box.half_size;
-  return {box.center - reach, box.center + reach};
-}
+// ---- All cloths, all solids ----
 
 bool overlaps(const Bounds& bounds, const Corners& t) {
   const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
   return (low.array() <= bounds.max().array()).all() && (high.array() >= bounds.min().array()).all();
 }
-
-// ---- All cloths, all solids ----
 
 /// Keeps the deepest place.
 class Search {
@@ -189,6 +172,21 @@ class Search {
 };
 
 }  // namespace
+
+Eigen::AlignedBox3d bounds_of(const Sphere& s) {
+  return {s.center - Vec3::Constant(s.radius), s.center + Vec3::Constant(s.radius)};
+}
+
+Eigen::AlignedBox3d bounds_of(const Plane&) { return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}; }
+
+Eigen::AlignedBox3d bounds_of(const Capsule& c) {
+  return {c.a.cwiseMin(c.b) - Vec3::Constant(c.radius), c.a.cwiseMax(c.b) + Vec3::Constant(c.radius)};
+}
+
+Eigen::AlignedBox3d bounds_of(const OrientedBox& box) {
+  const Vec3 reach = box.rotation.cwiseAbs() * box.half_size;
+  return {box.center - reach, box.center + reach};
+}
 
 double depth_in(const Sphere& sphere, const Corners& triangle) {
   return sphere.radius - std::sqrt(distance_sq(sphere.center, triangle));

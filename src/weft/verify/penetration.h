@@ -27,6 +27,12 @@ double depth_in(const Plane& plane, const Corners& triangle);
 double depth_in(const Capsule& capsule, const Corners& triangle);
 double depth_in(const OrientedBox& box, const Corners& triangle);
 
+/// The smallest box along the axes that holds the shape.
+Eigen::AlignedBox3d bounds_of(const Sphere& sphere);
+Eigen::AlignedBox3d bounds_of(const Plane& plane);
+Eigen::AlignedBox3d bounds_of(const Capsule& capsule);
+Eigen::AlignedBox3d bounds_of(const OrientedBox& box);
+
 /// A triangle mesh at one moment.
 struct MeshView {
   std::span<const Vec3> positions;  // [m]

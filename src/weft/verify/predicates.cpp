@@ -3,64 +3,22 @@
 #include <array>
 #include <cmath>
 
+#include "weft/verify/expansion.h"
+
 namespace weft::verify {
 namespace {
 
 constexpr double kHalfUlp = 0x1p-53;  // largest relative rounding error of one operation
-constexpr double kSplitter = 0x1p27 + 1;
 constexpr double kBound2d = (3 + 16 * kHalfUlp) * kHalfUlp;  // of orient2d's determinant, times its permanent
 constexpr double kBound3d = (7 + 56 * kHalfUlp) * kHalfUlp;  // of orient3d's
 
-int sign(double x) { return (x > 0) - (x < 0); }
-
-/// high + low is the exact value, high the rounded one.
-struct Pair {
-  double high, low;
-};
-
-/// a + b (Knuth).
-Pair two_sum(double a, double b) {
-  const double sum = a + b;
-  const double b_virtual = sum - a;
-  const double a_virtual = sum - b_virtual;
-  return {sum, (a - a_virtual) + (b - b_virtual)};
-}
-
-/// Two halves of 26 bits, whose products are exact (Dekker).
-Pair split(double a) {
-  const double c = kSplitter * a;
-  const double high = c - (c - a);
-  return {high, a - high};
-}
-
-/// a · b (Dekker).
-Pair two_product(double a, double b) {
-  const double product = a * b;
-  const auto [a_high, a_low] = split(a);
-  const auto [b_high, b_low] = split(b);
-  const double error = ((product - a_high * b_high) - a_low * b_high) - a_high * b_low;
-  return {product, a_low * b_low - error};
-}
-
-/// A sum of up to N doubles that do not overlap, smallest first, none of them 0: its sign is that of the
-/// last.
+/// An expansion of up to N terms.
 template <int N>
 struct Expansion {
   std::array<double, N> terms;
   int size = 0;
 
-  /// Shewchuk's Grow-Expansion; zeros are dropped.
-  void add(double b) {
-    int kept = 0;
-    for (int i = 0; i < size; ++i) {
-      const auto [high, low] = two_sum(b, terms[i]);
-      if (low != 0) terms[kept++] = low;
-      b = high;
-    }
-    if (b != 0) terms[kept++] = b;
-    size = kept;
-  }
-
+  void add(double b) { size = grow_expansion(terms.data(), size, b); }
   int sign_of_sum() const { return size == 0 ? 0 : sign(terms[size - 1]); }
 };
 

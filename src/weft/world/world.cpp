@@ -506,13 +506,15 @@ StepReport World::step(double dt) {
     }
     part.substeps = num_substeps(dt * size / most);
     StepCheck check;
-    for (int s = 1; s <= part.substeps && check.severity < 1; ++s) {
-      const double length = dt * size / most;
-      check = try_part(before, start + dt * done / most + length * s / part.substeps, length / part.substeps,
-                       part);
+    bool stands = true;
+    for (int s = 1; s <= part.substeps && stands; ++s) {
+      const double length = dt * size / most, end = start + dt * done / most + length * s / part.substeps;
+      check = try_part(before, end, length / part.substeps, part);
+      stands = check.severity < 1 || (parts == most && check.fault != StepFault::non_finite);
+      if (stands && observer_) observer_(end);
     }
-    const bool is_shortest = parts == most;
-    if (check.severity >= 1 && !is_shortest) {
+    if (!stands && parts == most) return fail(check, std::move(report));
+    if (!stands) {
       restore_motion(before);
       for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].grab_impulse = grab_impulses[c];
       parts = std::min(most, check.severity > kFarTooLong ? 4 * parts : 2 * parts);
@@ -522,14 +524,13 @@ StepReport World::step(double dt) {
       clock_.times.retries += clock_.seconds() - began;
       continue;
     }
-    if (check.fault == StepFault::non_finite && check.severity >= 1) return fail(check, std::move(report));
     if (check.severity >= 1 && most > 1)
       part.warnings.push_back(
           {WarningCode::cap_reached, check.cloth, check.particle, check.value, check.fault});
     accept(part, report);
     ++report.divisions;
     done += size;
-    calm_ = check.severity < kCalm ? calm_ + 1 : 0;
+    calm_ = check.severity < kCalm ? std::min(calm_ + 1, kCalmParts) : 0;
     if (parts > 1 && calm_ >= kCalmParts && done % (2 * size) == 0) {
       parts /= 2;
       calm_ = 0;

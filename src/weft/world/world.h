@@ -5,6 +5,7 @@
 /// of threads.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -119,6 +120,10 @@ class World {
   /// Advances everything by dt > 0 [s].
   StepReport step(double dt);
 
+  /// Called in step() at the end of every substep, with the time that the cloths have then reached [s]; time()
+  /// is that of the step's start until the step is done. Of a step that fails, which is undone, too.
+  void set_observer(std::function<void(double time)> after_substep) { observer_ = std::move(after_substep); }
+
   double time() const { return time_; }  // [s]
   int num_cloths() const { return static_cast<int>(cloths_.size()); }
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
@@ -210,6 +215,7 @@ class World {
   std::vector<Cloth> cloths_;
   std::vector<Collider> colliders_;
   std::vector<ContactRule> rules_;  // one per pair
+  std::function<void(double)> observer_;
 
   // Work space of step(), kept so that it allocates nothing.
   WorkClock clock_;
