@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 struct VerifyRequest {
   fs::path path;            // a folder with animation.glb, or a .glb file
   double tolerance = 1e-4;  // [m]
+  bool passages = false;  // are offences
   bool json = false;
 };
 
@@ -41,12 +42,23 @@ void print(const fs::path& file, const AnimationCheck& check) {
   fmt::print("{}: {}; {}; {}\n", file.string(), count(check.frames, "frame", "frames"),
              crossings_in_words(check), depth_in_words(check));
   for (const auto& [frame, what] : check.offences) fmt::print("  frame {}: {}\n", frame, what);
+  if (check.passages == 0) {
+    fmt::print("  between frames, on straight lines, nothing passes through anything\n");
+    return;
+  }
+  fmt::print("  between frames, on straight lines, {} may have passed through each other:\n",
+             count(check.passages, "pair", "pairs"));
+  for (const auto& [frame, what] : check.may_passed) fmt::print("  before frame {}: {}\n", frame, what);
+}
+
+nlohmann::ordered_json to_json(const std::vector<AnimationCheck::Offence>& list) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& [frame, what] : list) json.push_back({{"frame", frame}, {"what", what}});
+  return json;
 }
 
 nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check) {
   const nlohmann::ordered_json null = nullptr;
-  nlohmann::ordered_json offences = nlohmann::ordered_json::array();
-  for (const auto& [frame, what] : check.offences) offences.push_back({{"frame", frame}, {"what", what}});
   const auto frame_or_null = [&](int frame) { return frame < 0 ? null : nlohmann::ordered_json(frame); };
   return {{"file", file.string()},
           {"clean", check.is_clean},
@@ -57,7 +69,9 @@ nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check
           {"penetration_max", check.penetration_max ? nlohmann::ordered_json(*check.penetration_max) : null},
           {"deepest_frame", frame_or_null(check.deepest_frame)},
           {"deepest_place", check.deepest_frame < 0 ? null : nlohmann::ordered_json(check.deepest_place)},
-          {"offences", offences}};
+          {"passages", check.passages},
+          {"may_have_passed", to_json(check.may_passed)},
+          {"offences", to_json(check.offences)}};
 }
 
 /// What is wrong with a tolerance; nothing: empty.
@@ -69,7 +83,7 @@ std::string require_depth(const std::string& text) {
 
 int verify(const VerifyRequest& request) {
   const fs::path file = fs::is_directory(request.path) ? request.path / "animation.glb" : request.path;
-  const AnimationCheck check = check_animation(read_glb(file), {.tolerance = request.tolerance});
+  const AnimationCheck check = check_animation(read_glb(file), {.tolerance = request.tolerance, .passages_offend = request.passages});
   if (request.json) {
     const auto keep_going = nlohmann::ordered_json::error_handler_t::replace;
     fmt::print("{}\n", to_json(file, check).dump(2, ' ', false, keep_going));
@@ -90,6 +104,8 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->check(require_depth)
       ->type_name("M")
       ->capture_default_str();
+  command->add_flag("--passages", request->passages,
+                    "What may have passed through anything between two frames is no clean run either");
   command->add_flag("--json", request->json, "Print the result as JSON");
   command->footer(
       "Exit code 0: clean. 1: cloth crosses something or is too deep in a collider. 2: bad input.");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "weft/verify/passages.h"
+
 namespace weft {
 namespace {
 
@@ -109,6 +111,17 @@ void add_frame(const verify::Frame& frame, int index, const AnimationCheckOption
   sum.penetration_max = std::max(sum.penetration_max.value_or(0), check.penetration());
 }
 
+void add_passages(const std::vector<verify::FeaturePair>& passages, const verify::Frame& frame, int index,
+                  const AnimationCheckOptions& options, AnimationCheck& sum) {
+  if (passages.empty()) return;
+  sum.passages += static_cast<int>(passages.size());
+  const std::size_t more = passages.size() - 1;
+  const std::string others = more > 0 ? " (and " + std::to_string(more) + " more)" : "";
+  if (static_cast<int>(sum.may_passed.size()) < options.num_offences)
+    sum.may_passed.push_back({index, verify::describe(frame, passages[0]) + others});
+  if (options.passages_offend) sum.is_clean = false;
+}
+
 }  // namespace
 
 WorldFrames::WorldFrames(const World& world) : world_(world) {
@@ -169,7 +182,16 @@ FrameToCheck AnimationFrames::at(int frame) const {
 AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options) {
   const AnimationFrames frames(animation);
   AnimationCheck sum;
-  for (int k = 0; k < frames.num_frames(); ++k) add_frame(frames.at(k).frame, k, options, sum);
+  std::optional<verify::PassageWatch> watch;
+  for (int k = 0; k < frames.num_frames(); ++k) {
+    const FrameToCheck frame = frames.at(k);
+    add_frame(frame.frame, k, options, sum);
+    if (watch) {
+      add_passages(watch->advance(frame.frame), frame.frame, k, options, sum);
+    } else {
+      watch.emplace(frame.frame, options.tolerance);
+    }
+  }
   return sum;
 }
 

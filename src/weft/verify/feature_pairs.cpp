@@ -193,7 +193,7 @@ void FeaturePairs::rebuild(const std::vector<MovingSurface>& surfaces, const Vis
   bool is_any_slow = false;
   for (Group& g : groups_) {
     g.moved = 0;
-    g.reach = g.may_meet && g.way < reach_ ? reach_ : 0;
+    g.reach = g.may_meet && 2 * g.way < reach_ ? reach_ : 0;  // a list is to last
     g.near.clear();
     is_any_slow |= g.reach > 0;
   }

@@ -62,13 +62,13 @@ struct Estimate {
 
 /// A corner of f's image: `to` − `from` − kAside.
 struct Corner {
-  Vec3 from, to;
+  const Vec3 *from, *to;
   Vec3 value;  // to − from, rounded
 
   Exact exact(int axis) const {
     Exact result;
-    result.add(to[axis]);
-    result.add(-from[axis]);
+    result.add((*to)[axis]);
+    result.add(-(*from)[axis]);
     result.add(-kAside[axis]);
     return result;
   }
@@ -110,10 +110,10 @@ int volume_sign(const Corner& a, const Corner& b, const Corner& c) {
 
 using Quad = std::array<int, 4>;
 
-/// f's image of the boundary of a prism or a cube, given by its corners.
+/// f's image of the boundary of a prism or a cube, given by its corners. The positions must outlive it.
 class Image {
  public:
-  void add(const Vec3& from, const Vec3& to) { corners_[size_++] = {from, to, to - from}; }
+  void add(const Vec3& from, const Vec3& to) { corners_[size_++] = {&from, &to, to - from}; }
 
   /// True only if some plane parts the corners from the origin: then f has no root. Planes across the axes,
   /// across `direction`, and across the way to the corners' middle are tried.
@@ -125,7 +125,7 @@ class Image {
       middle += corners_[k].value;
     }
     if (low.maxCoeff() > kFarFromAside || high.minCoeff() < -kFarFromAside) return true;
-    const double size = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    const double size = std::max(-low.minCoeff(), high.maxCoeff());  // of both signs, none beyond the origin
     return is_beyond(direction, size) || is_beyond(-direction, size) || is_beyond(middle, size);
   }
 
@@ -227,57 +227,50 @@ bool touch(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
   return true;
 }
 
-template <std::size_t N>
-std::array<Vec3, N> starts_of(const std::array<PointMotion, N>& points) {
-  std::array<Vec3, N> starts;
-  for (std::size_t k = 0; k < N; ++k) starts[k] = points[k].start;
-  return starts;
+std::array<Vec3, 3> starts_of(const std::array<PointMotion, 3>& t) {
+  return {t[0].start, t[1].start, t[2].start};
 }
-
-template <std::size_t N>
-std::array<Vec3, N> ends_of(const std::array<PointMotion, N>& points) {
-  std::array<Vec3, N> ends;
-  for (std::size_t k = 0; k < N; ++k) ends[k] = points[k].end;
-  return ends;
-}
+std::array<Vec3, 3> ends_of(const std::array<PointMotion, 3>& t) { return {t[0].end, t[1].end, t[2].end}; }
+std::array<Vec3, 2> starts_of(const std::array<PointMotion, 2>& e) { return {e[0].start, e[1].start}; }
+std::array<Vec3, 2> ends_of(const std::array<PointMotion, 2>& e) { return {e[0].end, e[1].end}; }
 
 }  // namespace
 
 PairMotion test_vertex_triangle(const PointMotion& vertex, const std::array<PointMotion, 3>& triangle) {
-  const std::array<Vec3, 3> from = starts_of(triangle), to = ends_of(triangle);
+  const auto& [a, b, c] = triangle;
   Image image;
-  for (const Vec3& corner : from) image.add(vertex.start, corner);
-  for (const Vec3& corner : to) image.add(vertex.end, corner);
-  const auto normal = [](const std::array<Vec3, 3>& t) { return (t[1] - t[0]).cross(t[2] - t[0]); };
-  if (image.is_aside(normal(from) + normal(to))) return {};
+  for (const PointMotion& corner : triangle) image.add(vertex.start, corner.start);
+  for (const PointMotion& corner : triangle) image.add(vertex.end, corner.end);
+  const Vec3 normal = (b.start - a.start).cross(c.start - a.start) + (b.end - a.end).cross(c.end - a.end);
+  if (image.is_aside(normal)) return {};
 
   bool is_odd = image.is_ahead(0, 1, 2) != image.is_ahead(3, 4, 5);
   for (const Quad& side : {Quad{0, 1, 4, 3}, Quad{1, 2, 5, 4}, Quad{2, 0, 3, 5}}) {
     is_odd ^= image.meets_triangles(side);
     is_odd ^= image.is_under_patch(side);
   }
-  return {is_odd, touches(vertex.start, from), touches(vertex.end, to)};
+  return {is_odd, touches(vertex.start, starts_of(triangle)), touches(vertex.end, ends_of(triangle))};
 }
 
 PairMotion test_edge_edge(const std::array<PointMotion, 2>& first, const std::array<PointMotion, 2>& second) {
-  const std::array<Vec3, 2> a = starts_of(first), b = starts_of(second), a_end = ends_of(first),
-                            b_end = ends_of(second);
+  const auto& [a, b] = first;
+  const auto& [c, d] = second;
   Image image;  // corner 4 · (at the end) + 2 · (end of the second edge) + (end of the first)
-  for (const Vec3& q : b) {
-    for (const Vec3& p : a) image.add(p, q);
+  for (const PointMotion& to : second) {
+    for (const PointMotion& from : first) image.add(from.start, to.start);
   }
-  for (const Vec3& q : b_end) {
-    for (const Vec3& p : a_end) image.add(p, q);
+  for (const PointMotion& to : second) {
+    for (const PointMotion& from : first) image.add(from.end, to.end);
   }
-  const Vec3 normal = (a[1] - a[0]).cross(b[1] - b[0]);
-  if (image.is_aside(normal + (a_end[1] - a_end[0]).cross(b_end[1] - b_end[0]))) return {};
+  const Vec3 normal = (b.start - a.start).cross(d.start - c.start) + (b.end - a.end).cross(d.end - c.end);
+  if (image.is_aside(normal)) return {};
 
   bool is_odd = image.meets_triangles({0, 1, 3, 2}) != image.meets_triangles({4, 5, 7, 6});  // both plane
   for (const Quad& side : {Quad{0, 1, 5, 4}, Quad{2, 3, 7, 6}, Quad{0, 2, 6, 4}, Quad{1, 3, 7, 5}}) {
     is_odd ^= image.meets_triangles(side);
     is_odd ^= image.is_under_patch(side);
   }
-  return {is_odd, touch(a, b), touch(a_end, b_end)};
+  return {is_odd, touch(starts_of(first), starts_of(second)), touch(ends_of(first), ends_of(second))};
 }
 
 }  // namespace weft::verify
