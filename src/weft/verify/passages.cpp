@@ -256,11 +256,12 @@ void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
   const std::vector<RestFrame> frames = std::visit(RestFrames{before, after}, before.shape);
   if (frames.empty()) return;
   const Bounds bounds = bounds_of_motion(before.shape, after.shape);
+  const bool is_turning = frames[0].before.rotation != frames[0].after.rotation;  // then ways are bent outside
   const MovingSurface& surface = surfaces_[cloth];
   const int collider_surface = static_cast<int>(next.cloths.size()) + collider;
   for (int i = 0; i < static_cast<int>(surface.end.size()); ++i) {
     const PointMotion way = motion_of(surface, i);
-    if (!bounds.intersects(Bounds(way.start.cwiseMin(way.end), way.start.cwiseMax(way.end)))) continue;
+    if (!is_turning && !bounds.intersects(Bounds(way.start.cwiseMin(way.end), way.start.cwiseMax(way.end)))) continue;
     if (depth_on(way, frames) <= tolerance_) continue;
     const FeaturePair pair{Kind::particle_shape, cloth, collider_surface, {i, i}, {-1, -1}};
     const bool is_in_before = depth_at(way.start, frames[0].before, frames[0].shape) > tolerance_;
