@@ -58,6 +58,9 @@ class IncrementalPotential {
   /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
   double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
 
+  /// y + e where energy() or linearise() were last [m].
+  const Vec3Array& positions() const { return x_; }
+
   /// Whether anything makes cloth stiffer than C or its springs are: a strain limit, stretch curves.
   bool stiffens() const { return has_spring_limit() || elements_.stiffens(); }
 

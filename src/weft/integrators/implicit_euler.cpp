@@ -1,6 +1,7 @@
 /// Implicit Euler with the true forces: the yardstick. Each step minimises the incremental potential
 ///
 ///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + membranes and bending (element_terms.h)
+///            + Σ A [ψ(σ1) + ψ(σ2)], the triangles' resistance to collapse (forces/collapse.h)
 ///            + h · (damping, wind and air dissipation at velocity (x − x₀)/h)
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <utility>
 
+#include "weft/forces/collapse.h"
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
 #include "weft/integrators/air_terms.h"
@@ -32,6 +34,11 @@ constexpr double kSmallestShare = 1e-8;       // of a Newton step that the line 
 constexpr double kFinest = 1e-6;              // of the tolerance: no more is asked for strain limits
 constexpr double kStickSpeed = 1e-3;          // slower slides count as sticking [m/s]
 constexpr double kReferenceTolerance = 1e-9;  // of `newton` in doubles [m/s]
+
+TriangleCorners corners_of(const MembraneElement& triangle, const std::vector<Vec3>& x) {
+  const auto& [a, b, c] = triangle.vertices;
+  return {x[a], x[b], x[c]};
+}
 
 enum class Order { first, second };
 enum class Keeps { floats, doubles };
@@ -75,6 +82,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     model_ = &model;
     environment_ = &environment;
     fit_pattern();
+    collapse_law_ = make_collapse_law(model);
     is_pinned_.assign(model.num_particles(), 0);
     for (const int p : environment.pins.particle) is_pinned_[p] = 1;
     load(state);
@@ -194,6 +202,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       for (const Spring& s : springs) spring_pairs_.push_back(std::minmax(s.i, s.j));
       std::sort(spring_pairs_.begin(), spring_pairs_.end());
       add_element_pairs();
+      find_triangles();
       num_lasting_pairs_ = matrix_.pairs.size();
       contact_pairs_.clear();
       is_analyzed_ = false;
@@ -237,6 +246,14 @@ class ImplicitEulerIntegrator final : public Integrator {
       matrix_.pairs.push_back({pair.first, pair.second});
     }
     std::sort(spring_pairs_.begin(), spring_pairs_.end());
+  }
+
+  /// Their edges are springs, all of them.
+  void find_triangles() {
+    const TriangleMesh& mesh = model_->topology->mesh;
+    triangles_.clear();
+    for (int t = 0; t < mesh.num_triangles(); ++t)
+      triangles_.push_back({mesh.triangles[t], make_rest_triangle(mesh, t)});
   }
 
   /// Where the block of particles i and j is.
@@ -287,6 +304,8 @@ class ImplicitEulerIntegrator final : public Integrator {
       energy += 0.5 * contact.stiffness * depth * depth;
       energy += contact.friction * normal_force_[c] * friction_length(contact.slide(x).norm());
     }
+    for (const MembraneElement& t : triangles_)
+      energy += collapse_energy(t.rest, collapse_law_, corners_of(t, x));
     return energy;
   }
 
@@ -394,6 +413,10 @@ class ImplicitEulerIntegrator final : public Integrator {
         gradient_[contact.particle[k]] -= contact.weight[k] * force;
     }
     if (model_->elements) elements_.add_gradient(x_, gradient_);
+    for (const MembraneElement& t : triangles_) {
+      const TriangleCorners force = collapse_force(t.rest, collapse_law_, corners_of(t, x_));
+      for (int c = 0; c < 3; ++c) gradient_[t.vertices[c]] -= force[c];
+    }
     for (const int i : environment_->pins.particle) gradient_[i].setZero();
   }
 
@@ -421,6 +444,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     }
     std::fill(matrix_.off_diagonal.begin() + num_springs(), matrix_.off_diagonal.end(), Mat3::Zero());
     if (model_->elements) add_element_blocks(true_hessian ? StressFilter::exact : StressFilter::absolute);
+    add_collapse_blocks(true_hessian ? CollapseFilter::exact : CollapseFilter::positive);
     for (std::size_t c = 0; c < normal_force_.size(); ++c) {
       add_contact_blocks(environment_->contacts[c], contact_hessian(c));
     }
@@ -446,15 +470,27 @@ class ImplicitEulerIntegrator final : public Integrator {
     return elements_.is_beyond_limit(x_) || std::any_of(springs.begin(), springs.end(), is_beyond);
   }
 
+  void add_block(int i, int j, const Mat3& block) {
+    if (i == j) {
+      matrix_.diagonal[i] += block;
+    } else if (!is_pinned_[i] && !is_pinned_[j]) {
+      const int p = index_of_pair(i, j);
+      matrix_.off_diagonal[p] += matrix_.pairs[p][0] == i ? block : Mat3(block.transpose());
+    }
+  }
+
   void add_element_blocks(StressFilter filter) {
-    elements_.add_hessian(x_, filter, [this](int i, int j, const Mat3& block) {
-      if (i == j) {
-        matrix_.diagonal[i] += block;
-      } else if (!is_pinned_[i] && !is_pinned_[j]) {
-        const int p = index_of_pair(i, j);
-        matrix_.off_diagonal[p] += matrix_.pairs[p][0] == i ? block : Mat3(block.transpose());
+    elements_.add_hessian(x_, filter, [this](int i, int j, const Mat3& block) { add_block(i, j, block); });
+  }
+
+  void add_collapse_blocks(CollapseFilter filter) {
+    for (const MembraneElement& t : triangles_) {
+      const CollapseHessian hessian = collapse_hessian(t.rest, collapse_law_, corners_of(t, x_), filter);
+      if (hessian.num_modes == 0) continue;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b <= a; ++b) add_block(t.vertices[a], t.vertices[b], collapse_block(hessian, a, b));
       }
-    });
+    }
   }
 
   void add_contact_blocks(const Contact& contact, const Mat3& hessian) {
@@ -528,6 +564,8 @@ class ImplicitEulerIntegrator final : public Integrator {
   std::vector<Pair> spring_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
   std::size_t num_lasting_pairs_ = 0;  // of springs and elements, before those of contacts
   ElementTerms elements_;
+  std::vector<MembraneElement> triangles_;  // all
+  StrainLimit collapse_law_;
   AirTerms air_;
   std::vector<std::pair<Pair, int>> pair_index_;  // of matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;

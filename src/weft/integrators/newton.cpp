@@ -16,6 +16,7 @@
 
 #include "weft/forces/potential.h"
 #include "weft/integrators/air_terms.h"
+#include "weft/integrators/collapse_terms.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/contact_terms.h"
 #include "weft/integrators/effort.h"
@@ -55,6 +56,7 @@ class NewtonIntegrator final : public Integrator {
     model_ = &model;
     prepare_matrices(model, environment.wind, scheme, jobs);
     air_.begin(model, environment, state);
+    collapse_.begin(model, rows_);
     begin_step(model, environment.pins, scheme, jobs, state);
     air_.set_velocities(state.v, scheme.beta / scheme.step);
     coasts_ = false;
@@ -209,7 +211,8 @@ class NewtonIntegrator final : public Integrator {
 
   double energy_at(const Vec3Array& offset, JobSystem& jobs) {
     const double energy = potential_.energy(offset, jobs);
-    return energy + contact_energy(offset) + air_.energy(rows_, offset);
+    return energy + contact_energy(offset) + air_.energy(rows_, offset) +
+           collapse_.energy(potential_.positions());
   }
 
   /// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
@@ -267,6 +270,7 @@ class NewtonIntegrator final : public Integrator {
     double energy = potential_.linearise(correction_, jobs, force_);
     energy += linearise_contacts();
     energy += air_.linearise(rows_, correction_, force_);
+    energy += collapse_.linearise(potential_.positions(), jobs, force_);
     update_stiffer_couplings(is_first, jobs);
     update_for_contacts(jobs);
     set_at_pins(Vec3::Zero(), force_);
@@ -345,6 +349,7 @@ class NewtonIntegrator final : public Integrator {
       double dot = potential_.multiply(p, jobs, q);
       dot += add_contact_product(p, q);
       dot += air_.add_product(rows_, p, q);
+      dot += collapse_.add_product(p, q);
       set_at_pins(Vec3::Zero(), q);
       return dot;
     };
@@ -382,6 +387,7 @@ class NewtonIntegrator final : public Integrator {
 
   void tell_contact_forces(JobSystem& jobs) {
     potential_.linearise(correction_, jobs, force_);
+    collapse_.linearise(potential_.positions(), jobs, force_);
     set_at_pins(Vec3::Zero(), force_);
     contacts_.compute_forces(positions(correction_), force_, contact_forces_);
   }
@@ -410,6 +416,7 @@ class NewtonIntegrator final : public Integrator {
   ContactTerms contacts_;
   std::vector<Vec3> contact_forces_;
   AirTerms air_;
+  CollapseTerms collapse_;
   bool coasts_ = false;  // the step started from x + h v
   bool is_in_contact_ = false;
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]

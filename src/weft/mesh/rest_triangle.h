@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "weft/core/vec.h"
+#include "weft/mesh/triangle_mesh.h"
 
 namespace weft {
 
@@ -23,5 +23,9 @@ struct RestTriangle {
 
 /// From corners in the plane, in either sense of rotation [m]. The triangle must have an area.
 RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2);
+
+/// Triangle t of a mesh, with axis 1 along its first edge instead of warp: for what is the same in all
+/// directions.
+RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "weft/forces/bending.h"
+#include "weft/forces/collapse.h"
 #include "weft/forces/gravity.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane.h"
@@ -38,6 +39,18 @@ void visit_energies(const ClothElements& elements, const ClothState& state, cons
   }
 }
 
+double compute_collapse_energy(const ClothModel& model, const ClothState& state) {
+  const StrainLimit law = make_collapse_law(model);
+  const TriangleMesh& mesh = model.topology->mesh;
+  double energy = 0;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    energy +=
+        collapse_energy(make_rest_triangle(mesh, t), law, {state.x.get(a), state.x.get(b), state.x.get(c)});
+  }
+  return energy;
+}
+
 /// The same for the elements and each spring.
 template <class Add>
 void visit_energies(const ClothModel& model, const ClothState& state, const Add& add) {
@@ -59,11 +72,11 @@ void visit_energies(const ClothModel& model, const ClothState& state, const Add&
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
   double energy = 0;
   visit_energies(model, state, [&](ElasticKind, double part) { energy += part; });
-  return energy;
+  return energy + compute_collapse_energy(model, state);
 }
 
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state) {
-  ElasticParts parts;
+  ElasticParts parts{.stretch = compute_collapse_energy(model, state)};
   visit_energies(model, state, [&](ElasticKind kind, double part) {
     (kind == ElasticKind::bending ? parts.bending : parts.stretch) += part;
   });

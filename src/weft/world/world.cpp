@@ -498,12 +498,10 @@ StepReport World::step(double dt) {
     const int size = most / parts;
     const double began = clock_.seconds();
     StepReport part;
-    std::vector<Vec3> grab_impulses;
     if (done > 0) save(before_part_);
     const Snapshot& before = done > 0 ? before_part_ : before_step_;
-    if (most > 1) {
-      for (const Cloth& cloth : cloths_) grab_impulses.push_back(cloth.grab_impulse);
-    }
+    grab_impulses_.clear();
+    for (const Cloth& cloth : cloths_) grab_impulses_.push_back(cloth.grab_impulse);
     part.substeps = num_substeps(dt * size / most);
     StepCheck check;
     bool stands = true;
@@ -516,7 +514,7 @@ StepReport World::step(double dt) {
     if (!stands && parts == most) return fail(check, std::move(report));
     if (!stands) {
       restore_motion(before);
-      for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].grab_impulse = grab_impulses[c];
+      for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].grab_impulse = grab_impulses_[c];
       parts = std::min(most, check.severity > kFarTooLong ? 4 * parts : 2 * parts);
       calm_ = 0;
       ++report.retries;

@@ -120,8 +120,8 @@ class World {
   /// Advances everything by dt > 0 [s].
   StepReport step(double dt);
 
-  /// Called in step() at the end of every substep, with the time that the cloths have then reached [s]; time()
-  /// is that of the step's start until the step is done. Of a step that fails, which is undone, too.
+  /// Called in step() at the end of every substep, with the time that the cloths have then reached [s];
+  /// time() is that of the step's start until the step is done. Of a step that fails, which is undone, too.
   void set_observer(std::function<void(double time)> after_substep) { observer_ = std::move(after_substep); }
 
   double time() const { return time_; }  // [s]
@@ -226,6 +226,7 @@ class World {
   std::vector<Pose> poses_;
   Snapshot before_step_, before_part_;
   std::vector<CheckedCloth> checked_;
+  std::vector<Vec3> grab_impulses_;  // (cloths) before the part under way
 };
 
 }  // namespace weft
