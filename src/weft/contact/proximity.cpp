@@ -48,12 +48,25 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
   cloth_tree_ = body_tree_ = AabbTree();
   // Room for the pairs of calm cloth, so that steps need not ask for it.
   const std::size_t room = 4 * surface_.num_vertices;
-  chunks_.resize(1);
-  for (auto* pairs :
-       {&vertex_triangle_, &edge_edge_, &ordered_, &chunks_[0].vertex_triangle, &chunks_[0].edge_edge})
-    pairs->reserve(room);
+  constexpr std::size_t kChunks = 4;  // that one thread fills at once
+  chunks_.resize(kChunks);
+  for (auto* pairs : {&vertex_triangle_, &edge_edge_, &ordered_}) pairs->reserve(room);
+  for (PairChunk& chunk : chunks_) {
+    chunk.vertex_triangle.reserve(room / kChunks);
+    chunk.edge_edge.reserve(room / kChunks);
+  }
   fans_.reserve(room);
   moved_.reserve(surface_.num_vertices);
+  const std::size_t patch_room = 32 * patches_.size();
+  near_patches_.reserve(patch_room);
+  folded_pairs_.reserve(patch_room);
+  patch_pairs_.reserve(patch_room);
+  patch_pairs_before_.reserve(patch_room);
+  parts_.resize(1);
+  parts_[0].pairs.reserve(patch_room);
+  parts_[0].leaf_pairs.reserve(patch_room);
+  triangle_box_.resize(surface_.triangles.size());
+  is_searched_.reserve(patches_.size());
   made_for_.end.clear();
 }
 

@@ -248,7 +248,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     std::sort(spring_pairs_.begin(), spring_pairs_.end());
   }
 
-  /// Their edges are springs, all of them.
+  /// Every edge of a triangle is a spring of the topology: the pattern has its block.
   void find_triangles() {
     const TriangleMesh& mesh = model_->topology->mesh;
     triangles_.clear();

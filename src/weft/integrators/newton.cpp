@@ -1,10 +1,11 @@
 /// The default integrator: BDF2, one Newton step, and conjugate gradients preconditioned by one multigrid
 /// V-cycle on the paper's constant matrix. A step minimises the incremental potential
 ///
-///     E(x) = ½ |x − y|²_D + springs or elements + dissipation,   D = (β/h)² M + wind,   y from two past
-///     states and gravity
+///     E(x) = ½ |x − y|²_D + springs or elements + collapse + dissipation,   D = (β/h)² M + wind,
+///     y from two past states and gravity
 ///
-/// (forces/potential.h), starting from y, so that the bulk of the motion is right whatever the solve does.
+/// (forces/potential.h, forces/collapse.h), starting from y: the bulk of the motion is right whatever the
+/// solve does.
 ///
 /// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
 /// it is more than a fifth of E; so does, in stiff cloth, a last Newton step that has still lowered E by a

@@ -11,7 +11,7 @@ namespace {
 constexpr double kStretch = 0.08;         // that a spring may gain in a step, over its rest length [1]
 constexpr double kLeastArea = 0.3;        // of a triangle's own: above, no loss is a fault [1]
 constexpr double kAreaKept = 0.5;         // of what it was when the step began [1]
-constexpr double kEnergyShare = 0.005;    // that energy may rise by, of the kinetic energy at the start …
+constexpr double kEnergyRate = 0.3;       // that energy may rise by, of the kinetic energy at the start [1/s] …
 constexpr double kEnergyOfWeight = 0.05;  // … and of the work of gravity in a step from rest, m g² h² [1]
 
 /// What structural springs have gained in a step: the most of one, over its rest length, and about how much
@@ -81,7 +81,7 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
     for (const double m : c.model.mass) mass += m;
   }
   const double tolerance =
-      kEnergyShare * kinetic + kEnergyOfWeight * mass * gravity.squaredNorm() * step * step;
+      kEnergyRate * step * kinetic + kEnergyOfWeight * mass * gravity.squaredNorm() * step * step;
   if (rise + stretching <= 0.5 * tolerance) return {};
   for (const CheckedCloth& c : cloths)
     rise += compute_elastic_energy(c.model, c.after) - compute_elastic_energy(c.model, c.before);
