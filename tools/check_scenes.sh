@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the collision scenes at their full size and holds every frame against the independent checker:
-# nothing may cross, and nothing be more than 0.1 mm inside a collider (a hundredth of that in the scenes of contact/, which the
-# last line of contact holds). `garment` is run and told, not judged: see "What there is not, yet" in README.md.
+# nothing may cross at any frame nor pass through anything within any step, and nothing be more than 0.1 mm inside a collider
+# (a hundredth of that in the scenes of contact/, which the last line of contact holds). `garment` is run and told, not judged: see "What there is not, yet" in README.md.
 set -euo pipefail
 
 weft=${1:?"usage: check_scenes.sh path/to/weft"}
@@ -12,6 +12,7 @@ trap 'rm -rf "$out"' EXIT
 check() {
   "$weft" run "$1" --out "$out/$1" ${3:+--frames "$3"}
   "$weft" verify "$out/$1" --tolerance "$2"
+  grep -q '"passages": 0,' "$out/$1/report.json" || { echo "$1: something passed through something within a step"; exit 1; }
 }
 
 for scene in paper/fig6_ball paper/fig6_ball_real drape_sphere drape_box contact/rotating_ball self_fold two_layers; do

@@ -63,7 +63,7 @@ class Source {
   /// At least up to the last frame that is wanted, unless the simulation ends before.
   Footage get() const {
     if (!scene_) return {read_glb(file_), RunOutcome::done};
-    RunOptions options{.threads = choose_threads(request_.threads)};
+    RunOptions options{.threads = choose_threads(request_.threads), .check_passages = false};
     if (!request_.frames.empty())
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
     if (options.frames == 0) options.frames = 1;

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct VerifyRequest {
   fs::path path;            // a folder with animation.glb, or a .glb file
   double tolerance = 1e-4;  // [m]
-  bool passages = false;  // are offences
+  bool passages = false;    // are offences
   bool json = false;
 };
 
@@ -83,7 +83,8 @@ std::string require_depth(const std::string& text) {
 
 int verify(const VerifyRequest& request) {
   const fs::path file = fs::is_directory(request.path) ? request.path / "animation.glb" : request.path;
-  const AnimationCheck check = check_animation(read_glb(file), {.tolerance = request.tolerance, .passages_offend = request.passages});
+  const AnimationCheck check =
+      check_animation(read_glb(file), {.tolerance = request.tolerance, .passages_offend = request.passages});
   if (request.json) {
     const auto keep_going = nlohmann::ordered_json::error_handler_t::replace;
     fmt::print("{}\n", to_json(file, check).dump(2, ' ', false, keep_going));

@@ -363,6 +363,8 @@ TEST_F(App, VerifyFindsACleanRunClean) {
   const Finished done = shell("weft verify results");
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
   EXPECT_TRUE(contains(done.out, "6 frames; nothing crosses")) << done.out;
+  EXPECT_TRUE(contains(done.out, "between frames, on straight lines, nothing passes through anything"))
+      << done.out;
   EXPECT_EQ(shell("weft verify results/animation.glb").out, done.out);
 }
 
@@ -393,6 +395,22 @@ TEST_F(App, VerifyFindsPlantedCrossings) {
   EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 crosses cloth \"blade\" triangle 0"))
       << done.out;
   EXPECT_EQ(shell("weft verify planted.glb --json | grep -c '\"clean\": false'").out, "1\n");
+}
+
+TEST_F(App, VerifyTellsWhatMayHavePassedAndFailsWhereAsked) {
+  const std::string ribbons =
+      "weft run contact/crossed_strips --frames 26 --out results --set solver.contact=false "
+      "--set cloth[0].grid.cells=[40,8] --set cloth[1].grid.cells=[8,40]";
+  const Finished run = shell(ribbons);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "crossings    0")) << run.out;
+  EXPECT_TRUE(contains(run.out, ", the first in frame 2")) << run.out;
+  const Finished done = shell("weft verify results");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "may have passed through each other:")) << done.out;
+  EXPECT_EQ(shell("weft verify results --passages").exit_code, 1);
+  EXPECT_EQ(shell(ribbons + " --no-passages").exit_code, 0);
+  EXPECT_TRUE(read_json("results/report.json")["passages"].is_null());
 }
 
 TEST_F(App, VerifyRefusesWhatIsNoRun) {

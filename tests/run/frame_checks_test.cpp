@@ -95,5 +95,23 @@ TEST(FrameChecks, CountFramesThatCross) {
   EXPECT_EQ(check.offences[0].what, "cloth \"rag\" triangle 0 crosses cloth \"blade\" triangle 0");
 }
 
+TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
+  Animation animation = make_animation();
+  AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  for (const float depth : {0.0f, 5.0f, 5.0f, 0.0f, 0.0f})  // below the rag as a whole, and back
+    blade.frames.push_back({0.1f, 4 - depth, 0, 0.2f, 4 - depth, 0, 0.1f, 3 - depth, 0.1f});
+  animation.cloths.push_back(blade);
+  const AnimationCheck check = check_animation(animation, {.tolerance = 1});
+  EXPECT_EQ(check.intersections, 0);
+  EXPECT_EQ(check.passages, 6) << "three corners, twice";
+  ASSERT_EQ(check.may_passed.size(), 2u);
+  EXPECT_EQ(check.may_passed[0].frame, 1);
+  EXPECT_EQ(check.may_passed[0].what,
+            "cloth \"blade\" particle 0 passes through cloth \"rag\" triangle 0 (and 2 more)");
+  EXPECT_EQ(check.may_passed[1].frame, 3);
+  EXPECT_TRUE(check.is_clean) << "straight lines between frames are a guess";
+  EXPECT_FALSE(check_animation(animation, {.tolerance = 1, .passages_offend = true}).is_clean);
+}
+
 }  // namespace
 }  // namespace weft

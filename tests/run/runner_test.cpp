@@ -70,6 +70,7 @@ void expect_clean(const SceneDesc& scene, int frames) {
   EXPECT_EQ(report.outcome, RunOutcome::done);
   EXPECT_EQ(report.frames, frames);
   EXPECT_EQ(report.intersections, 0) << scene.name;
+  EXPECT_EQ(report.passages, 0) << scene.name << ", " << report.first_passage;
   EXPECT_LT(report.penetration_max.value_or(1), 1e-4) << scene.name;
 }
 
@@ -221,7 +222,8 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
                           "version",      "ms_per_frame",    "cpu_ms_per_frame",  "max_strain",
                           "min_strain",   "mean_strain",     "kinetic_energy",    "potential_energy",
                           "lowest_y",     "penetration_max", "intersections",     "infeasible",
-                          "guard_events", "state_hash",      "warnings",          "work"}) {
+                          "guard_events", "state_hash",      "warnings",          "work",
+                          "passages",     "first_passage",   "problems",          "divisions"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_GT(json["ms_per_frame"]["median"], 0);
@@ -231,6 +233,8 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   EXPECT_EQ(json["contact_hits"], 0);
   EXPECT_TRUE(json["max_stretch"].is_null()) << "springs have none";
   EXPECT_EQ(json["intersections"], 0);
+  EXPECT_EQ(json["passages"], 0);
+  EXPECT_TRUE(json["first_passage"].is_null());
   EXPECT_TRUE(json["penetration_max"].is_null()) << "there is no collider in this scene";
   EXPECT_EQ(json["particles"], 33 * 33);
   EXPECT_EQ(json["triangles"], 2 * 32 * 32);
@@ -274,6 +278,42 @@ TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
   EXPECT_TRUE(warns(report, "at the start cloth \"sheet\" triangle "));
   EXPECT_TRUE(warns(report, " crosses cloth \"blade\" triangle "));
   EXPECT_FALSE(report.penetration_max.has_value());
+}
+
+/// Two ribbons that are pulled through each other: nothing crosses at any frame.
+SceneDesc swapped_ribbons(const Overrides& overrides) {
+  Overrides all = {"solver.contact=false", "cloth[0].grid.cells=[40, 8]", "cloth[1].grid.cells=[8, 40]"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return shipped("contact/crossed_strips", all);
+}
+
+TEST(Report, CountsWhatPassesThroughWithinAStepThoughNothingCrossesAtAnyFrame) {
+  const RunReport report = run_scene(swapped_ribbons({}), {.frames = 30, .record_animation = false}).report;
+  EXPECT_EQ(report.intersections, 0);
+  ASSERT_TRUE(report.passages.has_value());
+  EXPECT_GT(*report.passages, 100);
+  EXPECT_NE(report.first_passage.find("frame "), std::string::npos);
+  EXPECT_NE(report.first_passage.find("cloth \"upper ribbon\""), std::string::npos) << report.first_passage;
+}
+
+TEST(Report, OfPassagesIsNullWhereTheyAreNotChecked) {
+  const RunReport report =
+      run_scene(swapped_ribbons({}), {.frames = 2, .record_animation = false, .check_passages = false})
+          .report;
+  EXPECT_FALSE(report.passages.has_value());
+  EXPECT_TRUE(nlohmann::json::parse(to_json(report))["passages"].is_null());
+}
+
+TEST(Report, CountsPassagesWithinSubstepsAndSteps) {
+  // A ball shoots through the sheet and back between two frames.
+  SceneDesc scene = shipped("contact/bullet", {"collider[0].radius=0.005", "solver.contact=false",
+                                               "solver.steps_per_frame=10", "solver.integrator=xpbd"});
+  const double start = 0.5, there = start + 0.4 / scene.fps, back = start + 0.8 / scene.fps;
+  scene.colliders.at(0).motion =
+      RigidMotion({{.time = start}, {.time = there, .translation = {0, 0, 11.25}}, {.time = back}});
+  EXPECT_EQ(*run_scene(scene, {.frames = 29, .record_animation = false}).report.passages, 0);
+  EXPECT_EQ(*run_scene(scene, {.frames = 32, .record_animation = false}).report.passages, 2)
+      << "there and back";
 }
 
 /// The second sheet's lowest tenth goes through the first one.

@@ -175,7 +175,8 @@ TEST(PairMotion, OfAPointAndAClosedSurfaceIsOddWhereItGoesInOrOut) {
       continue;
     }
     ++num_judged;
-    const bool is_changed = InsideOfMesh(start, faces).contains(p.start) != InsideOfMesh(end, faces).contains(p.end);
+    const bool is_changed =
+        InsideOfMesh(start, faces).contains(p.start) != InsideOfMesh(end, faces).contains(p.end);
     num_changed += is_changed;
     ASSERT_EQ(num_passed % 2 == 1, is_changed) << i;
   }
@@ -217,7 +218,8 @@ TEST(PairMotion, OfTwoClosedLoopsIsOddWhereTheyAreLinkedOrFreed) {
     int num_passed = 0;
     for (int k = 0; k < 3; ++k) {
       for (int l = 0; l < 3; ++l) {
-        num_passed += test_edge_edge({loops[0][k], loops[0][(k + 1) % 3]}, {loops[1][l], loops[1][(l + 1) % 3]}).passes;
+        num_passed +=
+            test_edge_edge({loops[0][k], loops[0][(k + 1) % 3]}, {loops[1][l], loops[1][(l + 1) % 3]}).passes;
       }
     }
     ++num_judged;

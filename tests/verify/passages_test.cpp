@@ -61,7 +61,8 @@ std::vector<std::vector<FeaturePair>> passages(const std::vector<std::vector<Tri
   return found;
 }
 
-std::vector<FeaturePair> passages(const std::vector<TriangleMesh>& start, const std::vector<TriangleMesh>& end) {
+std::vector<FeaturePair> passages(const std::vector<TriangleMesh>& start,
+                                  const std::vector<TriangleMesh>& end) {
   return passages(std::vector{start, end})[0];
 }
 
@@ -74,7 +75,8 @@ class Particles {
   int num_passages(std::vector<Vec3> to, const Solid& solid, std::optional<Mat3> rotation = {}) {
     positions_ = std::move(to);
     const std::vector<FeaturePair> found = watch_.advance(frame(solid, rotation));
-    EXPECT_TRUE(std::ranges::all_of(found, [](const FeaturePair& p) { return p.kind == Kind::particle_shape; }));
+    EXPECT_TRUE(
+        std::ranges::all_of(found, [](const FeaturePair& p) { return p.kind == Kind::particle_shape; }));
     return static_cast<int>(found.size());
   }
 
@@ -125,7 +127,8 @@ TEST(Passages, OfAHemOverAHemAreFound) {
     // Two triangles side by side, so that only the edge of the one and the edge of the other can meet.
     const Mat3 turn = random_rotation(random);
     const Vec3 travel = random_vector(random, 3);
-    const double lean = random.uniform(-0.5, 0.5), low = random.uniform(-0.4, -1e-6), high = random.uniform(1e-6, 0.4);
+    const double lean = random.uniform(-0.5, 0.5), low = random.uniform(-0.4, -1e-6),
+                 high = random.uniform(1e-6, 0.4);
     const TriangleMesh left{{{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}}, {{0, 1, 2}}};
     const auto right = [&](double height) {
       return TriangleMesh{{{-0.1, height, -lean - 0.3}, {0.4, height, lean}, {1, height, 5}}, {{2, 0, 1}}};
@@ -210,7 +213,8 @@ TEST(Passages, OfShapesSmallerThanATriangleAreFound) {
   EXPECT_EQ(found(Sphere{above, 0.01}, Sphere{below, 0.01}), 1u);
   EXPECT_EQ(found(Sphere{above, 0.01}, Sphere{above, 0.01}), 0u);
   const Vec3 along(0.01, 0.02, 0);
-  EXPECT_EQ(found(Capsule{above, above + along, 0.01}, Capsule{below, below + along, 0.01}), 2u) << "both ends";
+  EXPECT_EQ(found(Capsule{above, above + along, 0.01}, Capsule{below, below + along, 0.01}), 2u)
+      << "both ends";
   EXPECT_GE(found(OrientedBox{above, {0.01, 0.02, 0.01}}, OrientedBox{below, {0.01, 0.02, 0.01}}), 8u);
   EXPECT_EQ(found(OrientedBox{above, {0.01, 0.49995, 0.01}}, OrientedBox{above, {0.01, 0.50005, 0.01}}), 0u)
       << "no deeper than the tolerance";
@@ -244,8 +248,8 @@ std::vector<std::array<int, 2>> edges_of(const TriangleMesh& mesh) {
 }
 
 /// Every vertex with every triangle, every edge with every other.
-std::vector<FeaturePair> all_passages(const std::vector<TriangleMesh>& start, const std::vector<TriangleMesh>& end,
-                                      int num_cloths) {
+std::vector<FeaturePair> all_passages(const std::vector<TriangleMesh>& start,
+                                      const std::vector<TriangleMesh>& end, int num_cloths) {
   std::vector<FeaturePair> found;
   const auto motion = [&](int s, int v) { return PointMotion{start[s].positions[v], end[s].positions[v]}; };
   const int num_meshes = static_cast<int>(start.size());
@@ -337,7 +341,8 @@ TEST(Passages, InAPlaneAreNone) {
   const auto tilted = [](const TriangleMesh& mesh) {
     return mapped(mesh, [](const Vec3& p) { return Vec3(p.x(), p.x() + p.z(), p.z()); });
   };
-  EXPECT_TRUE(passages({tilted(flat), tilted(other)}, {tilted(flat), tilted(moved(other, {-3.75, 0, 0}))}).empty());
+  EXPECT_TRUE(
+      passages({tilted(flat), tilted(other)}, {tilted(flat), tilted(moved(other, {-3.75, 0, 0}))}).empty());
 }
 
 // ---- Exactly through vertices and edges ----
@@ -367,7 +372,8 @@ TEST(Passages, ThroughAVertexOrAnEdgeOfASheetAreOddInNumber) {
 
 TEST(Passages, ThatPauseExactlyOnASheetAreToldWhenTheyAreThrough) {
   const TriangleMesh flat = sheet(4);
-  for (const Vec3& at : {Vec3(0.3, 0, 0.35), Vec3(0.5, 0, 0.5), Vec3(0.375, 0, 0.5)}) {  // inside, vertex, edge
+  for (const Vec3& at :
+       {Vec3(0.3, 0, 0.35), Vec3(0.5, 0, 0.5), Vec3(0.375, 0, 0.5)}) {  // inside, vertex, edge
     const auto run = [&](const std::vector<double>& heights) {
       std::vector<std::vector<TriangleMesh>> moments;
       for (const double h : heights) moments.push_back({flat, needle(at + Vec3(0, h, 0))});
@@ -403,12 +409,14 @@ TEST(Passages, OfAVisitThatTakesSeveralMomentsAreToldAtItsEnd) {
 }
 
 TEST(Passages, AreNoneOnABallThatSpins) {
-  // By half a radian per moment: the straight way of what turns with it goes deep into a ball that stands still,
-  // that of what stands still goes deep into one that turns.
+  // By half a radian per moment: the straight way of what turns with it goes deep into a ball that stands
+  // still, that of what stands still goes deep into one that turns.
   const Sphere ball{{0.3, 0.2, 0.1}, 1};
   const auto turned = [](double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix(); };
   const Vec3 rides(1.001, 0, 0), rests(0, 0, 1.001);
-  const auto at = [&](double angle) { return std::vector<Vec3>{ball.center + turned(angle) * rides, ball.center + rests}; };
+  const auto at = [&](double angle) {
+    return std::vector<Vec3>{ball.center + turned(angle) * rides, ball.center + rests};
+  };
   Particles dust(at(0), ball, turned(0));
   for (int k = 1; k < 20; ++k) EXPECT_EQ(dust.num_passages(at(0.5 * k), ball, turned(0.5 * k)), 0);
   Particles unknown(at(0), ball);
@@ -423,7 +431,8 @@ TEST(Passages, OfAHalfSpaceAreNone) {
 // ---- What is left out, and names ----
 
 TEST(Passages, AreNoneOfThingsThatMayPass) {
-  const TriangleMesh low = sheet(3), high = moved(sheet(4), {0.1, 0.5, 0.1}), beyond = moved(high, {0, -1, 0});
+  const TriangleMesh low = sheet(3), high = moved(sheet(4), {0.1, 0.5, 0.1}),
+                     beyond = moved(high, {0, -1, 0});
   for (const auto& pair : {std::array<std::string, 2>{"low", "high"}, {"high", "low"}}) {
     PassageWatch watch({{cloth("low", low), cloth("high", high)}, {}, {pair}});
     EXPECT_TRUE(watch.advance({{cloth("low", low), cloth("high", beyond)}, {}, {pair}}).empty());
@@ -438,28 +447,49 @@ TEST(Passages, AreNamed) {
     const std::vector<FeaturePair> found = watch.advance(after);
     return found.empty() ? "" : describe(after, found[0]);
   };
-  EXPECT_EQ(first({{cloth("sheet", flat), cloth("rag", above)}, {}}, {{cloth("sheet", flat), cloth("rag", below)}, {}}),
+  EXPECT_EQ(first({{cloth("sheet", flat), cloth("rag", above)}, {}},
+                  {{cloth("sheet", flat), cloth("rag", below)}, {}}),
             "cloth \"rag\" particle 0 passes through cloth \"sheet\" triangle 1");
-  EXPECT_EQ(first({{cloth("sheet", flat)}, {body("nail", above)}}, {{cloth("sheet", flat)}, {body("nail", below)}}),
-            "collider \"nail\" vertex 0 passes through cloth \"sheet\" triangle 1");
+  EXPECT_EQ(
+      first({{cloth("sheet", flat)}, {body("nail", above)}}, {{cloth("sheet", flat)}, {body("nail", below)}}),
+      "collider \"nail\" vertex 0 passes through cloth \"sheet\" triangle 1");
   const Vec3 p(0.6, 0.1, 0.3), q(0.6, -0.1, 0.3);
-  EXPECT_EQ(first({{cloth("sheet", flat)}, {{"shot", Sphere{p, 0.01}}}}, {{cloth("sheet", flat)}, {{"shot", Sphere{q, 0.01}}}}),
+  EXPECT_EQ(first({{cloth("sheet", flat)}, {{"shot", Sphere{p, 0.01}}}},
+                  {{cloth("sheet", flat)}, {{"shot", Sphere{q, 0.01}}}}),
             "collider \"shot\" passes through cloth \"sheet\" triangle 1");
   EXPECT_EQ(first({{cloth("rag", above)}, {{"ball", Sphere{{0.6, 0, 0.28}, 0.05}}}},
                   {{cloth("rag", below)}, {{"ball", Sphere{{0.6, 0, 0.28}, 0.05}}}}),
             "cloth \"rag\" particle 0 passes through collider \"ball\"");
-  TriangleMesh fold{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0.2, 0.1, 0.2}, {0.2, 1, 0.3}, {0.3, 1, 0.2}}, {{0, 1, 2}, {3, 4, 5}}};
+  TriangleMesh fold{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0.2, 0.1, 0.2}, {0.2, 1, 0.3}, {0.3, 1, 0.2}},
+                    {{0, 1, 2}, {3, 4, 5}}};
   const TriangleMesh open = fold;
   fold.positions[3].y() = -0.1;
   EXPECT_EQ(first({{cloth("sheet", open)}, {}}, {{cloth("sheet", fold)}, {}}),
             "cloth \"sheet\" particle 3 passes through its triangle 0");
 }
 
+TEST(Passages, LeaveOutMotionsThatFlingClothAbout) {
+  Random random(7);
+  const TriangleMesh flat = sheet(30), low = moved(flat, {0, -1, 0});
+  const TriangleMesh flung = mapped(flat, [&](const Vec3&) { return random_vector(random, 1e20); });
+  PassageWatch watch({{cloth("sheet", flat), cloth("low", low)}, {}});
+  EXPECT_TRUE(watch.advance({{cloth("sheet", flung), cloth("low", low)}, {}}).empty());
+  EXPECT_TRUE(watch.advance({{cloth("sheet", flat), cloth("low", low)}, {}}).empty());
+  EXPECT_EQ(watch.num_left_out(), 2);
+  const TriangleMesh high = moved(flat, {0, 1, 0}), under = moved(flat, {0, -2, 0});
+  EXPECT_TRUE(watch.advance({{cloth("sheet", high), cloth("low", low)}, {}}).empty());
+  EXPECT_FALSE(watch.advance({{cloth("sheet", under), cloth("low", low)}, {}}).empty())
+      << "as a whole, though far";
+  EXPECT_EQ(watch.num_left_out(), 2);
+}
+
 TEST(Passages, LeaveOutMomentsThatAreNotFinite) {
-  const TriangleMesh low = sheet(3), high = moved(sheet(4), {0.1, 0.5, 0.1}), beyond = moved(high, {0, -1, 0});
+  const TriangleMesh low = sheet(3), high = moved(sheet(4), {0.1, 0.5, 0.1}),
+                     beyond = moved(high, {0, -1, 0});
   const TriangleMesh lost = mapped(high, [](const Vec3& p) { return Vec3(p / 0.0); });
   PassageWatch watch({{cloth("low", low), cloth("high", high)}, {}});
   EXPECT_TRUE(watch.advance({{cloth("low", low), cloth("high", lost)}, {}}).empty());
+  EXPECT_EQ(watch.num_left_out(), 1);
   EXPECT_FALSE(watch.advance({{cloth("low", low), cloth("high", beyond)}, {}}).empty());
 }
 

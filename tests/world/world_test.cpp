@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/support.h"
@@ -196,6 +198,25 @@ TEST(World, RefusesWhatDoesNotFit) {
   EXPECT_THROW(world.set_pins(cloth, {{{1, 1}, {}, Vec3::Zero()}}), InputError);
   EXPECT_THROW(world.step(0), InputError);
   EXPECT_THROW(world.step(std::numeric_limits<double>::quiet_NaN()), InputError);
+}
+
+TEST(World, ShowsEverySubstepToItsObserver) {
+  World world;
+  world.set_integrator({.integrator = "explicit"});
+  const ClothId cloth = world.add_cloth(
+      {.topology = build_grid_topology(square(4), SpringModel::simplified), .material = {.structural = 500}});
+  std::vector<double> times, heights;
+  world.set_observer([&](double time) {
+    times.push_back(time);
+    heights.push_back(world.state(cloth).position(0).y());
+  });
+  const double step = 1.0 / 60;
+  const StepReport report = world.step(step);
+  ASSERT_GT(report.substeps, 2);
+  ASSERT_EQ(times.size(), static_cast<std::size_t>(report.substeps));
+  for (int s = 1; s <= report.substeps; ++s) EXPECT_NEAR(times[s - 1], step * s / report.substeps, 1e-15);
+  EXPECT_TRUE(std::ranges::is_sorted(heights, std::greater<>())) << "it falls";
+  EXPECT_EQ(heights.back(), world.state(cloth).position(0).y());
 }
 
 TEST(Measures, AgreeWithHandCalculation) {

@@ -52,8 +52,8 @@ class AnimationFrames {
 
 /// What the checker found in an animation. Frame 0 is the start.
 ///
-/// Between frames it takes the ways for straight lines (verify/passages.h), which they are not: what then goes
-/// through anything may have done so, and is told, but is no offence unless asked for.
+/// Between frames it takes the ways for straight lines (verify/passages.h), which they are not: what then
+/// goes through anything may have done so, and is told, but is no offence unless asked for.
 struct AnimationCheck {
   struct Offence {
     int frame = 0;
@@ -67,9 +67,9 @@ struct AnimationCheck {
   std::optional<double> penetration_max;  // empty: no collider has an inside [m]
   int deepest_frame = -1;                 // -1: cloth is never inside
   std::string deepest_place;
-  int passages = 0;                  // pairs of features that may have passed through each other, all frames
-  std::vector<Offence> may_passed;   // the first few of them: between the frame and the one before
-  std::vector<Offence> offences;     // the first few
+  int passages = 0;                 // pairs of features that may have passed through each other, all frames
+  std::vector<Offence> may_passed;  // the first few of them: between the frame and the one before
+  std::vector<Offence> offences;    // the first few
   bool is_clean = true;
 };
 

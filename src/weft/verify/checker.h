@@ -22,7 +22,7 @@ struct NamedCloth {
 
 struct NamedCollider {
   std::string name;
-  Solid shape;                          // where it is in this frame
+  Solid shape;                        // where it is in this frame
   std::optional<Mat3> rotation = {};  // how it is turned, where that is known: balls do not show it
 };
 

@@ -175,7 +175,7 @@ Sweep boxes_of(std::span<const SurfaceView> surfaces) {
     for (std::size_t t = 0; t < view.triangles.size(); ++t) {
       const auto& [a, b, c] = view.triangles[t];
       const Vec3 &x = view.positions[a], &y = view.positions[b], &z = view.positions[c];
-      boxes.emplace_back(x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z),
+      boxes.emplace_back(x.cwiseMin(y).cwiseMin(z).cast<float>(), x.cwiseMax(y).cwiseMax(z).cast<float>(),
                          TriangleId{static_cast<int>(s), static_cast<int>(t)});
     }
   }

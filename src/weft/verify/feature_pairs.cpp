@@ -12,9 +12,12 @@
 namespace weft::verify {
 namespace {
 
+constexpr double kSteps = 4;        // that a list must last as it seems, to be worth the making
 constexpr double kRounding = 1e-9;  // of distances and of how far surfaces have moved [m]
 
 using Bounds = Eigen::AlignedBox3d;
+using Box = FeaturePairs::Box;
+using Boxes = FeaturePairs::Boxes;
 
 /// The way that a surface makes, but for the mean.
 struct Way {
@@ -46,6 +49,10 @@ Bounds bounds_of(const std::vector<Vec3>& positions) {
   return bounds;
 }
 
+double size_of(const std::vector<Vec3>& positions) {
+  return positions.empty() ? 0 : bounds_of(positions).diagonal().norm();
+}
+
 double gap_between(const Bounds& a, const Bounds& b) {
   return a.isEmpty() || b.isEmpty() ? std::numeric_limits<double>::infinity() : a.exteriorDistance(b);
 }
@@ -62,21 +69,54 @@ std::array<int, 2> edge_of(const Triangle& triangle, int k) {
   return {low, high};
 }
 
-/// Calls visit for the pairs of two triangles' own features.
+/// Relative to the cloths' mean motion, enlarged by `margin`.
+Boxes boxes_of_vertices(const std::vector<MovingSurface>& surfaces, double margin) {
+  Vec3 mean = Vec3::Zero();
+  double num_vertices = 0;
+  for (const MovingSurface& surface : surfaces) {
+    if (!surface.is_cloth) continue;
+    for (std::size_t i = 0; i < surface.start.size(); ++i) mean += surface.end[i] - surface.start[i];
+    num_vertices += static_cast<double>(surface.start.size());
+  }
+  mean /= std::max(1.0, num_vertices);
+  Boxes boxes;
+  for (const MovingSurface& surface : surfaces) {
+    std::vector<Box>& own = boxes.emplace_back();
+    for (std::size_t i = 0; i < surface.start.size(); ++i) {
+      const Vec3 &from = surface.start[i], to = surface.end[i] - mean;
+      own.emplace_back((from.cwiseMin(to) - Vec3::Constant(margin)).cast<float>(),
+                       (from.cwiseMax(to) + Vec3::Constant(margin)).cast<float>());
+    }
+  }
+  return boxes;
+}
+
+Box box_of(const Triangle& t, const std::vector<Box>& boxes) {
+  return boxes[t[0]].merged(boxes[t[1]]).merged(boxes[t[2]]);
+}
+
+/// Calls visit for the pairs of two triangles' own features whose boxes overlap.
 class PairsOfTriangles {
  public:
-  PairsOfTriangles(const std::vector<MovingSurface>& surfaces, const FeaturePairs::Visit& visit)
-      : surfaces_(surfaces), visit_(visit) {}
+  PairsOfTriangles(const std::vector<MovingSurface>& surfaces, const Boxes& boxes,
+                   const FeaturePairs::Visit& visit)
+      : surfaces_(surfaces), boxes_(boxes), visit_(visit) {}
 
   void operator()(TriangleId a, TriangleId b) const {
-    visit_corners(a, b);
-    visit_corners(b, a);
     if (b < a) std::swap(a, b);
+    const Box of_a = box_of(triangle(a), boxes_[a.surface]), of_b = box_of(triangle(b), boxes_[b.surface]);
+    visit_corners(a, b, of_b);
+    visit_corners(b, a, of_a);
     for (int k = 0; k < 3; ++k) {
       if (!owns_edge(surface(a), a.triangle, k)) continue;
+      const std::array<int, 2> edge = edge_of(triangle(a), k);
+      const Box box = box_of_edge(a.surface, edge);
+      if (!box.intersects(of_b)) continue;
       for (int l = 0; l < 3; ++l) {
-        if (owns_edge(surface(b), b.triangle, l)) 
-          visit_edges(a.surface, edge_of(triangle(a), k), b.surface, edge_of(triangle(b), l));
+        if (!owns_edge(surface(b), b.triangle, l)) continue;
+        const std::array<int, 2> opposite = edge_of(triangle(b), l);
+        if (box.intersects(box_of_edge(b.surface, opposite)))
+          visit_edges(a.surface, edge, b.surface, opposite);
       }
     }
   }
@@ -85,19 +125,25 @@ class PairsOfTriangles {
   const MovingSurface& surface(TriangleId id) const { return surfaces_[id.surface]; }
   const Triangle& triangle(TriangleId id) const { return surface(id).triangles[id.triangle]; }
 
-  void visit_corners(TriangleId a, TriangleId b) const {
+  Box box_of_edge(int surface, const std::array<int, 2>& edge) const {
+    return boxes_[surface][edge[0]].merged(boxes_[surface][edge[1]]);
+  }
+
+  void visit_corners(TriangleId a, TriangleId b, const Box& of_b) const {
     if (!surface(b).has_faces) return;
     for (int k = 0; k < 3; ++k) {
-      const int vertex = triangle(a)[k];
+      const int v = triangle(a)[k];
       if (!owns_corner(surface(a), a.triangle, k)) continue;
-      if (a.surface == b.surface && has(triangle(b), vertex)) continue;
-      visit_({FeaturePair::Kind::vertex_triangle, a.surface, b.surface, {vertex, vertex}, {b.triangle, b.triangle}});
+      if (a.surface == b.surface && has(triangle(b), v)) continue;
+      if (!boxes_[a.surface][v].intersects(of_b)) continue;
+      visit_({FeaturePair::Kind::vertex_triangle, a.surface, b.surface, {v, v}, {b.triangle, b.triangle}});
     }
   }
 
   void visit_edges(int surface, std::array<int, 2> edge, int other, std::array<int, 2> opposite) const {
     if (surface == other) {
-      if (edge[0] == opposite[0] || edge[0] == opposite[1] || edge[1] == opposite[0] || edge[1] == opposite[1])
+      if (edge[0] == opposite[0] || edge[0] == opposite[1] || edge[1] == opposite[0] ||
+          edge[1] == opposite[1])
         return;
       if (opposite < edge) std::swap(edge, opposite);
     }
@@ -105,6 +151,7 @@ class PairsOfTriangles {
   }
 
   const std::vector<MovingSurface>& surfaces_;
+  const Boxes& boxes_;
   const FeaturePairs::Visit& visit_;
 };
 
@@ -118,40 +165,13 @@ double distance_at_end(const std::vector<MovingSurface>& surfaces, const Feature
   return std::sqrt(distance_sq(edge.from, Corners{y[a], y[b], y[c]}));
 }
 
-/// The boxes in which triangles move relative to the cloths' mean motion, enlarged by `margin`, of all that
-/// can meet cloth.
-std::vector<Sweep::Box> moving_boxes(const std::vector<MovingSurface>& surfaces, double margin) {
-  Vec3 mean = Vec3::Zero();
-  double num_vertices = 0;
-  for (const MovingSurface& surface : surfaces) {
-    if (!surface.is_cloth) continue;
-    for (std::size_t i = 0; i < surface.start.size(); ++i) mean += surface.end[i] - surface.start[i];
-    num_vertices += static_cast<double>(surface.start.size());
-  }
-  mean /= std::max(1.0, num_vertices);
-
-  std::vector<Sweep::Box> boxes;
-  Bounds of_cloth;
-  for (int s = 0; s < static_cast<int>(surfaces.size()); ++s) {  // cloths come first
-    const MovingSurface& surface = surfaces[s];
-    for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
-      Bounds box;
-      for (const int v : surface.triangles[t]) {
-        box.extend(surface.start[v]);
-        box.extend(surface.end[v] - mean);
-      }
-      box = Bounds(box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin));
-      if (surface.is_cloth) of_cloth.extend(box);
-      if (surface.is_cloth || of_cloth.intersects(box)) boxes.emplace_back(box.min(), box.max(), TriangleId{s, t});
-    }
-  }
-  return boxes;
-}
-
 }  // namespace
 
 MovingSurface::MovingSurface(std::vector<Triangle> of, Kind kind)
-    : triangles(std::move(of)), is_cloth(kind == Kind::cloth), has_faces(kind != Kind::frame), owned(triangles.size()) {
+    : triangles(std::move(of)),
+      is_cloth(kind == Kind::cloth),
+      has_faces(kind != Kind::frame),
+      owned(triangles.size()) {
   std::set<std::array<int, 2>> owned_before;  // edges, and vertices as edges to themselves
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -167,35 +187,46 @@ MovingSurface::MovingSurface(std::vector<Triangle> of, Kind kind)
 FeaturePairs::FeaturePairs(int num_surfaces, double reach)
     : num_surfaces_(num_surfaces), reach_(reach), groups_(num_surfaces * num_surfaces) {}
 
-void FeaturePairs::for_each(const std::vector<MovingSurface>& surfaces, const MayMeet& may_meet,
+bool FeaturePairs::for_each(const std::vector<MovingSurface>& surfaces, const MayMeet& may_meet,
                             const Visit& visit) {
   std::vector<Way> ways;
-  for (const MovingSurface& surface : surfaces) ways.push_back(way_of(surface));
-  bool is_beyond_reach = false;
+  bool is_flung = false;
+  for (const MovingSurface& surface : surfaces) {
+    ways.push_back(way_of(surface));
+    is_flung |=
+        surface.is_cloth && ways.back().most_astray > std::min(size_of(surface.start), size_of(surface.end));
+  }
+  if (is_flung) {
+    for (Group& g : groups_) g.reach = 0;
+    return false;
+  }
+  bool is_any_due = false;
   for (int a = 0; a < num_surfaces_; ++a) {
     for (int b = a; b < num_surfaces_; ++b) {
       Group& g = group(a, b);
-      g.may_meet = may_meet(a, b);
-      if (!g.may_meet) continue;
       g.way = relative_way(ways[a], ways[b]);
       g.moved += g.way;
-      is_beyond_reach |= g.moved > g.reach;
+      g.is_due = g.moved > g.reach && may_meet(a, b);
+      is_any_due |= g.is_due;
+      if (g.is_due || !may_meet(a, b)) continue;
+      for (auto near = g.near.begin(); near != g.near.end() && near->distance <= g.moved; ++near)
+        visit(near->pair);
     }
   }
-  if (is_beyond_reach) return rebuild(surfaces, visit);
-  for (const Group& g : groups_) {
-    for (auto near = g.near.begin(); near != g.near.end() && near->distance <= g.moved; ++near) visit(near->pair);
-  }
+  if (is_any_due) rebuild(surfaces, visit);
+  return true;
 }
 
-/// Visits the pairs of this motion, and lists those that are near at its end of surfaces that are slow.
+/// For the surfaces whose lists are due: visits the pairs of this motion, and lists those that are near at
+/// its end where a list will last.
 void FeaturePairs::rebuild(const std::vector<MovingSurface>& surfaces, const Visit& visit) {
-  bool is_any_slow = false;
+  bool is_any_listed = false;
   for (Group& g : groups_) {
+    if (!g.is_due) continue;
     g.moved = 0;
-    g.reach = g.may_meet && 2 * g.way < reach_ ? reach_ : 0;  // a list is to last
+    g.reach = kSteps * g.way < reach_ ? reach_ : 0;
     g.near.clear();
-    is_any_slow |= g.reach > 0;
+    is_any_listed |= g.reach > 0;
   }
   const Visit visit_and_list = [&](const FeaturePair& pair) {
     visit(pair);
@@ -204,14 +235,41 @@ void FeaturePairs::rebuild(const std::vector<MovingSurface>& surfaces, const Vis
     const double distance = distance_at_end(surfaces, pair);
     if (distance <= g.reach) g.near.push_back({distance, pair});
   };
-  const PairsOfTriangles visit_pairs_of(surfaces, visit_and_list);
-  const double margin = is_any_slow ? 0.5 * reach_ + kRounding : 0;
-  Sweep(moving_boxes(surfaces, margin)).for_each_pair([&](TriangleId a, TriangleId b) {
-    if (group(a.surface, b.surface).may_meet) visit_pairs_of(a, b);
+  const Boxes boxes = boxes_of_vertices(surfaces, is_any_listed ? 0.5 * reach_ + kRounding : 0);
+  const PairsOfTriangles visit_pairs_of(surfaces, boxes, visit_and_list);
+  Sweep(boxes_of_triangles(surfaces, boxes)).for_each_pair([&](TriangleId a, TriangleId b) {
+    if (group(a.surface, b.surface).is_due) visit_pairs_of(a, b);
   });
   const auto is_nearer = [](const Near& p, const Near& q) { return p.distance < q.distance; };
-  for (Group& g : groups_) std::sort(g.near.begin(), g.near.end(), is_nearer);
+  for (Group& g : groups_) {
+    if (g.is_due) std::sort(g.near.begin(), g.near.end(), is_nearer);
+  }
   reach_across_gaps(surfaces);
+}
+
+/// Of the triangles that can meet others whose lists are due.
+std::vector<Sweep::Box> FeaturePairs::boxes_of_triangles(const std::vector<MovingSurface>& surfaces,
+                                                         const Boxes& boxes) {
+  Boxes::value_type whole;
+  for (const std::vector<Box>& of_vertices : boxes) {
+    Box& box = whole.emplace_back();
+    for (const Box& vertex : of_vertices) box.extend(vertex);
+  }
+  std::vector<Sweep::Box> result;
+  for (int s = 0; s < num_surfaces_; ++s) {
+    const auto can_meet = [&](const Box& box) {
+      for (int r = 0; r < num_surfaces_; ++r) {
+        if (group(s, r).is_due && (r == s || whole[r].intersects(box))) return true;
+      }
+      return false;
+    };
+    const std::vector<Triangle>& triangles = surfaces[s].triangles;
+    for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+      const Box box = box_of(triangles[t], boxes[s]);
+      if (can_meet(box)) result.emplace_back(box.min(), box.max(), TriangleId{s, t});
+    }
+  }
+  return result;
 }
 
 /// Surfaces that are far apart need no list until they have moved by what is between them.
@@ -219,8 +277,10 @@ void FeaturePairs::reach_across_gaps(const std::vector<MovingSurface>& surfaces)
   std::vector<Bounds> bounds;
   for (const MovingSurface& surface : surfaces) bounds.push_back(bounds_of(surface.end));
   for (int a = 0; a < num_surfaces_; ++a) {
-    for (int b = a + 1; b < num_surfaces_; ++b)
-      group(a, b).reach = std::max(group(a, b).reach, gap_between(bounds[a], bounds[b]));
+    for (int b = a + 1; b < num_surfaces_; ++b) {
+      Group& g = group(a, b);
+      if (g.is_due) g.reach = std::max(g.reach, gap_between(bounds[a], bounds[b]));
+    }
   }
 }
 

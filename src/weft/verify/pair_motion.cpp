@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "weft/verify/expansion.h"
@@ -13,6 +14,7 @@ namespace {
 /// How far the vertex or first edge is moved aside, so that no decision is a tie [m].
 const Vec3 kAside(0x1.3a5p-150, 0x1.71bp-151, 0x1.d17p-152);
 constexpr double kFarFromAside = 1e-40;  // [m]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Relative rounding errors, times the sum of a determinant's products in magnitude: Shewchuk's, doubled.
 constexpr double kBound2d = 6 * 0x1p-53, kBound3d = 14 * 0x1p-53;
@@ -115,18 +117,30 @@ class Image {
  public:
   void add(const Vec3& from, const Vec3& to) { corners_[size_++] = {&from, &to, to - from}; }
 
-  /// True only if some plane parts the corners from the origin: then f has no root. Planes across the axes,
-  /// across `direction`, and across the way to the corners' middle are tried.
-  bool is_aside(const Vec3& direction) const {
-    Vec3 low = corners_[0].value, high = low, middle = low;
-    for (int k = 1; k < size_; ++k) {
+  /// True only if a plane across an axis, or across the way to the corners' middle, parts the corners from
+  /// the origin: then f has no root.
+  bool is_aside() {
+    Vec3 low = Vec3::Constant(kInfinity), high = -low, middle = Vec3::Zero();
+    for (int k = 0; k < size_; ++k) {
       low = low.cwiseMin(corners_[k].value);
       high = high.cwiseMax(corners_[k].value);
       middle += corners_[k].value;
     }
     if (low.maxCoeff() > kFarFromAside || high.minCoeff() < -kFarFromAside) return true;
-    const double size = std::max(-low.minCoeff(), high.maxCoeff());  // of both signs, none beyond the origin
-    return is_beyond(direction, size) || is_beyond(-direction, size) || is_beyond(middle, size);
+    reach_ = std::max(-low.minCoeff(), high.maxCoeff());  // the box holds the origin
+    return is_aside_along(middle);
+  }
+
+  /// The same of a plane across the direction; after is_aside().
+  bool is_aside_along(const Vec3& direction) const {
+    double low = kInfinity, high = -kInfinity;
+    for (int k = 0; k < size_; ++k) {
+      const double at = direction.dot(corners_[k].value);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    const double margin = 1e-12 * reach_ * direction.cwiseAbs().sum() + kFarFromAside;
+    return low > margin || high < -margin;
   }
 
   /// Does the ray from the origin along x meet the triangle?
@@ -160,12 +174,6 @@ class Image {
   }
 
  private:
-  bool is_beyond(const Vec3& direction, double size) const {
-    const double margin = 1e-12 * size * direction.cwiseAbs().sum() + kFarFromAside;
-    return std::all_of(corners_.begin(), corners_.begin() + size_,
-                       [&](const Corner& c) { return direction.dot(c.value) > margin; });
-  }
-
   bool is_below(int a) const { return corners_[a].value.y() <= kAside.y(); }
 
   /// Seen along x, sides that go up left of the origin count, those that go down are taken back.
@@ -180,12 +188,12 @@ class Image {
     const auto error = [&](int i, int j) {
       return (std::abs(v[i].value) + v[i].error) * v[j].error + std::abs(v[j].value) * v[i].error;
     };
-    return {left - right,
-            2 * (error(0, 2) + error(1, 3)) + 4 * 0x1p-53 * (std::abs(left) + std::abs(right))};
+    return {left - right, 2 * (error(0, 2) + error(1, 3)) + 4 * 0x1p-53 * (std::abs(left) + std::abs(right))};
   }
 
   std::array<Corner, 8> corners_;
   int size_ = 0;
+  double reach_ = 0;  // of the corners, along any axis [m]
 };
 
 // ---- Exactly touching ----
@@ -241,8 +249,13 @@ PairMotion test_vertex_triangle(const PointMotion& vertex, const std::array<Poin
   Image image;
   for (const PointMotion& corner : triangle) image.add(vertex.start, corner.start);
   for (const PointMotion& corner : triangle) image.add(vertex.end, corner.end);
+  if (image.is_aside()) return {};
   const Vec3 normal = (b.start - a.start).cross(c.start - a.start) + (b.end - a.end).cross(c.end - a.end);
-  if (image.is_aside(normal)) return {};
+  if (image.is_aside_along(normal)) return {};
+  for (int k = 0; k < 3; ++k) {
+    const PointMotion &p = triangle[k], &q = triangle[(k + 1) % 3];
+    if (image.is_aside_along(normal.cross(q.start - p.start + q.end - p.end))) return {};
+  }
 
   bool is_odd = image.is_ahead(0, 1, 2) != image.is_ahead(3, 4, 5);
   for (const Quad& side : {Quad{0, 1, 4, 3}, Quad{1, 2, 5, 4}, Quad{2, 0, 3, 5}}) {
@@ -262,8 +275,11 @@ PairMotion test_edge_edge(const std::array<PointMotion, 2>& first, const std::ar
   for (const PointMotion& to : second) {
     for (const PointMotion& from : first) image.add(from.end, to.end);
   }
+  if (image.is_aside()) return {};
   const Vec3 normal = (b.start - a.start).cross(d.start - c.start) + (b.end - a.end).cross(d.end - c.end);
-  if (image.is_aside(normal)) return {};
+  if (image.is_aside_along(normal) || image.is_aside_along(normal.cross(b.start - a.start + b.end - a.end)) ||
+      image.is_aside_along(normal.cross(d.start - c.start + d.end - c.end)))
+    return {};
 
   bool is_odd = image.meets_triangles({0, 1, 3, 2}) != image.meets_triangles({4, 5, 7, 6});  // both plane
   for (const Quad& side : {Quad{0, 1, 5, 4}, Quad{2, 3, 7, 6}, Quad{0, 2, 6, 4}, Quad{1, 3, 7, 5}}) {

@@ -4,15 +4,16 @@
 ///
 /// Root parity (Brochu, Edwards and Bridson 2012, "Efficient geometrically exact continuous collision
 /// detection"): the difference f of the two features' points, as a function of time and of the two places on
-/// them, has an odd number of roots if and only if the one has passed through the other; what grazes, or comes
-/// back, has an even number. f maps a prism (vertex and triangle) or a cube (edge and edge), and its roots are
-/// odd in number where a ray from the origin meets the image of the boundary an odd number of times. The image
-/// of a side is a bilinear patch: two triangles, and the origin may lie between those and the patch.
+/// them, has an odd number of roots if and only if the one has passed through the other; what grazes, or
+/// comes back, has an even number. f maps a prism (vertex and triangle) or a cube (edge and edge), and its
+/// roots are odd in number where a ray from the origin meets the image of the boundary an odd number of
+/// times. The image of a side is a bilinear patch: two triangles, and the origin may lie between those and
+/// the patch.
 ///
 /// All decisions are exact signs, of the motion in which the vertex, or the first edge, is 1e-45 m aside in a
 /// fixed direction. So a vertex that moves exactly through a vertex or an edge of a surface passes through an
-/// odd number of the triangles there, and one that moves in the plane of a triangle passes through none. Exact
-/// for coordinates that are 0 or between 1e-37 and 1e50 in magnitude.
+/// odd number of the triangles there, and one that moves in the plane of a triangle passes through none.
+/// Exact for coordinates that are 0 or between 1e-37 and 1e50 in magnitude.
 
 #include <array>
 

@@ -118,7 +118,8 @@ struct RestFrames {
 
   std::vector<RestFrame> operator()(const Sphere& s) const {
     const Sphere at_origin{Vec3::Zero(), s.radius};
-    return add_turned(at_origin, {{{Mat3::Identity(), s.center}, {Mat3::Identity(), next(s).center}, at_origin}});
+    return add_turned(at_origin,
+                      {{{Mat3::Identity(), s.center}, {Mat3::Identity(), next(s).center}, at_origin}});
   }
 
   /// The one that does not turn about the axis, and the one that turns with the body.
@@ -132,7 +133,9 @@ struct RestFrames {
 
   std::vector<RestFrame> operator()(const OrientedBox& box) const {
     const OrientedBox& to = next(box);
-    return {{{box.rotation, box.center}, {to.rotation, to.center}, OrientedBox{Vec3::Zero(), box.half_size, Mat3::Identity()}}};
+    return {{{box.rotation, box.center},
+             {to.rotation, to.center},
+             OrientedBox{Vec3::Zero(), box.half_size, Mat3::Identity()}}};
   }
 
   std::vector<RestFrame> operator()(const Plane&) const { return {}; }
@@ -225,7 +228,9 @@ void PassageWatch::read(const Frame& frame) {
 std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
   read(next);
   for (const MovingSurface& surface : surfaces_) {
-    if (!is_finite(surface.end)) return {};
+    if (is_finite(surface.end)) continue;
+    ++num_left_out_;
+    return {};
   }
   judge_features(next);
   for (int c = 0; c < static_cast<int>(next.cloths.size()); ++c) {
@@ -244,10 +249,11 @@ void PassageWatch::judge_features(const Frame& next) {
     if (!surfaces_[a].is_cloth && !surfaces_[b].is_cloth) return false;
     return !may_pass(next, name_of(next, a), name_of(next, b));
   };
-  pairs_.for_each(surfaces_, may_meet, [&](const FeaturePair& pair) {
+  const bool is_done = pairs_.for_each(surfaces_, may_meet, [&](const FeaturePair& pair) {
     const auto [passes, is_open_before, is_open_after] = test(surfaces_, pair);
     settle(pair, passes, is_open_before, is_open_after);
   });
+  if (!is_done) ++num_left_out_;
 }
 
 void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
@@ -256,12 +262,14 @@ void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
   const std::vector<RestFrame> frames = std::visit(RestFrames{before, after}, before.shape);
   if (frames.empty()) return;
   const Bounds bounds = bounds_of_motion(before.shape, after.shape);
-  const bool is_turning = frames[0].before.rotation != frames[0].after.rotation;  // then ways are bent outside
+  const bool is_turning =
+      frames[0].before.rotation != frames[0].after.rotation;  // then ways are bent outside
   const MovingSurface& surface = surfaces_[cloth];
   const int collider_surface = static_cast<int>(next.cloths.size()) + collider;
   for (int i = 0; i < static_cast<int>(surface.end.size()); ++i) {
     const PointMotion way = motion_of(surface, i);
-    if (!is_turning && !bounds.intersects(Bounds(way.start.cwiseMin(way.end), way.start.cwiseMax(way.end)))) continue;
+    if (!is_turning && !bounds.intersects(Bounds(way.start.cwiseMin(way.end), way.start.cwiseMax(way.end))))
+      continue;
     if (depth_on(way, frames) <= tolerance_) continue;
     const FeaturePair pair{Kind::particle_shape, cloth, collider_surface, {i, i}, {-1, -1}};
     const bool is_in_before = depth_at(way.start, frames[0].before, frames[0].shape) > tolerance_;
@@ -270,7 +278,8 @@ void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
   }
 }
 
-/// A pair is open while it touches, or a particle is in a shape: what it comes to is told when it no longer is.
+/// A pair is open while it touches, or a particle is in a shape: what it comes to is told when it no longer
+/// is.
 void PassageWatch::settle(const FeaturePair& pair, bool passes, bool is_open_before, bool is_open_after) {
   const auto known = open_.find(pair);
   Open state = known != open_.end() ? known->second : Open{.is_known = !is_open_before};

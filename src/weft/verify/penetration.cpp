@@ -177,7 +177,9 @@ Eigen::AlignedBox3d bounds_of(const Sphere& s) {
   return {s.center - Vec3::Constant(s.radius), s.center + Vec3::Constant(s.radius)};
 }
 
-Eigen::AlignedBox3d bounds_of(const Plane&) { return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}; }
+Eigen::AlignedBox3d bounds_of(const Plane&) {
+  return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+}
 
 Eigen::AlignedBox3d bounds_of(const Capsule& c) {
   return {c.a.cwiseMin(c.b) - Vec3::Constant(c.radius), c.a.cwiseMax(c.b) + Vec3::Constant(c.radius)};

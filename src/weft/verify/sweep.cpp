@@ -11,14 +11,7 @@ namespace {
 constexpr int kMostStrips = 1024;
 constexpr float kBoxesPerStrip = 3;  // width of a strip, in mean widths of boxes
 
-std::array<float, 3> to_floats(const Vec3& p) {
-  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
-}
-
 }  // namespace
-
-Sweep::Box::Box(const Vec3& from, const Vec3& to, TriangleId triangle)
-    : low(to_floats(from)), high(to_floats(to)), id(triangle) {}
 
 Sweep::Sweep(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   choose_axes();

@@ -14,7 +14,8 @@ namespace weft::verify {
 class Sweep {
  public:
   struct Box {
-    Box(const Vec3& from, const Vec3& to, TriangleId triangle);
+    Box(const Eigen::Vector3f& from, const Eigen::Vector3f& to, TriangleId triangle)
+        : low{from[0], from[1], from[2]}, high{to[0], to[1], to[2]}, id(triangle) {}
 
     std::array<float, 3> low, high;
     TriangleId id;
