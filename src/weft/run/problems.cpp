@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "weft/world/measures.h"
 
@@ -74,7 +75,13 @@ void ProblemFinder::keep(Seen& seen, const StepWarning& warning, bool is_wrong, 
 void ProblemFinder::look_at_energy(double energy) {
   if (num_frames_ == 0) most_energy_ = least_energy_ = energy;
   const double rise = num_frames_ == 0 ? 0 : energy - energy_;
-  if (!world_.is_driven() && rise > kEnergyShare * (most_energy_ - least_energy_))
+  double lift = 0;  // of all cloth by its thickness [J]
+  for (int c = 0; c < world_.num_cloths(); ++c) {
+    const ClothModel& model = world_.model({c});
+    lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *
+            model.material.thickness;
+  }
+  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (most_energy_ - least_energy_))
     see({.code = WarningCode::energy_rise, .value = rise});
   most_energy_ = std::max(most_energy_, energy);
   least_energy_ = std::min(least_energy_, energy);

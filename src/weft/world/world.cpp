@@ -509,7 +509,7 @@ StepReport World::step(double dt) {
       const double length = dt * size / most, end = start + dt * done / most + length * s / part.substeps;
       check = try_part(before, end, length / part.substeps, part);
       stands = check.severity < 1 || (parts == most && check.fault != StepFault::non_finite);
-      if (stands && observer_) observer_(end);
+      if (stands && observer_) clock_.leave_out([&] { observer_(end); });
     }
     if (!stands && parts == most) return fail(check, std::move(report));
     if (!stands) {
