@@ -12,12 +12,13 @@
 /// One function covers every collapse, for each takes σ2 to 0: threads of constant length sheared by γ have
 /// σ2 = √(1 − sin γ), a thread compressed to half its length has 0.5, three corners on a line have 0.
 ///
-/// Shear locking: woven fabric locks at 40° to 60° of shear, where its yarns touch side by side (J. Skelton,
-/// Textile Research Journal 46, 1976; A. G. Prodromou, J. Chen, Composites A 28, 1997). ψ begins at 48.6° and
-/// has its full stiffness from 65.5° on. Compression: the tension of Green strain is greatest at σ = 1/√3 and
-/// vanishes at σ = 0; ψ replaces it there. Bounds of principal stretches from below and from above: H. Wang,
-/// J. O'Brien, R. Ramamoorthi, Multi-Resolution Isotropic Strain Limiting, ACM TOG 29(6), 2010. k is the mean
-/// tensile stiffness of the cloth.
+/// Shear locking: sheared woven fabric stiffens where its yarns touch side by side (A. G. Prodromou, J. Chen,
+/// On the relationship between shear angle and wrinkling of textile composite preforms, Composites A 28,
+/// 1997). That ψ begins at 48.6° and has its full stiffness from 65.5° on is our choice, not a measurement.
+/// Compression: the tension of Green strain is greatest at σ = 1/√3 and vanishes at σ = 0; ψ replaces it
+/// there. Bounds of principal stretches from below and from above: H. Wang, J. O'Brien, R. Ramamoorthi,
+/// Multi-Resolution Isotropic Strain Limiting, ACM TOG 29(6), 2010. k is the mean tensile stiffness of the
+/// cloth.
 ///
 /// At σ2 = 0 the gradient has no direction of its own: the triangle opens to a side that depends on its
 /// longer axis only, the same for all triangles on one line.
