@@ -102,6 +102,34 @@ float difference_sq(const PatchDeformation& d, const PatchDeformation& e) {
   return (d.x - e.x).squaredNorm() + (d.y - e.y).squaredNorm() + (d.z - e.z).squaredNorm();
 }
 
+/// How far beyond the first `own` triangles, seen along `normal`, the surface of all of them reaches on every
+/// side. No triangle is turned away from `normal` [m].
+double reach_around(const Surface& surface, const std::vector<Vec3>& rest, std::span<const int> region,
+                    std::size_t own, const Vec3& normal) {
+  const auto seen = [&](int v) -> Vec3 { return rest[v] - normal.dot(rest[v]) * normal; };
+  std::vector<std::array<int, 2>> sides;
+  for (const int t : region) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [i, j] = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
+      sides.push_back({i, j});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const bool is_shared =
+        (s > 0 && sides[s] == sides[s - 1]) || (s + 1 < sides.size() && sides[s] == sides[s + 1]);
+    if (is_shared) continue;
+    for (const int t : region.first(own)) {
+      const auto [i, j, k] = surface.triangles[t];
+      least = std::min(
+          least, segment_triangle_distance(seen(sides[s][0]), seen(sides[s][1]), seen(i), seen(j), seen(k))
+                     .distance_sq);
+    }
+  }
+  return std::sqrt(least);
+}
+
 }  // namespace
 
 void Patches::add_patch(const Surface& surface, std::span<const int> triangles) {
@@ -193,7 +221,7 @@ void Patches::group(const Surface& surface, int first_triangle, int end_triangle
   }
 }
 
-void Patches::add_window(std::vector<int> members, const Window& window) {
+void Patches::add_window(std::span<const int> members, const Window& window) {
   members_.insert(members_.end(), members.begin(), members.end());
   member_begin_.push_back(static_cast<int>(members_.size()));
   windows_.push_back(window);
@@ -240,8 +268,7 @@ void Patches::list_neighbours(int first_patch, int first_window) {
     return std::tie(x.a, x.b, x.window) < std::tie(y.a, y.b, y.window);
   });
   for (const Use& use : uses) {
-    if (neighbours_.empty() || neighbours_.back().a != use.a || neighbours_.back().b != use.b ||
-        use.a < first_patch)
+    if (neighbours_.empty() || neighbours_.back().a != use.a || neighbours_.back().b != use.b)
       neighbours_.push_back({use.a, use.b, static_cast<int>(window_of_pair_.size()), 0});
     window_of_pair_.push_back(use.window);
     neighbours_.back().end_window = static_cast<int>(window_of_pair_.size());
@@ -258,34 +285,6 @@ bool Patches::are_neighbours(int a, int b) const {
   const auto first = neighbours_.begin() + first_neighbour_[a],
              last = neighbours_.begin() + first_neighbour_[a + 1];
   return std::any_of(first, last, [&](const Neighbours& n) { return n.b == b; });
-}
-
-/// How far beyond the first `own` triangles, seen along `normal`, the surface of all of them reaches on every
-/// side; 0 if one of them is turned too far for that to be said.
-double reach_around(const Surface& surface, const std::vector<Vec3>& rest, std::span<const int> region,
-                    std::size_t own, const Vec3& normal) {
-  const auto seen = [&](int v) -> Vec3 { return rest[v] - normal.dot(rest[v]) * normal; };
-  std::vector<std::array<int, 2>> sides;
-  for (const int t : region) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [i, j] = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
-      sides.push_back({i, j});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const bool is_shared =
-        (s > 0 && sides[s] == sides[s - 1]) || (s + 1 < sides.size() && sides[s] == sides[s + 1]);
-    if (is_shared) continue;
-    for (const int t : region.first(own)) {
-      const auto [i, j, k] = surface.triangles[t];
-      least = std::min(
-          least, segment_triangle_distance(seen(sides[s][0]), seen(sides[s][1]), seen(i), seen(j), seen(k))
-                     .distance_sq);
-    }
-  }
-  return std::sqrt(least);
 }
 
 /// Of the first member's pairs. Near ones are joined by the line above the straight one between them, where

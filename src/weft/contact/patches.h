@@ -1,12 +1,15 @@
 #pragma once
 /// Small connected groups of triangles, and the criterion by which cloth cannot meet itself nearby.
 ///
-///      o---o---o     A patch of a grid is 2×2 cells; of a mesh up to eight triangles that hang together. Two
-///      | \ | / |     that share a vertex are neighbours. A window is a group of neighbours: on a grid four
-///      in o---o---o     a square, on a mesh one and all around it. | / | \ | o---o---o     Let M be a mean
-///      deformation gradient, and E the largest |F − M| of any triangle's gradient
-///                    F in the window. For points p, q of it with a path of length at most C |p − q| between
-///                    them on the surface at rest, the mean value inequality says
+///      o---o---o     A patch of a grid is 2×2 cells; of a mesh up to eight connected triangles.
+///      | \ | / |     Patches that share a vertex are neighbours. A window is a group of neighbours:
+///      o---o---o     on a grid four in a square, on a mesh one patch and all around it.
+///      | / | \ |
+///      o---o---o
+///
+/// Let M be a mean deformation gradient, and E the largest |F − M| of any triangle's gradient F in the
+/// window. For points p, q of it with a path of length at most C |p − q| between them on the surface at rest,
+/// the mean value inequality says
 ///
 ///     |x(p) − x(q)|  >=  (σ_min(M) − C E) |p − q|
 ///
@@ -55,7 +58,7 @@ class Patches {
   /// Two neighbours, or a patch twice.
   struct Neighbours {
     int a = 0, b = 0;                      // a <= b
-    int first_window = 0, end_window = 0;  // of window_of_pair(): each holds both
+    int first_window = 0, end_window = 0;  // of window(n): each holds both
   };
   const std::vector<Neighbours>& neighbours() const { return neighbours_; }  // ascending
   int window(int n) const { return window_of_pair_[n]; }
@@ -113,7 +116,7 @@ class Patches {
   }
   void add_patch(const Surface& surface, std::span<const int> triangles);
   void group(const Surface& surface, int first_triangle, int end_triangle);
-  void add_window(std::vector<int> members, const Window& window);
+  void add_window(std::span<const int> members, const Window& window);
   std::vector<std::vector<int>> find_rings(int first_patch) const;
   void list_neighbours(int first_patch, int first_window);
   Window measure_rest(const Surface& surface, const std::vector<Vec3>& rest,

@@ -269,7 +269,6 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   if (has_bodies()) fit(body_tree_, patches_.num_cloth(), patches_.size());
   find_folded();
   find_near_patches(AabbTree::Extent::all, jobs);
-
   find_pairs(jobs);
 }
 
@@ -284,7 +283,6 @@ bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
   find_folded();
   drop_pairs_of_moved();
   find_near_patches(AabbTree::Extent::marked, jobs);
-
   find_pairs(jobs);
   return true;
 }

@@ -1,7 +1,6 @@
 #include "weft/run/problems.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "weft/world/measures.h"

@@ -11,7 +11,7 @@ namespace weft {
 
 struct RunProblem {
   WarningCode code = WarningCode::not_converged;
-  int frames = 0;        // in which it was seen; of what is told at the end 1 [1]
+  int frames = 0;        // or steps, in which it was seen; of what is told at the end 1 [1]
   double value = 0;      // the worst, as StepWarning has it
   std::string sentence;  // what happened, and which key to turn
 };
@@ -20,9 +20,8 @@ struct RunProblem {
 ///
 ///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
 ///     flat_triangle  under a tenth of its area, likewise
-///     energy_rise    in a frame, by more than 2 % of the energy that had fallen and than lifting all cloth
-///     by its
-///                    thickness takes, where nothing is driven
+///     energy_rise    in a frame, by more than 2 % of the energy that had fallen, and than lifting all
+///                    cloth by its thickness takes, where nothing is driven
 ///     cap_reached, contact_skipped, not_converged   by steps
 ///     infeasible     pairs, each once
 ///     crossings      in the last frame
