@@ -466,6 +466,30 @@ TEST(TriangleSignedDistance, IsTheSameAfterARigidMotion) {
   }
 }
 
+/// No point is beyond it, and one is on it.
+TEST(Support, IsThePlaneThatTouchesTheShape) {
+  Random random(21);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3 normal = test::random_vector(random, 1).normalized();
+    const OrientedBox box = random_box(random);
+    const Capsule capsule = random_capsule(random);
+    const Sphere sphere = random_sphere(random);
+    const auto check = [&](const auto& shape) {
+      const double most = support(shape, normal);
+      for (int n = 0; n < 20; ++n) {
+        const Vec3 p = test::random_vector(random, 2);
+        ASSERT_TRUE(signed_distance(shape, p).distance > 0 || normal.dot(p) <= most + 1e-12);
+      }
+      const Vec3 far = 1e4 * normal;  // its nearest point is the one that sticks out farthest, or almost
+      const SignedDistance d = signed_distance(shape, far);
+      ASSERT_NEAR(normal.dot(far - d.distance * d.normal), most, 1e-3);
+    };
+    check(box);
+    check(capsule);
+    check(sphere);
+  }
+}
+
 TEST(TriangleSignedDistance, WithinReachIsTheSameAndBeyondItIsBeyond) {
   Random random(10);
   for (int trial = 0; trial < 50'000; ++trial) {

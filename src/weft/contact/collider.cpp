@@ -14,6 +14,9 @@ TriangleSignedDistance signed_distance(const MeshShape&, const Vec3&, const Vec3
   return {std::numeric_limits<double>::infinity(), Vec3::UnitX(), Vec3::UnitY()};
 }
 
+double support(const Plane&, const Vec3&) { return std::numeric_limits<double>::infinity(); }
+double support(const MeshShape&, const Vec3&) { return std::numeric_limits<double>::infinity(); }
+
 Vec3 pivot_of(const Sphere& sphere) { return sphere.center; }
 Vec3 pivot_of(const Plane& plane) { return plane.point; }
 Vec3 pivot_of(const Capsule& capsule) { return 0.5 * (capsule.a + capsule.b); }
@@ -48,6 +51,10 @@ SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p) {
 TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
                                        const Vec3& c, double reach) {
   return std::visit([&](const auto& s) { return signed_distance(s, a, b, c, reach); }, shape);
+}
+
+double support(const ColliderShape& shape, const Vec3& normal) {
+  return std::visit([&](const auto& s) { return support(s, normal); }, shape);
 }
 
 Vec3 pivot(const ColliderShape& shape) {

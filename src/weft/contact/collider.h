@@ -46,6 +46,9 @@ SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p);
 TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
                                        const Vec3& c, double reach = kNoReach);
 
+/// The largest normal · p of all points p of the shape; infinite of planes and meshes [m].
+double support(const ColliderShape& shape, const Vec3& normal);
+
 /// The point that the collider turns about: a sphere's or box's centre, a plane's point, the middle of a
 /// capsule's axis, a mesh's own origin.
 Vec3 pivot(const ColliderShape& shape);

@@ -66,8 +66,9 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
 ///
 ///     P >= 0,  v_n >= 0,  |T| <= µ P,  T against the slide          (v relative, P and T impulses)
 ///
-/// `slowed` (num_vertices) gets the part of each velocity's change that friction made [m/s].
+/// `slowed` (num_vertices) gets the part of each velocity's change that friction made [m/s]; `active` is work
+/// space for the numbers of constraints that had to be pushed.
 void project_velocities(const std::vector<double>& inverse_masses, std::vector<Constraint>& constraints,
-                        std::vector<Vec3>& velocities, std::vector<Vec3>& slowed);
+                        std::vector<Vec3>& velocities, std::vector<Vec3>& slowed, std::vector<int>& active);
 
 }  // namespace weft

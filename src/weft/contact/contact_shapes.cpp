@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "weft/contact/contact_system.h"
 #include "weft/geometry/distance.h"
@@ -22,17 +23,6 @@ constexpr double kRound = 2.4;
 /// rests on its particles alone unless cells are coarse: others would bear some of the same weight.
 constexpr double kBetweenKeeps = 0.2;
 
-/// A ball around the shape; planes have none.
-struct Bound {
-  Vec3 center = Vec3::Zero();
-  double radius = std::numeric_limits<double>::infinity();
-};
-Bound bound_of(const Sphere& s) { return {s.center, s.radius}; }
-Bound bound_of(const Plane&) { return {}; }
-Bound bound_of(const Capsule& c) { return {0.5 * (c.a + c.b), 0.5 * (c.b - c.a).norm() + c.radius}; }
-Bound bound_of(const OrientedBox& b) { return {b.center, b.half_size.norm()}; }
-Bound bound_of(const MeshShape&) { return {}; }
-
 /// Of balls and capsules; others are sharp.
 double radius_of(const ColliderShape& shape) {
   if (const Sphere* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
@@ -50,10 +40,18 @@ bool ContactSystem::has_plain_shapes() const {
 /// `stretch`: how much longer than the lists have it an edge may be [m].
 void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
+  is_near_shape_ = false;
   if (!has_plain_shapes()) return;
   longest_edge_ = proximity_.longest_edge() + stretch;
+  constexpr double kRoom = 1e-4;  // more than the last line looks for [m]
+  const double way = farthest_way(motion_, first_vertex_.back()),
+               reach = 2 * thickest_ + longest_edge_ + kRoom;
   for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
-    if (!shapes_[s].is_mesh()) collect_shape(s, share_of_travel);
+    if (shapes_[s].is_mesh()) continue;
+    clearance_.find_near(s, (1 + share_of_travel) * way, reach, near_shape_);
+    if (near_shape_.empty()) continue;
+    is_near_shape_ = true;
+    collect_shape(s, share_of_travel);
   }
 }
 
@@ -63,22 +61,17 @@ void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
 /// point from before trembles.
 void ContactSystem::collect_shape(int shape, double share_of_travel) {
   const MovingShape& moving = shapes_[shape];
-  const Bound bound = std::visit([](const auto& s) { return bound_of(s); }, moving.after);
-  const double triangle_reach = longest_edge_ / std::sqrt(3.0);
-  const int num_vertices = first_vertex_.back();
-  shape_distance_.resize(num_vertices);
-  bool is_any_near = false;
-  for (int v = 0; v < num_vertices; ++v) {
-    const double reach = shape_reach(v, share_of_travel);
-    const Vec3& p = motion_.end[v];
-    shape_distance_[v] = std::numeric_limits<double>::infinity();
-    const double farthest = bound.radius + reach + triangle_reach;
-    if ((p - bound.center).squaredNorm() > farthest * farthest) continue;
-    shape_distance_[v] = signed_distance(moving.after, p).distance;
-    is_any_near = true;
-    if (shape_distance_[v] < reach && inverse_mass_[v] > 0) add_shape_constraint(shape, 1, {v, v, v});
+  shape_distance_.assign(first_vertex_.back(), std::numeric_limits<double>::infinity());
+  int cloth = 0;
+  for (const int v : near_shape_) {
+    const SignedDistance d = signed_distance(moving.after, motion_.end[v]);
+    clearance_.set(shape, v, d.distance, (motion_.end[v] - motion_.start[v]).norm());
+    shape_distance_[v] = d.distance;
+    while (v >= first_vertex_[cloth + 1]) ++cloth;
+    if (d.distance < shape_reach(v, share_of_travel) && inverse_mass_[v] > 0)
+      add_shape_constraint(cloth, shape, 1, {v, v, v}, nearest_of(d, motion_.end[v], {1, 0, 0, 0}));
   }
-  if (!is_any_near || std::holds_alternative<Plane>(moving.after)) return;
+  if (std::holds_alternative<Plane>(moving.after)) return;
   const bool is_for_solve = share_of_travel > 0;
   const bool is_round = radius_of(moving.after) > kRound * longest_rest_edge_;
   if (is_for_solve && is_round) {
@@ -95,67 +88,78 @@ double ContactSystem::shape_reach(int v, double share_of_travel) const {
 
 void ContactSystem::collect_edges(int shape, double share_of_travel) {
   const double edge_reach = longest_edge_ / 2;
+  int cloth = 0;
   for (const auto& [a, b] : proximity_.surface().edges) {
     if (a >= first_vertex_.back()) break;
     const double nearest = std::min(shape_distance_[a], shape_distance_[b]);
     const double reach = shape_reach(a, share_of_travel);
     if (nearest > reach + edge_reach) continue;
     const Vec3 middle = 0.5 * (motion_.end[a] + motion_.end[b]);
-    const double distance = signed_distance(shapes_[shape].after, middle).distance;
-    if (distance < std::min(reach, nearest - kMuchNearer * motion_.half_thickness[a]))
-      add_shape_constraint(shape, 2, {a, b, b});
+    const SignedDistance d = signed_distance(shapes_[shape].after, middle);
+    while (a >= first_vertex_[cloth + 1]) ++cloth;
+    if (d.distance < std::min(reach, nearest - kMuchNearer * motion_.half_thickness[a]))
+      add_shape_constraint(cloth, shape, 2, {a, b, b}, nearest_of(d, middle, {0.5, 0.5, 0, 0}));
   }
 }
 
 void ContactSystem::collect_triangles(int shape, double share_of_travel) {
   const double triangle_reach = longest_edge_ / std::sqrt(3.0);
   const std::vector<Vec3>& x = motion_.end;
+  int cloth = 0;
   for (const Triangle& t : proximity_.surface().triangles) {
     if (t[0] >= first_vertex_.back()) break;
     const double nearest = std::min({shape_distance_[t[0]], shape_distance_[t[1]], shape_distance_[t[2]]});
     const double reach = shape_reach(t[0], share_of_travel);
     if (nearest > reach + triangle_reach) continue;
-    const double distance = signed_distance(shapes_[shape].after, x[t[0]], x[t[1]], x[t[2]], reach).distance;
     const double nearer =
         std::max(kNearerThanCorners, share_of_travel * kMuchNearer * motion_.half_thickness[t[0]]);
-    if (distance < std::min(reach, nearest - nearer)) add_shape_constraint(shape, 3, t);
+    const double farthest = std::min(reach, nearest - nearer);
+    const TriangleSignedDistance d =
+        signed_distance(shapes_[shape].after, x[t[0]], x[t[1]], x[t[2]], farthest);
+    while (t[0] >= first_vertex_[cloth + 1]) ++cloth;
+    if (d.distance < farthest)
+      add_shape_constraint(cloth, shape, 3, t, nearest_of(d, x[t[0]], x[t[1]], x[t[2]]));
   }
 }
 
-void ContactSystem::add_shape_constraint(int shape, int num_vertices, const Triangle& vertices) {
+void ContactSystem::add_shape_constraint(int cloth, int shape, int num_vertices, const Triangle& vertices,
+                                         const Nearest& nearest) {
+  const PairLaw& law = laws_[law_of({.cloth = cloth}, {.collider = shape})];
+  if (!law.collide) return;
   Constraint c;
   c.num_vertices = num_vertices;
   c.vertex = {vertices[0], vertices[1], vertices[2], 0};
   c.shape = shape;
-  const PairLaw& law = laws_[law_of(place_of(vertices[0]), {.collider = shape})];
-  if (!law.collide) return;
-  take_plane(c);
+  take_plane(nearest, c);
   set_friction(law, c);
   if (c.inverse_mass > 0) constraints_.push_back(c);
+}
+
+ContactSystem::Nearest ContactSystem::nearest_of(const SignedDistance& d, const Vec3& p,
+                                                 const std::array<double, 4>& weight) {
+  return {d.distance, d.normal, p - d.distance * d.normal, weight};
+}
+
+ContactSystem::Nearest ContactSystem::nearest_of(const TriangleSignedDistance& d, const Vec3& a,
+                                                 const Vec3& b, const Vec3& c) {
+  const Vec3& w = d.weights;
+  return {d.distance, d.normal, point_at(w, a, b, c) - d.distance * d.normal, {w[0], w[1], w[2], 0}};
 }
 
 ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, const Constraint& c,
                                                    const std::vector<Vec3>& x) {
   const Vec3 &a = x[c.vertex[0]], &b = x[c.vertex[1]], &e = x[c.vertex[2]];
-  if (c.num_vertices < 3) {
-    const bool is_edge = c.num_vertices == 2;
-    const Vec3 p = is_edge ? Vec3(0.5 * (a + b)) : a;
-    const SignedDistance d = signed_distance(shape, p);
-    return {d.distance, d.normal, p - d.distance * d.normal,
-            is_edge ? std::array<double, 4>{0.5, 0.5, 0, 0} : std::array<double, 4>{1, 0, 0, 0}};
-  }
-  const TriangleSignedDistance d = signed_distance(shape, a, b, e);
-  return {d.distance,
-          d.normal,
-          point_at(d.weights, a, b, e) - d.distance * d.normal,
-          {d.weights[0], d.weights[1], d.weights[2], 0}};
+  if (c.num_vertices == 1) return nearest_of(signed_distance(shape, a), a, {1, 0, 0, 0});
+  if (c.num_vertices == 3) return nearest_of(signed_distance(shape, a, b, e), a, b, e);
+  const Vec3 middle = 0.5 * (a + b);
+  return nearest_of(signed_distance(shape, middle), middle, {0.5, 0.5, 0, 0});
 }
 
-/// The plane that touches the shape where the particle, edge or triangle is nearest at the end of the step;
-/// unless that lies beyond the shape's middle: then where it was nearest at the start.
-void ContactSystem::take_plane(Constraint& c) const {
+/// The plane that touches the shape where the particle, edge or triangle is nearest at the end of the step,
+/// as `at_end` says; unless that lies beyond the shape's middle: then where it was nearest at the start.
+void ContactSystem::take_plane(const Nearest& at_end, Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
-  Nearest nearest = find_nearest(moving.after, c, motion_.end);
+  Nearest nearest = at_end;
   if (nearest.distance < 0) {
     const Nearest before = find_nearest(moving.before, c, motion_.start);
     const Vec3 normal_before = moving.turned(before.normal);
@@ -171,6 +175,15 @@ void ContactSystem::take_plane(Constraint& c) const {
   c.target = c.normal.dot(nearest.foot) + clearance_of(c);
   c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
+}
+
+/// Where hold_off has found triangles, for the last line.
+void ContactSystem::find_separations() {
+  separations_.clear();
+  for (const Constraint& c : constraints_) {
+    if (c.shape < 0 || c.num_vertices < 3) continue;
+    separations_.push_back({c.shape, {c.vertex[0], c.vertex[1], c.vertex[2]}, c.normal});
+  }
 }
 
 /// From a plain shape [m].

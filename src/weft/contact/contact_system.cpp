@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "weft/mesh/solid.h"
 
@@ -66,15 +67,22 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
                        c.motion.at(step.time), weft::pivot(c.shape)});
   }
   proximity_.measure(step.clock);
-  renumber(colliders);
+  const bool is_new = renumber(colliders);
+  thickest_ = 0;
+  double travel_sq = 0;  // since the step before
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothModel& model = *cloths_[c].model;
+    thickest_ = std::max(thickest_, model.material.thickness / 2);
     for (int i = 0, v = first_vertex_[c]; i < model.num_particles(); ++i, ++v) {
-      motion_.start[v] = cloths_[c].state->position(i);
+      const Vec3 place = cloths_[c].state->position(i);
+      travel_sq = farther_sq(travel_sq, place - motion_.start[v]);
+      motion_.start[v] = place;
       motion_.half_thickness[v] = model.material.thickness / 2;
       inverse_mass_[v] = (*cloths_[c].is_pinned)[i] ? 0.0 : 1 / model.mass[i];
     }
   }
+  const double unknown = std::numeric_limits<double>::infinity();
+  clearance_.begin_step(shapes_, first_vertex_.back(), is_new ? unknown : std::sqrt(travel_sq));
   place_bodies();
   set_laws();
   remember_velocities();
@@ -150,7 +158,7 @@ void ContactSystem::remember_velocities() {
     velocity_before_.push_back(velocity_[v]);
 }
 
-void ContactSystem::renumber(const std::vector<Collider>& colliders) {
+bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   std::vector<const TriangleMesh*>& meshes = meshes_now_;
   meshes.clear();
   for (const Collider& c : colliders) {
@@ -164,7 +172,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
       std::equal(cloths_.begin(), cloths_.end(), numbered_cloths_.begin(), numbered_cloths_.end(),
                  same_cloth) &&
       std::equal(meshes.begin(), meshes.end(), numbered_meshes_.begin(), numbered_meshes_.end(), same_mesh)) {
-    return;
+    return false;
   }
 
   numbered_cloths_.clear();
@@ -214,6 +222,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   velocity_.assign(n, Vec3::Zero());
   slowed_.assign(n, Vec3::Zero());
   near_.reserve(n);
+  near_shape_.reserve(num_cloth_vertices);
   is_touched_.assign(n, 0);
   is_solid_.assign(n, 0);
   for (const Body& body : bodies_) {
@@ -223,6 +232,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_things(std::move(things));
+  return true;
 }
 
 Patches ContactSystem::build_patches(const Surface& surface, const std::vector<Vec3>& rest) const {
@@ -367,7 +377,7 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   if (proximity_.wildest() >= 0) return;
   collect_pairs(jobs);
   collect_shapes(0.0);
-  is_clear_ = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty() && !has_plain_shapes();
+  is_clear_ = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty() && !is_near_shape_;
   if (constraints_.empty()) return;
   project(jobs);
   store_touched();
@@ -382,9 +392,11 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   }
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const WorkScope scope(step_.clock, &WorkTimes::ccd);
-  const LastLineReport report = last_line_.hold(
-      {&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_, step_.clock}, proximity_,
-      motion_, jobs);
+  find_separations();
+  const LastLineReport report =
+      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_, &clearance_,
+                       thickest_, separations_, step_.clock},
+                      proximity_, motion_, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -421,7 +433,7 @@ void ContactSystem::settle_positions() {
     if (moved < kSettled) return;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
-      take_plane(c);
+      take_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), c);
       c.push = 0;
     }
   }
@@ -437,7 +449,7 @@ void ContactSystem::project(JobSystem& jobs) {
       slowed_[v].setZero();
     }
   }
-  project_velocities(inverse_mass_, constraints_, velocity_, slowed_);
+  project_velocities(inverse_mass_, constraints_, velocity_, slowed_, near_);
   for (const Constraint& c : constraints_)
     add_touch(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
   if (step_.clock && !is_predicted_)

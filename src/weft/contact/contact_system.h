@@ -13,6 +13,7 @@
 #include "weft/contact/last_line.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
+#include "weft/contact/shape_clearance.h"
 #include "weft/contact/untangle.h"
 #include "weft/core/job_system.h"
 #include "weft/core/work_times.h"
@@ -143,6 +144,8 @@ class ContactSystem {
   void add_touch(const Constraint& c, const Vec3& force);
   ContactPoint describe(const Touch& touch) const;
 
+  static Nearest nearest_of(const SignedDistance& d, const Vec3& p, const std::array<double, 4>& weight);
+  static Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c);
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
   void find_pieces(const Surface& surface);
@@ -152,7 +155,7 @@ class ContactSystem {
   void change_velocity(int cloth, const Vec3& change);
   int group_of(int cloth) const;
 
-  void renumber(const std::vector<Collider>& colliders);
+  bool renumber(const std::vector<Collider>& colliders);
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
@@ -181,11 +184,13 @@ class ContactSystem {
   void collect_shapes(double share_of_travel, double stretch = 0);
   bool has_plain_shapes() const;
   void collect_shape(int shape, double share_of_travel);
+  void find_separations();
   double shape_reach(int v, double share_of_travel) const;
   void collect_edges(int shape, double share_of_travel);
   void collect_triangles(int shape, double share_of_travel);
-  void add_shape_constraint(int shape, int num_vertices, const Triangle& vertices);
-  void take_plane(Constraint& c) const;
+  void add_shape_constraint(int cloth, int shape, int num_vertices, const Triangle& vertices,
+                            const Nearest& nearest);
+  void take_plane(const Nearest& at_end, Constraint& c) const;
   double clearance_of(const Constraint& c) const;
   double depth_at_start(const Constraint& c) const;
   bool is_of_this_world() const;
@@ -206,17 +211,20 @@ class ContactSystem {
   std::vector<char> is_one_piece_;  // (cloths)
   double longest_rest_edge_ = 0;    // of cloth [m]
   Proximity proximity_;
+  ShapeClearance clearance_;
 
   // The step.
   std::vector<ContactCloth> cloths_;
   std::vector<MovingShape> shapes_;
   ContactStep step_;
-  bool is_predicted_ = false;  // the solve knows of contacts
-  bool is_for_solve_ = false;  // contacts are being predicted
-  bool is_clear_ = false;      // nothing can meet anything on the way that hold_off has seen
-  double pressed_in_ = 0;      // share of the distance to be kept that may lack now [1]
+  bool is_predicted_ = false;   // the solve knows of contacts
+  bool is_for_solve_ = false;   // contacts are being predicted
+  bool is_near_shape_ = false;  // some vertex may touch a plain shape
+  bool is_clear_ = false;       // nothing can meet anything on the way that hold_off has seen
+  double pressed_in_ = 0;       // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
   std::vector<Vec3> fallen_;           // where inertia and all of gravity would take it
+  double thickest_ = 0;                // half the thickness, of the thickest cloth [m]
   double longest_edge_ = 0;            // of cloth, at most [m]
   std::vector<double> inverse_mass_;   // (num_vertices) 0 where prescribed [1/kg]
   std::vector<PairLaw> laws_;          // (cloths, cloths and then colliders)
@@ -232,8 +240,10 @@ class ContactSystem {
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
-  std::vector<int> near_;  // of constraints_, for project_positions
+  std::vector<int> near_;  // of constraints_, for project_positions and project_velocities
   std::vector<double> shape_distance_;
+  std::vector<int> near_shape_;  // vertices
+  std::vector<Separation> separations_;
   std::vector<Vec3> velocity_, slowed_;
   LastLine last_line_;
   std::vector<Vec3> origins_;  // (cloths)

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "weft/contact/collect.h"
 #include "weft/geometry/distance.h"
@@ -19,6 +20,9 @@ constexpr double kLeastShare = 0.1;  // of the rest of a zone's motion: below, i
 /// Features keep this share of what they are held apart by; where that is little, the floor [m].
 constexpr double kSeparation = 0.1;
 constexpr double kFloor = 1e-5;
+
+/// What stays farther than this many separations has no impact: gap and tolerance are at most 1.1.
+constexpr double kFar = 1.15;
 
 /// Found nearer than their separation at the start, they are set apart by this share of what lacks.
 constexpr double kRecovery = 0.2;
@@ -79,6 +83,7 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
   motion_ = &motion;
   only_moved_ = false;
   is_moved_.assign(motion.end.size(), 0);
+  near_.reserve(num_cloth_vertices());
   LastLineReport report;
   pushes_.clear();
   parent_.clear();
@@ -239,26 +244,46 @@ bool LastLine::test_pair(const FeaturePair& pair, const std::array<int, 4>& vert
 void LastLine::find_shape_hits(int s) {
   const MovingShape& shape = (*step_.shapes)[s];
   const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
-  const bool is_still = shape.collider->motion.is_still();
   const bool is_plane = std::holds_alternative<Plane>(shape.before);
   const double reach = is_plane ? 0 : proximity_->longest_edge();
+  const double way = farthest_way(*motion_, num_cloth_vertices());
+  step_.clearance->find_near(s, way, reach + 2 * separation_of(step_.thickest), near_);
+  if (near_.empty()) return;
   is_near_.assign(num_cloth_vertices(), 0);
-  bool is_any_near = false;
-  for (int v = 0; v < num_cloth_vertices(); ++v) {
-    const double travel = (is_still ? y[v] - x[v] : shape.at_start(y[v]) - x[v]).norm();
-    const double most = travel + reach + 2 * separation_of(motion_->half_thickness[v]);
+  shape_end_.resize(num_cloth_vertices());
+  for (const int v : near_) {
+    const Vec3 end = shape.at_start(y[v]);
+    const double most = (end - x[v]).norm() + reach + 2 * separation_of(motion_->half_thickness[v]);
     if (signed_distance(shape.before, x[v]).distance > most) continue;
+    shape_end_[v] = end;
     is_near_[v] = 1;
-    is_any_near = true;
   }
-  if (!is_any_near) return;
   Hit hit;
+  auto known = std::find_if(step_.separations.begin(), step_.separations.end(),
+                            [&](const Separation& separation) { return separation.shape == s; });
   for (const Triangle& t : proximity_->surface().triangles) {
     if (t[0] >= num_cloth_vertices()) break;
+    const bool is_known = known != step_.separations.end() && known->shape == s && known->triangle == t;
+    if (is_known && keeps(*known++)) continue;
     if (!is_near_[t[0]] && !is_near_[t[1]] && !is_near_[t[2]]) continue;
     if (!is_asked_for({t[0], t[1], t[2], 0}, 3) || pass(t[0], s)) continue;
     if (test_triangle_shape(s, t, hit)) hits_.push_back(hit);
   }
+}
+
+/// Whether the triangle stays beyond all of the shape by more than an impact needs, in the shape's own frame,
+/// where it stays and the triangle moves in straight lines.
+bool LastLine::keeps(const Separation& separation) const {
+  const MovingShape& shape = (*step_.shapes)[separation.shape];
+  const Vec3 normal_at_start = shape.turned_back(separation.normal);
+  double at_start = std::numeric_limits<double>::infinity(), at_end = at_start;
+  for (const int v : separation.triangle) {
+    at_start = std::min(at_start, normal_at_start.dot(motion_->start[v]));
+    at_end = std::min(at_end, separation.normal.dot(motion_->end[v]));
+  }
+  const double room = std::min(at_start - support(shape.before, normal_at_start),
+                               at_end - support(shape.after, separation.normal));
+  return room > kFar * separation_of(motion_->half_thickness[separation.triangle[0]]);
 }
 
 /// Whether a vertex of cloth and a shape go through each other.
@@ -274,15 +299,24 @@ bool LastLine::pass(int vertex, int shape) const {
 bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   const MovingShape& shape = (*step_.shapes)[s];
   std::array<Vec3, 3> x, way;
-  double travel = 0;
+  double travel_sq = 0;
   for (int k = 0; k < 3; ++k) {
     x[k] = motion_->start[t[k]];
-    way[k] = shape.at_start(motion_->end[t[k]]) - x[k];
-    travel = std::max(travel, way[k].norm());
+    way[k] = (is_near_[t[k]] ? shape_end_[t[k]] : shape.at_start(motion_->end[t[k]])) - x[k];
+    travel_sq = std::max(travel_sq, way[k].squaredNorm());
   }
-  const ImpactLimit limit = limit_for(motion_->half_thickness[t[0]], t[0]);
-  const double reach = travel + 3 * limit.separation;
+  const double travel = std::sqrt(travel_sq), separation = separation_of(motion_->half_thickness[t[0]]);
+  const double reach = travel + 3 * separation;
   const TriangleSignedDistance before = signed_distance(shape.before, x[0], x[1], x[2], reach);
+  if (before.distance > reach) return false;
+  // The shape is convex: it lies behind the plane that touches it where the triangle is nearest.
+  const Vec3 nearest = point_at(before.weights, x[0], x[1], x[2]);
+  double least = before.distance;
+  for (int k = 0; k < 3; ++k)
+    least = std::min(least, before.distance + before.normal.dot(x[k] + way[k] - nearest));
+  if (least > kFar * separation) return false;
+
+  const ImpactLimit limit = limit_for(motion_->half_thickness[t[0]], t[0]);
   const double lift = std::max(0.0, limit.floor - before.distance);
   struct Place {
     double distance;

@@ -21,6 +21,7 @@
 #include "weft/contact/constraint.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
+#include "weft/contact/shape_clearance.h"
 #include "weft/geometry/time_of_impact.h"
 
 namespace weft {
@@ -38,6 +39,14 @@ struct LastLineReport {
   std::vector<Infeasible> infeasible;
 };
 
+/// A direction along which a triangle of cloth probably lies beyond all of a plain shape at the end of the
+/// step.
+struct Separation {
+  int shape = 0;
+  Triangle triangle = {};
+  Vec3 normal = Vec3::UnitY();  // unit length
+};
+
 /// What it must know of a step, besides the motion.
 struct LastLineStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
@@ -46,7 +55,10 @@ struct LastLineStep {
   const std::vector<Vec3>* origins = nullptr;   // (cloths) of which positions are stored as float offsets
   const std::vector<char>* is_solid = nullptr;  // (num_vertices) on a closed mesh
   const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) go through each other; or empty
-  WorkClock* clock = nullptr;                 // counts looks; null: they are not counted
+  const ShapeClearance* clearance = nullptr;  // of cloth from plain shapes
+  double thickest = 0;                        // half the thickness, of the thickest cloth [m]
+  std::span<const Separation> separations = {};  // of some triangles, in the order of shapes and triangles
+  WorkClock* clock = nullptr;                    // counts looks; null: they are not counted
 };
 
 class LastLine {
@@ -91,6 +103,7 @@ class LastLine {
   template <class Find>
   bool test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find, Hit& hit) const;
   void find_shape_hits(int shape);
+  bool keeps(const Separation& separation) const;
   bool pass(int vertex, int shape) const;
   bool test_triangle_shape(int shape, const Triangle& triangle, Hit& hit) const;
   void move(int vertex, const Vec3& to);
@@ -123,7 +136,9 @@ class LastLine {
   std::vector<Zone> zones_;
 
   std::vector<std::vector<Hit>> chunks_;
-  std::vector<char> is_near_;  // (cloth vertices) to a plain shape
+  std::vector<int> near_;        // vertices that may come near to a plain shape
+  std::vector<char> is_near_;    // (cloth vertices) to a plain shape
+  std::vector<Vec3> shape_end_;  // (cloth vertices) of near ones: the end in the frame of the shape's start
 };
 
 }  // namespace weft

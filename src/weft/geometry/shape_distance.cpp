@@ -1,5 +1,6 @@
 #include "weft/geometry/shape_distance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -208,11 +209,20 @@ SignedDistance signed_distance(const OrientedBox& box, const Vec3& p) {
 }
 
 TriangleSignedDistance signed_distance(const Sphere& sphere, const Vec3& a, const Vec3& b, const Vec3& c,
-                                       double /*reach*/) {
+                                       double reach) {
+  // Along any direction, no point of the triangle is nearer to the centre than the lowest corner.
+  constexpr double kRounding = 1e-12;
+  const Vec3 x = a - sphere.center, y = b - sphere.center, z = c - sphere.center, sum = x + y + z;
+  const double lowest = std::min({sum.dot(x), sum.dot(y), sum.dot(z)}),
+               farthest = (1 + kRounding) * (sphere.radius + reach) * sum.norm();
+  if (farthest >= 0 && lowest > farthest)
+    return {lowest / sum.norm() - sphere.radius, Vec3::UnitX(), Vec3::UnitY()};
+
   const PointTriangleDistance d = point_triangle_distance(sphere.center, a, b, c);
-  const Vec3 offset = point_at(d.weights, a - sphere.center, b - sphere.center, c - sphere.center);
-  const Vec3 own = unit_or((b - a).cross(c - a), Vec3::UnitY());
-  return {d.distance() - sphere.radius, d.weights, unit_or(offset, own)};
+  const Vec3 offset = point_at(d.weights, x, y, z);
+  const double length = offset.norm();
+  const Vec3 normal = length > 0 ? Vec3(offset / length) : unit_or((b - a).cross(c - a), Vec3::UnitY());
+  return {d.distance() - sphere.radius, d.weights, normal};
 }
 
 TriangleSignedDistance signed_distance(const Plane& plane, const Vec3& a, const Vec3& b, const Vec3& c,
@@ -261,6 +271,18 @@ TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, co
   const Vec3 p = search.point(search.weights);
   const Vec3 normal = search.distance > 0 ? box_normal(p, h) : shortest_way_out(search, p);
   return {search.distance, search.weights, box.rotation * normal};
+}
+
+double support(const Sphere& sphere, const Vec3& normal) {
+  return normal.dot(sphere.center) + sphere.radius * normal.norm();
+}
+
+double support(const Capsule& capsule, const Vec3& normal) {
+  return std::max(normal.dot(capsule.a), normal.dot(capsule.b)) + capsule.radius * normal.norm();
+}
+
+double support(const OrientedBox& box, const Vec3& normal) {
+  return normal.dot(box.center) + box.half_size.dot((box.rotation.transpose() * normal).cwiseAbs());
 }
 
 }  // namespace weft

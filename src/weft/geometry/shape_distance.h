@@ -72,4 +72,9 @@ TriangleSignedDistance signed_distance(const Capsule& capsule, const Vec3& a, co
 TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
+/// The largest normal · p of all points p of the shape, which lies behind that plane [m].
+double support(const Sphere& sphere, const Vec3& normal);
+double support(const Capsule& capsule, const Vec3& normal);
+double support(const OrientedBox& box, const Vec3& normal);
+
 }  // namespace weft
