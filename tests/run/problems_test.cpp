@@ -92,6 +92,15 @@ TEST(Problems, CrossingsThatAreLeft) {
   EXPECT_EQ(codes_of(finder), Codes()) << "what has come apart is no problem any more";
 }
 
+TEST(Problems, WhatWentThroughBetweenFrames) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  finder.add_frame(0, 0);
+  finder.add_passages(3);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::passages});
+  EXPECT_EQ(finder.problems()[0].value, 3);
+}
+
 TEST(Problems, OfStepsTheWorstAndHowOften) {
   const World world = make_sheet();
   ProblemFinder finder(world);

@@ -294,6 +294,8 @@ TEST(Report, CountsWhatPassesThroughWithinAStepThoughNothingCrossesAtAnyFrame) {
   EXPECT_GT(*report.passages, 100);
   EXPECT_NE(report.first_passage.find("frame "), std::string::npos);
   EXPECT_NE(report.first_passage.find("cloth \"upper ribbon\""), std::string::npos) << report.first_passage;
+  const auto tells = [](const RunProblem& p) { return p.code == WarningCode::passages; };
+  EXPECT_TRUE(std::any_of(report.problems.begin(), report.problems.end(), tells));
 }
 
 TEST(Report, OfPassagesIsNullWhereTheyAreNotChecked) {

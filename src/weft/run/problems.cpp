@@ -36,10 +36,7 @@ void ProblemFinder::see(const StepWarning& warning) {
 
 void ProblemFinder::add_step(const StepReport& step) {
   for (const StepWarning& warning : step.warnings) see(warning);
-  for (const InfeasiblePair& pair : step.infeasible) {
-    if (std::find(infeasible_.begin(), infeasible_.end(), pair) == infeasible_.end())
-      infeasible_.push_back(pair);
-  }
+  for (const InfeasiblePair& pair : step.infeasible) add_once(pair, infeasible_);
 }
 
 void ProblemFinder::add_frame(double energy, int crossings) {
@@ -98,9 +95,12 @@ std::vector<RunProblem> ProblemFinder::problems() const {
     }
   }
   for (const Seen& seen : others_) add(seen.worst, seen.frames);
-  if (!infeasible_.empty())
-    add({.code = WarningCode::infeasible, .value = static_cast<double>(infeasible_.size())}, 1);
-  if (crossings_ > 0) add({.code = WarningCode::crossings, .value = static_cast<double>(crossings_)}, 1);
+  const auto add_count = [&](WarningCode code, std::size_t count) {
+    if (count > 0) add({.code = code, .value = static_cast<double>(count)}, 1);
+  };
+  add_count(WarningCode::crossings, crossings_);
+  add_count(WarningCode::passages, passages_);
+  add_count(WarningCode::infeasible, infeasible_.size());
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.code < b.code; });
   return result;

@@ -25,6 +25,7 @@ struct RunProblem {
 ///     cap_reached, contact_skipped, not_converged   by steps
 ///     infeasible     pairs, each once
 ///     crossings      in the last frame
+///     passages       in all frames
 class ProblemFinder {
  public:
   explicit ProblemFinder(const World& world) : world_(world) {}
@@ -33,6 +34,9 @@ class ProblemFinder {
 
   /// `energy`: kinetic and potential, of all cloths [J]; `crossings`: pairs of triangles that cross.
   void add_frame(double energy, int crossings);
+
+  /// `count` more pairs of features that went through each other.
+  void add_passages(int count) { passages_ += count; }
 
   /// The worst of each code and cloth, in the order of codes.
   std::vector<RunProblem> problems() const;
@@ -53,7 +57,7 @@ class ProblemFinder {
   std::vector<Seen> strained_, flat_;  // (cloths)
   std::vector<Seen> others_;
   std::vector<InfeasiblePair> infeasible_;
-  int num_frames_ = 0, crossings_ = 0;
+  int num_frames_ = 0, crossings_ = 0, passages_ = 0;
   double energy_ = 0, most_energy_ = 0, least_energy_ = 0;  // in the last frame, and in all [J]
 };
 

@@ -80,7 +80,11 @@ class Recorder {
   }
 
   void add_step(const StepReport& step) { problems_.add_step(step); }
-  void finish() { report_.problems = problems_.problems(); }
+
+  void finish() {
+    problems_.add_passages(report_.passages.value_or(0));
+    report_.problems = problems_.problems();
+  }
 
   void add_audit(const EnergyAudit& frame) {
     EnergySeries& energy = report_.energy;

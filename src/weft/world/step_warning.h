@@ -1,6 +1,9 @@
 #pragma once
 /// What went wrong in a step, as data. run/warnings.h has the sentences.
 
+#include <algorithm>
+#include <vector>
+
 #include "weft/world/step_check.h"
 
 namespace weft {
@@ -35,5 +38,10 @@ struct InfeasiblePair {
 
   bool operator==(const InfeasiblePair&) const = default;
 };
+
+/// Lists a pair once.
+inline void add_once(const InfeasiblePair& pair, std::vector<InfeasiblePair>& pairs) {
+  if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+}
 
 }  // namespace weft

@@ -315,11 +315,7 @@ void World::stop_crossings(StepReport& report) {
   const LastLineReport stopped = contact_system_.stop_crossings(*jobs_);
   report.hits += stopped.hits;
   report.zones += stopped.zones;
-  for (const Infeasible& found : stopped.infeasible) {
-    const InfeasiblePair pair = describe(found);
-    if (std::find(report.infeasible.begin(), report.infeasible.end(), pair) == report.infeasible.end())
-      report.infeasible.push_back(pair);
-  }
+  for (const Infeasible& pair : stopped.infeasible) add_once(describe(pair), report.infeasible);
 }
 
 std::string World::name_of(const ContactSystem::Place& place) const {
@@ -461,15 +457,15 @@ void World::accept(const StepReport& part, StepReport& report) {
   report.zones += part.zones;
   for (const StepWarning& warning : part.warnings) {
     const auto is_same = [&](const StepWarning& w) {
-      return w.code == warning.code && w.cloth == warning.cloth;
+      return w.code == warning.code && w.cloth == warning.cloth && w.fault == warning.fault;
     };
-    if (std::none_of(report.warnings.begin(), report.warnings.end(), is_same))
+    const auto known = std::find_if(report.warnings.begin(), report.warnings.end(), is_same);
+    if (known == report.warnings.end())
       report.warnings.push_back(warning);
+    else if (warning.value > known->value)
+      *known = warning;
   }
-  for (const InfeasiblePair& pair : part.infeasible) {
-    if (std::find(report.infeasible.begin(), report.infeasible.end(), pair) == report.infeasible.end())
-      report.infeasible.push_back(pair);
-  }
+  for (const InfeasiblePair& pair : part.infeasible) add_once(pair, report.infeasible);
 }
 
 /// As if the step had not been made.
