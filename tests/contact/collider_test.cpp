@@ -47,7 +47,7 @@ struct Particles {
     const ContactCloth cloth{model.get(), &state, &is_pinned};
     contact.begin_step({&cloth, 1}, colliders, step);
     move();
-    contact.end_of(0);
+    contact.take_solved({});
     contact.hold_off(*make_serial_jobs());
   }
 

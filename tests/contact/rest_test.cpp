@@ -108,8 +108,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ClothOnABall,
                          });
 
 TEST(LayersOnAFloor, DoNotBuzz) {
-  // Two sheets, one turned by 7°. What lay on the other by a hair too far was let fall by each solve and set
-  // apart again: 6 mm/s for ever.
+  // Two sheets, one turned by 7°. Solved for one after the other, and set apart afterwards, they trembled by
+  // 0.8 mm/s for ever.
   World world;
   world.add_collider({"floor", Plane{Vec3::Zero(), Vec3::UnitY()}, 0.4, {}});
   const auto topology = build_grid_topology(test::square(24, 0.75), SpringModel::alternating);
@@ -133,7 +133,7 @@ TEST(LayersOnAFloor, DoNotBuzz) {
     }
     const double speed = std::sqrt(2 * kinetic / (0.2 * 0.75 * 0.75));
     std::printf("layer %d: %.2e m/s\n", cloth, speed);
-    EXPECT_LT(speed, 2e-3);
+    EXPECT_LT(speed, 1e-4);
   }
 }
 

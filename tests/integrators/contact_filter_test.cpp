@@ -50,25 +50,25 @@ TEST_F(ContactFilterTest, WithoutContactsIsTheFreeOneAlone) {
 }
 
 TEST_F(ContactFilterTest, IsStiffAlongTheNormalAndFreeAcrossIt) {
-  filter.hold(rows, 5, Vec3::UnitY());
+  filter.hold(rows.index(5), Vec3::UnitY(), rows.size());
   const Vec3 z = apply(pushed_at(5, {1, 1, 1})).get(rows.index(5));
   EXPECT_NEAR(z.y(), 1 / kStiff, 1e-6);
   EXPECT_NEAR(z.x(), 1 / kStiff + 1 / kFree, 1e-6);
 }
 
 TEST_F(ContactFilterTest, ThreeNormalsLeaveNothingFree) {
-  filter.hold(rows, 5, Vec3(1, 1, 0).normalized());
-  filter.hold(rows, 5, Vec3(1, 1, 0.1).normalized());  // almost the same: not a new one
-  filter.hold(rows, 5, Vec3(0, 1, 1).normalized());
-  filter.hold(rows, 5, Vec3::UnitX());
+  filter.hold(rows.index(5), Vec3(1, 1, 0).normalized(), rows.size());
+  filter.hold(rows.index(5), Vec3(1, 1, 0.1).normalized(), rows.size());  // almost the same: not a new one
+  filter.hold(rows.index(5), Vec3(0, 1, 1).normalized(), rows.size());
+  filter.hold(rows.index(5), Vec3::UnitX(), rows.size());
   const Vec3 z = apply(pushed_at(5, {1, -2, 3})).get(rows.index(5));
   EXPECT_LT((z - Vec3(1, -2, 3) / kStiff).norm(), 1e-5);
 }
 
 TEST_F(ContactFilterTest, IsSymmetricAndPositive) {
-  filter.hold(rows, 5, Vec3(1, 2, 3).normalized());
-  filter.hold(rows, 6, Vec3(-1, 2, 0).normalized());
-  filter.hold(rows, 6, Vec3(0, 2, -1).normalized());
+  filter.hold(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
+  filter.hold(rows.index(6), Vec3(-1, 2, 0).normalized(), rows.size());
+  filter.hold(rows.index(6), Vec3(0, 2, -1).normalized(), rows.size());
   for (const int i : {5, 6}) {
     for (const int j : {5, 6, 7}) {
       const Vec3Array a = pushed_at(i, {0.3, -0.7, 0.2}), b = pushed_at(j, {-0.1, 0.4, 0.9});
@@ -79,7 +79,7 @@ TEST_F(ContactFilterTest, IsSymmetricAndPositive) {
 }
 
 TEST_F(ContactFilterTest, GivesTheSameBitsForAnyNumberOfThreads) {
-  filter.hold(rows, 5, Vec3(1, 2, 3).normalized());
+  filter.hold(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
   const Vec3Array r = pushed_at(5, {1, -2, 3});
   const Vec3Array alone = apply(r);
   for (const int threads : {2, 5}) {
@@ -90,7 +90,7 @@ TEST_F(ContactFilterTest, GivesTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST_F(ContactFilterTest, ForgetsContacts) {
-  filter.hold(rows, 5, Vec3::UnitY());
+  filter.hold(rows.index(5), Vec3::UnitY(), rows.size());
   filter.clear();
   EXPECT_NEAR(apply(pushed_at(5, {0, 1, 0})).get(rows.index(5)).y(), 1 / kFree, 1e-6);
 }

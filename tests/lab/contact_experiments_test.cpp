@@ -30,10 +30,15 @@ TEST(ContactExperiments, ADrumPullsByTheCapstanEquation) {
 }
 
 TEST(ContactExperiments, ABallTakesTheSheetAlongAsFarAsFrictionCan) {
-  for (const double friction : {0.02, 0.03, 0.6}) {
-    const Spin spin = spin_ball({.cells = 24}, friction);
-    EXPECT_NEAR(spin.turned_sheet, spin.expected, 0.1 * spin.expected) << friction;
+  // Whatever the mesh. Where the solve was not finished it was 0.78 to 1.56 of the law.
+  for (const int cells : {24, 32, 48}) {
+    for (const double friction : {0.02, 0.03}) {
+      const Spin spin = spin_ball({.cells = cells}, friction);
+      EXPECT_NEAR(spin.turned_sheet, spin.expected, 0.06 * spin.expected) << cells << " cells, " << friction;
+    }
   }
+  const Spin sticking = spin_ball({.cells = 24}, 0.6);
+  EXPECT_NEAR(sticking.turned_sheet, sticking.expected, 0.02 * sticking.expected);
 }
 
 TEST(ContactExperiments, ATurntableTakesTheSheetAlongUntilFrictionIsAllUsedUp) {
@@ -72,7 +77,7 @@ TEST(ContactExperiments, ASheetThatMovesTakesAnotherAlong) {
 TEST(ContactExperiments, TheAuditOfASheetOnABallAgreesWithItsAngularMomentum) {
   const Spin spin = spin_ball({.cells = 24}, 0.03);
   EXPECT_GT(spin.friction.sliding, 60 * 100) << "it slides all the time";
-  // Contacts bear 9 % more than the weight.
+  // What the solve has left over counts as the contacts' own.
   EXPECT_NEAR(spin.torque, 1, 0.1);
   EXPECT_NEAR(spin.friction.torque, spin.friction.torque_limit, 0.15 * spin.friction.torque_limit);
 }

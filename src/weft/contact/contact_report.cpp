@@ -12,18 +12,6 @@ void ContactSystem::add_touch(const Constraint& c, const Vec3& force) {
   touches_.push_back({c.vertex, c.weight, c.num_vertices, c.shape, c.normal, force});
 }
 
-/// Where two cloths were solved for one after the other, each has its own idea of the force between them:
-/// the mean is told.
-void ContactSystem::add_solved(int cloth, std::span<const Vec3> forces) {
-  const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
-  for (std::size_t n = 0; n < forces.size(); ++n) {
-    const Constraint& c = constraints_[found_[n]];
-    const double own = c.inverse_mass_of(inverse_mass_, begin, end), all = c.inverse_mass_of(inverse_mass_);
-    const bool is_shared = own < all;
-    add_touch(c, (is_shared ? 0.5 : 1.0) * forces[n]);
-  }
-}
-
 std::vector<ContactPoint> ContactSystem::contact_points() const {
   std::vector<Touch> touches = touches_;
   const auto key = [](const Touch& t) { return std::tie(t.shape, t.num_vertices, t.vertex); };

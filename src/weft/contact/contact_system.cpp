@@ -25,6 +25,7 @@ constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of conta
 constexpr int kPassesAfterSolve = 4;
 constexpr double kSlidingSpeed = 0.01;  // slower, static friction holds [m/s]
 constexpr int kSearches = 6;            // after friction, contacts are looked for anew this often
+constexpr double kMostLack = 0.3;       // of the gap, that the solve may leave
 constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
 /// How far cloth may move before pairs are searched again: a share of its cells, or of its thickness.
@@ -86,7 +87,6 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   place_bodies();
   set_laws();
   remember_velocities();
-  begin_momentum();
 }
 
 /// Of two cloths the friction is the geometric mean of both, of a cloth and a collider the collider's, where
@@ -209,7 +209,6 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   }
   surface.build_fans();
   const Patches patches = build_patches(surface, rest);
-  find_pieces(surface);
   longest_rest_edge_ = 0;
   for (const auto& [i, j] : surface.edges) {
     if (i < num_cloth_vertices) longest_rest_edge_ = std::max(longest_rest_edge_, (rest[j] - rest[i]).norm());
@@ -263,27 +262,32 @@ void ContactSystem::place_bodies() {
   }
 }
 
-void ContactSystem::end_of(int cloth, std::span<const char> pushing) {
-  for (int v = first_vertex_[cloth]; v < first_vertex_[cloth + 1]; ++v) {
-    motion_.end[v] = cloths_[cloth].state->position(v - first_vertex_[cloth]);
+void ContactSystem::read_ends() {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v)
+      motion_.end[v] = cloths_[c].state->position(i);
   }
-  note_pushes(cloth, pushing);
-  if (step_.clock) count_pushes(cloth, pushing);
 }
 
-/// Of two cloths that touch each other, the first feature's has it, unless that is pinned.
-void ContactSystem::count_pushes(int cloth, std::span<const char> pushing) {
-  for (std::size_t n = 0; n < pushing.size(); ++n) {
-    const Constraint& c = constraints_[found_[n]];
-    const int first = c.vertex[0] < first_vertex_.back() ? mesh_of(first_vertex_, c.vertex[0]) : cloth;
-    const bool has_told = first != cloth && c.inverse_mass_of(inverse_mass_, first_vertex_[first],
-                                                              first_vertex_[first + 1]) > 0;
-    if (pushing[n] && !has_told) ++step_.clock->times.active;
+void ContactSystem::take_solved(std::span<const Contact> contacts) {
+  read_ends();
+  is_solved_.assign(cloths_.size(), is_predicted_);
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    for (int k = 0; k < contacts[n].num_particles; ++k)
+      is_solved_[mesh_of(first_vertex_, contacts[n].particle[k])] = contacts[n].is_solved;
+    add_touch(constraints_[found_[n]], contacts[n].force);
+    if (step_.clock && contacts[n].has_pushed) ++step_.clock->times.active;
   }
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
   is_predicted_ = is_for_solve_ = true;
+  find_candidates(acceleration, pin_targets, jobs);
+  expected_.assign(motion_.end.begin(), motion_.end.begin() + first_vertex_.back());
+}
+
+void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets,
+                                    JobSystem& jobs) {
   expect_motion(acceleration, pin_targets);
   proximity_.update(motion_, jobs);
   constraints_.clear();
@@ -294,11 +298,17 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
   std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
   if (constraints_.empty()) return;
-  // What is stopped is met by what comes behind it: pairs are looked for where cloth will more likely be.
+  // What is stopped far from where it was going is met by what comes behind it: pairs are looked for where
+  // cloth will more likely be.
+  arrived_ = motion_.end;
   {
     const WorkScope scope(step_.clock, &WorkTimes::projection);
     project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
   }
+  mark_touched();
+  const bool is_far = has_left_reach();
+  std::fill(is_touched_.begin(), is_touched_.end(), char{0});
+  if (!is_far) return;
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
   collect_pairs(jobs);
@@ -323,21 +333,26 @@ void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3
   }
 }
 
-void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
+/// What a constraint's features are to keep between them when all is well [m].
+double ContactSystem::kept_gap(const Constraint& c) const {
+  if (c.shape >= 0) return clearance_of(c);
+  return motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
+}
+
+void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   const WorkScope scope(step_.clock, &WorkTimes::rows);
   contacts.clear();
   found_.clear();
-  const int begin = first_vertex_[cloth], end = first_vertex_[cloth + 1];
-  const Vec3& origin = cloths_[cloth].state->origin;
   const double h = step_.step;
   for (int n = 0; n < static_cast<int>(constraints_.size()); ++n) {
     const Constraint& c = constraints_[n];
-    if (c.inverse_mass_of(inverse_mass_, begin, end) == 0) continue;
+    if (c.inverse_mass == 0) continue;
     found_.push_back(n);
-    Contact contact;
+    Contact& contact = contacts.emplace_back();
     contact.num_particles = 0;
     contact.normal = c.normal;
     contact.offset = c.target;
+    contact.gap = kept_gap(c);
     contact.depth_before = depth_at_start(c);
     contact.grip = h * c.surface_velocity;
     contact.friction = c.friction;
@@ -345,8 +360,9 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
     for (int k = 0; k < c.num_vertices; ++k) {
       const int v = c.vertex[k];
       const double w = c.weight[k];
-      if (v >= begin && v < end) {
-        contact.particle[contact.num_particles] = v - begin;
+      if (v < first_vertex_.back()) {
+        const Vec3& origin = cloths_[mesh_of(first_vertex_, v)].state->origin;
+        contact.particle[contact.num_particles] = v;
         contact.weight[contact.num_particles++] = w;
         contact.offset -= w * c.normal.dot(origin);
         contact.grip += w * (motion_.start[v] - origin);
@@ -355,7 +371,6 @@ void ContactSystem::find_contacts(int cloth, std::vector<Contact>& contacts) {
         contact.grip -= w * (motion_.end[v] - motion_.start[v]);
       }
     }
-    contacts.push_back(contact);
   }
 }
 
@@ -369,15 +384,60 @@ int ContactSystem::wild_cloth() const {
   return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
+/// Whether the solve has kept all cloths of a constraint apart.
+bool ContactSystem::is_solved(const Constraint& c) const {
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    if (v < first_vertex_.back() && !is_solved_[mesh_of(first_vertex_, v)]) return false;
+  }
+  return true;
+}
+
+/// Whether the solve has kept apart all cloths, and each has gone where contacts were looked for.
+bool ContactSystem::went_as_expected() const {
+  if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
+  for (int v = 0; v < first_vertex_.back(); ++v) {
+    const double most = 0.5 * kMostLack * motion_.half_thickness[v];
+    if ((motion_.end[v] - expected_[v]).squaredNorm() > most * most) return false;
+  }
+  return true;
+}
+
+/// Leaves out the constraints of cloths that the solve has kept apart, and that touch none which it has not.
+void ContactSystem::leave_out_solved() {
+  if (!is_predicted_) return;
+  for (const Constraint& c : constraints_) {
+    if (c.target - c.normal.dot(c.sum(motion_.end)) <= kMostLack * kept_gap(c)) continue;
+    for (int k = 0; k < c.num_vertices; ++k) {
+      if (c.vertex[k] < first_vertex_.back()) is_solved_[mesh_of(first_vertex_, c.vertex[k])] = 0;
+    }
+  }
+  for (bool is_spreading = true; is_spreading;) {
+    is_spreading = false;
+    for (const Constraint& c : constraints_) {
+      if (is_solved(c)) continue;
+      for (int k = 0; k < c.num_vertices; ++k) {
+        if (c.vertex[k] >= first_vertex_.back()) continue;
+        char& is = is_solved_[mesh_of(first_vertex_, c.vertex[k])];
+        is_spreading |= is != 0;
+        is = 0;
+      }
+    }
+  }
+  std::erase_if(constraints_, [&](const Constraint& c) { return is_solved(c); });
+}
+
 void ContactSystem::hold_off(JobSystem& jobs) {
   is_for_solve_ = is_clear_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
+  if (went_as_expected()) return;
   collect_pairs(jobs);
   collect_shapes(0.0);
   is_clear_ = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty() && !is_near_shape_;
+  leave_out_solved();
   if (constraints_.empty()) return;
   project(jobs);
   store_touched();
@@ -386,10 +446,8 @@ void ContactSystem::hold_off(JobSystem& jobs) {
 LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   if (is_clear_) return {};
   origins_.clear();
-  for (int c = 0; c < static_cast<int>(cloths_.size()); ++c) {
-    end_of(c);
-    origins_.push_back(cloths_[c].state->origin);
-  }
+  read_ends();
+  for (const ContactCloth& cloth : cloths_) origins_.push_back(cloth.state->origin);
   if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
   const WorkScope scope(step_.clock, &WorkTimes::ccd);
   find_separations();
@@ -465,6 +523,7 @@ void ContactSystem::project(JobSystem& jobs) {
     constraints_.clear();
     collect_pairs(jobs);
     collect_shapes(0.0);
+    leave_out_solved();
     settle_positions();
     mark_touched();
   }

@@ -27,7 +27,6 @@ struct ContactCloth {
   const ClothModel* model = nullptr;
   ClothState* state = nullptr;
   const std::vector<char>* is_pinned = nullptr;  // (num_particles)
-  bool is_free = false;                          // gravity and contact alone act on it from outside
 };
 
 /// What is between a cloth and a collider, another cloth or itself.
@@ -50,9 +49,8 @@ struct ContactStep {
 ///
 ///     begin_step        remembers where everything is, and takes the colliders through the step
 ///     predict           for integrators that resolve contacts: what will probably meet
-///     find_contacts     … as planes in one cloth's way
-///     end_of            a cloth has been moved
-///     keep_momentum     what cloths have given each other one after the other is made to sum to nothing
+///     find_contacts     … as planes in the cloths' way
+///     take_solved       the cloths have been moved
 ///     hold_off          what has come too close all the same is set apart
 ///     stop_crossings    and whatever would still go through anything is stopped (see last_line.h)
 ///
@@ -68,21 +66,12 @@ class ContactSystem {
   /// at the end of the step, cloth after cloth in ascending order of particles.
   void predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);
 
-  /// The contacts of a cloth's particles; what the other cloths will do is taken from where they have been
-  /// moved already, or from the prediction.
-  void find_contacts(int cloth, std::vector<Contact>& contacts);
+  /// The contacts of all cloths' particles, which are numbered through the cloths.
+  void find_contacts(std::vector<Contact>& contacts);
 
-  /// The forces that the cloth's integrator gave the contacts it was told of last (contacts) [N].
-  void add_solved(int cloth, std::span<const Vec3> forces);
-
-  /// The cloth's state now is that of the end of the step; `pushing` (contacts): whether each contact that it
-  /// was told of last has pushed, nothing if it was told of none.
-  void end_of(int cloth, std::span<const char> pushing = {});
-
-  /// Cloths are solved for one after the other, and each has its own idea of the forces between them. Free
-  /// cloths that touch each other alone, and nothing else, are moved together so that their common momentum
-  /// has changed by gravity alone.
-  void keep_momentum(const Vec3& gravity);
+  /// The cloths' states now are those of the end of the step; `contacts` are those that were found, solved
+  /// for, or none.
+  void take_solved(std::span<const Contact> contacts);
 
   /// Sets apart what is too close, takes from velocities what approaches, and slows what slides (see
   /// constraint.h). To be called when every cloth is at its end.
@@ -148,19 +137,11 @@ class ContactSystem {
   static Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c);
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
-  void find_pieces(const Surface& surface);
-  void begin_momentum();
-  void note_pushes(int cloth, std::span<const char> pushing);
-  Vec3 momentum_of(int cloth) const;
-  void change_velocity(int cloth, const Vec3& change);
-  int group_of(int cloth) const;
-
   bool renumber(const std::vector<Collider>& colliders);
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
   void collect_pairs(JobSystem& jobs);
-  void count_pushes(int cloth, std::span<const char> pushing);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
@@ -192,8 +173,14 @@ class ContactSystem {
                             const Nearest& nearest);
   void take_plane(const Nearest& at_end, Constraint& c) const;
   double clearance_of(const Constraint& c) const;
+  double kept_gap(const Constraint& c) const;
   double depth_at_start(const Constraint& c) const;
   bool is_of_this_world() const;
+  void read_ends();
+  bool is_solved(const Constraint& c) const;
+  bool went_as_expected() const;
+  void leave_out_solved();
+  void find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);
   void settle_positions();
   void project(JobSystem& jobs);
   bool has_left_reach() const;
@@ -206,10 +193,9 @@ class ContactSystem {
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
-  std::vector<char> is_solid_;      // (num_vertices) on a closed mesh
-  std::vector<char> passes_;        // (things, things) go through each other; empty: none do
-  std::vector<char> is_one_piece_;  // (cloths)
-  double longest_rest_edge_ = 0;    // of cloth [m]
+  std::vector<char> is_solid_;    // (num_vertices) on a closed mesh
+  std::vector<char> passes_;      // (things, things) go through each other; empty: none do
+  double longest_rest_edge_ = 0;  // of cloth [m]
   Proximity proximity_;
   ShapeClearance clearance_;
 
@@ -223,6 +209,7 @@ class ContactSystem {
   bool is_clear_ = false;       // nothing can meet anything on the way that hold_off has seen
   double pressed_in_ = 0;       // share of the distance to be kept that may lack now [1]
   SurfaceMotion motion_;
+  std::vector<Vec3> expected_;         // (cloth vertices) where contacts for the solve were looked for [m]
   std::vector<Vec3> fallen_;           // where inertia and all of gravity would take it
   double thickest_ = 0;                // half the thickness, of the thickest cloth [m]
   double longest_edge_ = 0;            // of cloth, at most [m]
@@ -230,11 +217,9 @@ class ContactSystem {
   std::vector<PairLaw> laws_;          // (cloths, cloths and then colliders)
   std::vector<Vec3> velocity_before_;  // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
-  std::vector<int> found_;             // of these, those that find_contacts told of last
-  std::vector<Touch> touches_;         // in this step
-  std::vector<Vec3> momentum_before_;  // (cloths) [kg m/s]
-  std::vector<int> touching_;          // (cloths) each has pushed itself or another one: the roots are groups
-  std::vector<char> is_held_;          // (cloths) something else than free cloth has pushed it
+  std::vector<char> is_solved_;  // (cloths) the solve has kept it apart from all that it knew of
+  std::vector<int> found_;       // of these, those that find_contacts has given
+  std::vector<Touch> touches_;   // in this step
 
   // Work space.
   std::vector<std::vector<Constraint>> chunks_;

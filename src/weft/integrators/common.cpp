@@ -1,6 +1,41 @@
 #include "weft/integrators/common.h"
 
 namespace weft {
+namespace {
+
+class OneByOne final : public Integrator {
+ public:
+  explicit OneByOne(std::function<std::unique_ptr<ClothIntegrator>()> make) : make_(std::move(make)) {
+    cloths_.push_back(make_());
+  }
+
+  int num_substeps(const ClothModel& model, const Environment& environment, double step) const override {
+    return cloths_[0]->num_substeps(model, environment, step);
+  }
+
+  IntegratorReport advance(std::span<const Body> bodies, std::span<Contact>, const SystemStep& step,
+                           JobSystem& jobs) override {
+    while (cloths_.size() < bodies.size()) cloths_.push_back(make_());
+    IntegratorReport report;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Body& body = bodies[b];
+      const IntegratorReport done =
+          cloths_[b]->advance(*body.model, *body.environment, step.step, jobs, *body.state);
+      report.include(done, static_cast<int>(b));
+    }
+    return report;
+  }
+
+ private:
+  std::function<std::unique_ptr<ClothIntegrator>()> make_;
+  std::vector<std::unique_ptr<ClothIntegrator>> cloths_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_one_by_one(std::function<std::unique_ptr<ClothIntegrator>()> make) {
+  return std::make_unique<OneByOne>(std::move(make));
+}
 
 void Weights::fit(const ClothModel& model, double step) {
   if (model.id == model_id_ && step == step_) return;

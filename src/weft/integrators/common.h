@@ -2,12 +2,28 @@
 /// Private to integrators/: what several of them need.
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "weft/forces/increments.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft {
+
+/// An integrator that knows neither contacts nor other cloths.
+class ClothIntegrator {
+ public:
+  virtual ~ClothIntegrator() = default;
+
+  /// See Integrator.
+  virtual int num_substeps(const ClothModel&, const Environment&, double /*step*/) const { return 1; }
+  virtual IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
+                                   JobSystem& jobs, ClothState& state) = 0;
+};
+
+/// Moves each cloth by an integrator of its own.
+std::unique_ptr<Integrator> make_one_by_one(std::function<std::unique_ptr<ClothIntegrator>()> make);
 
 /// Masses and the weights w_i = 1/(m_i + h² Σ_j k_ij) as the kernels want them; h = 0 gives 1/m_i. Kept while
 /// model and step stay the same.

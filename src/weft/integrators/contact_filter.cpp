@@ -13,9 +13,8 @@ void ContactFilter::clear() {
   held_.clear();
 }
 
-void ContactFilter::hold(const PaddedRows& rows, int particle, const Vec3& normal) {
-  if (index_.size() != rows.size()) index_.assign(rows.size(), -1);
-  const int at = rows.index(particle);
+void ContactFilter::hold(int at, const Vec3& normal, std::size_t size) {
+  if (index_.size() != size) index_.assign(size, -1);
   if (index_[at] < 0) {
     index_[at] = static_cast<int>(held_.size());
     held_.push_back({.at = at});

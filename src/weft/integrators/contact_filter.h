@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "weft/core/job_system.h"
-#include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
 
 namespace weft {
@@ -23,8 +22,10 @@ class ContactFilter {
  public:
   void clear();
 
-  /// A contact that holds the particle along this unit vector.
-  void hold(const PaddedRows& rows, int particle, const Vec3& normal);
+  bool empty() const { return held_.empty(); }
+
+  /// A contact that holds the particle at this index along this unit vector; `size` is that of the arrays.
+  void hold(int at, const Vec3& normal, std::size_t size);
 
   /// z = P⁻¹ r; stiff(r, jobs, z) and free(r, jobs, z) compute V r and return r·V r. Returns r·z. Of few
   /// threads each takes one of the two: within them threads have little to do before they must wait.

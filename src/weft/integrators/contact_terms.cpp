@@ -8,181 +8,298 @@ namespace {
 
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
 constexpr int kGuesses = 2;           // linearisations for which friction goes by guessed forces
-constexpr double kMostOfGuess = 1.5;  // … and then by no more than so many times as much
+constexpr double kMostOfGuess = 3;    // … and then by no more than so many times as much
+constexpr double kLeastOfSlide = 0.7, kMostOfSlide = 1.5;  // that the next slide is expected to be
+constexpr double kBarely = 0.01;                           // of the gap, that is left between what touches
+constexpr double kMostLack = 0.3;                          // of the gap, where the solve may stop
+constexpr double kFrictionChange = 0.02;                   // of friction's limit, likewise
 
 }  // namespace
 
-void give_rest_to_contacts(std::span<const Contact* const> contacts, const std::vector<Vec3>& left,
-                           std::vector<Vec3>& forces) {
+void give_rest_to_contacts(std::span<const std::array<int, 4>> at, const std::vector<Vec3>& left,
+                           const std::vector<char>& is_pinned, std::span<Contact* const> contacts) {
   std::vector<double> share(left.size(), 0);  // Σ w² over the contacts that push
   for (std::size_t n = 0; n < contacts.size(); ++n) {
-    if (forces[n].isZero(0)) continue;
-    for (int k = 0; k < contacts[n]->num_particles; ++k)
-      share[contacts[n]->particle[k]] += contacts[n]->weight[k] * contacts[n]->weight[k];
+    const Contact& c = *contacts[n];
+    if (c.force.isZero(0)) continue;
+    for (int k = 0; k < c.num_particles; ++k) share[at[n][k]] += c.weight[k] * c.weight[k];
   }
   for (std::size_t n = 0; n < contacts.size(); ++n) {
-    if (forces[n].isZero(0)) continue;
-    const Contact& c = *contacts[n];
+    Contact& c = *contacts[n];
+    if (c.force.isZero(0)) continue;
     double sum = 0;
     Vec3 rest = Vec3::Zero();
     for (int k = 0; k < c.num_particles; ++k) {
       const double w = c.weight[k];
+      if (w == 0 || is_pinned[at[n][k]]) continue;
       sum += std::abs(w);
-      if (w != 0) rest += w * std::abs(w) / share[c.particle[k]] * left[c.particle[k]];
+      rest += w * std::abs(w) / share[at[n][k]] * left[at[n][k]];
     }
-    forces[n] -= rest / sum;
+    if (sum > 0) c.force -= rest / sum;
   }
 }
 
-void ContactTerms::begin(const std::vector<Contact>& contacts, const ClothModel& model,
-                         const PinTargets& pins, double step, const Vec3& driven) {
+void ContactTerms::begin(std::span<Contact> contacts, std::span<const int> which,
+                         std::span<const Member> members, double step, const Vec3& driven) {
   sticking_ = kStickSpeed * step;
   driven_ = driven;
   num_linearised_ = 0;
   terms_.clear();
   active_.clear();
-  have_pushed_.assign(contacts.size(), 0);
-  if (contacts.empty()) return;
-  mass_per_step_.clear();
-  for (const double m : model.mass) mass_per_step_.push_back(m / (step * step));
-  for (const int p : pins.particle) mass_per_step_[p] = 0;
-  for (const Contact& c : contacts) {
-    Term term{.contact = &c};
-    for (int k = 0; k < c.num_particles; ++k)
-      term.can_move |= c.weight[k] != 0 && mass_per_step_[c.particle[k]] > 0;
-    terms_.push_back(term);
+  held_.clear();
+  points_.clear();
+  for (const int n : which) {
+    contacts[n].has_pushed = false;
+    contacts[n].force.setZero();
+    terms_.push_back({.contact = &contacts[n]});
+  }
+  if (!terms_.empty()) find_points(members, step);
+}
+
+/// Of every particle of a contact, once.
+void ContactTerms::find_points(std::span<const Member> members, double step) {
+  const auto end_of = [](const Member& m) { return m.first_particle + m.model->num_particles(); };
+  number_.assign(end_of(members.back()), -1);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    for (const int p : members[m].pins->particle) number_[members[m].first_particle + p] = -2;
+  }
+  for (Term& t : terms_) {
+    const Contact& c = *t.contact;
+    for (int k = 0; k < c.num_particles; ++k) {
+      int& number = number_[c.particle[k]];
+      if (number < 0) {
+        const auto after = std::upper_bound(members.begin(), members.end(), c.particle[k],
+                                            [](int i, const Member& m) { return i < m.first_particle; });
+        const auto member = static_cast<int>(after - members.begin()) - 1;
+        const Member& m = members[member];
+        const int particle = c.particle[k] - m.first_particle;
+        const double mass = number == -2 ? 0 : m.model->mass[particle];
+        number = static_cast<int>(points_.size());
+        points_.push_back({member, particle, m.rows->index(particle), mass / (step * step)});
+      }
+      t.point[k] = number;
+      t.can_move |= c.weight[k] != 0 && points_[number].mass_per_step > 0;
+    }
+  }
+  x_.resize(points_.size());
+  f_.resize(points_.size());
+}
+
+void ContactTerms::gather(std::span<const Positions> x) {
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const auto& [target, offset] = x[points_[p].member];
+    x_[p] = target->get(points_[p].at) + offset->get(points_[p].at);
   }
 }
 
-bool ContactTerms::any_active(const OffsetPositions& x) const {
-  return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.contact->depth(x) > 0; });
+Vec3 ContactTerms::point_of(const Term& t) const {
+  const Contact& c = *t.contact;
+  Vec3 sum = c.weight[0] * x_[t.point[0]];
+  for (int k = 1; k < c.num_particles; ++k) sum += c.weight[k] * x_[t.point[k]];
+  return sum;
+}
+
+double ContactTerms::depth_of(const Term& t) const { return t.contact->depth_at(point_of(t)); }
+Vec3 ContactTerms::slide_of(const Term& t) const { return t.contact->slide_at(point_of(t)); }
+
+bool ContactTerms::any_active(std::span<const Positions> x) {
+  gather(x);
+  return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return depth_of(t) > 0; });
+}
+
+void ContactTerms::find_pushed(std::span<const Positions> x, std::vector<char>& is_pushed) {
+  gather(x);
+  for (const Term& t : terms_) {
+    if (depth_of(t) == 0) continue;
+    for (int k = 0; k < t.contact->num_particles; ++k) is_pushed[points_[t.point[k]].member] = 1;
+  }
 }
 
 /// From where inertia alone has taken the particles: the larger of what stops them, where many contacts bear
 /// the same particle each its share, which is right where weight presses, and of what pressed at the depth so
 /// far, carried along by the surface, which is right where tension does.
-void ContactTerms::guess_forces(const OffsetPositions& x) {
-  borne_.assign(mass_per_step_.size(), 0.0);
+void ContactTerms::guess(std::span<const Positions> y) {
+  gather(y);
+  borne_.assign(points_.size(), 0.0);
   for (const Term& t : terms_) {
     const Contact& c = *t.contact;
-    if (c.depth(x) == 0) continue;
-    for (int k = 0; k < c.num_particles; ++k) borne_[c.particle[k]] += c.weight[k] * c.weight[k];
+    if (depth_of(t) == 0) continue;
+    for (int k = 0; k < c.num_particles; ++k) borne_[t.point[k]] += c.weight[k] * c.weight[k];
   }
   for (Term& t : terms_) {
     const Contact& c = *t.contact;
     for (int k = 0; k < c.num_particles; ++k) {
-      const int p = c.particle[k];
-      if (borne_[p] > 0) t.inertia += c.weight[k] * c.weight[k] / borne_[p] * mass_per_step_[p];
+      const int p = t.point[k];
+      if (borne_[p] == 0) t.inertia += c.weight[k] * c.weight[k] * points_[p].mass_per_step;
+      if (borne_[p] > 0) t.inertia += c.weight[k] * c.weight[k] / borne_[p] * points_[p].mass_per_step;
     }
-    t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * c.depth(x), c.depth_before);
+    t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * depth_of(t), c.depth_before);
+    const Vec3 slide = slide_of(t);
+    // Of mutual contacts both sides are driven alike.
+    Vec3 driven = c.is_mutual() ? Vec3(Vec3::Zero()) : driven_;
+    driven -= driven.dot(c.normal) * c.normal;
+    t.slide = (slide - driven).norm();
+    if (t.inertia > 0) t.slide = std::max(t.slide, slide.norm() - c.friction * t.guess / t.inertia);
   }
 }
 
-/// µ N over the slide that is expected after the solve: the present one. At first the slide is what friction
-/// leaves of inertia's, but not less than if the velocity at the start went on: of the contacts that carry a
-/// sheet those that bear more must not hold it fast.
-double ContactTerms::friction_stiffness(const Term& t, double depth, const Vec3& slide) const {
+/// µ N over the slide that is expected after the solve. At first that is what friction leaves of inertia's,
+/// but not less than if the velocity at the start went on: of the contacts that carry a sheet those that bear
+/// more must not hold it fast. Then it is the slide so far, and what friction has been too much or too little
+/// for by inertia alone: less would take many linearisations to let go of what sticks.
+double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
   const double push =
       num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, kMostOfGuess * t.guess);
   const double most = c.friction * push;
-  double expected = slide.norm();
-  if (num_linearised_ == 0) {
-    const Vec3 driven = driven_ - driven_.dot(c.normal) * c.normal;
-    expected = std::max(expected - most / t.inertia, (slide - driven).norm());
-  }
+  double expected = slide;
+  if (num_linearised_ == 0)
+    expected = t.slide;
+  else if (t.friction > 0 && t.inertia > 0)
+    expected = std::clamp(slide + (t.friction * slide - most) / t.inertia, kLeastOfSlide * slide,
+                          kMostOfSlide * slide);
   return most / std::max(expected, sticking_);
 }
 
-double ContactTerms::linearise(const OffsetPositions& x, Vec3Array& force) {
-  if (num_linearised_ == 0) guess_forces(x);
+ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
+  gather(x);
+  double lack = 0, limits = 0, changes = 0;
+  for (const Term& t : terms_) {
+    const Contact& c = *t.contact;
+    const double depth = depth_of(t);
+    if (depth > 0 && t.can_move) lack = std::max(lack, depth / c.gap);
+    if (!t.is_active && depth == 0) continue;
+    const double slide = slide_of(t).norm(), limit = c.friction * c.stiffness * depth;
+    limits += limit;
+    changes += std::abs(limit * std::min(1.0, slide / sticking_) - t.friction * slide);
+  }
+  return {lack / kMostLack, limits > 0 ? changes / (kFrictionChange * limits) : 0};
+}
+
+void ContactTerms::set_solved(bool is_solved) {
+  for (Term& t : terms_) t.contact->is_solved = is_solved;
+}
+
+/// Whether a contact that does not push yet soon will: what lies on a collider, and barely touches it, is
+/// pressed onto it by inertia.
+bool ContactTerms::will_push(const Term& t, double beyond) {
+  const Contact& c = *t.contact;
+  return t.guess > 0 && !c.is_mutual() && beyond > -kBarely * c.gap;
+}
+
+double ContactTerms::linearise(std::span<const Positions> x, std::span<Vec3Array* const> force) {
+  gather(x);
   double energy = 0;
   active_.clear();
+  held_.clear();
+  std::fill(f_.begin(), f_.end(), Vec3::Zero());
   for (std::size_t n = 0; n < terms_.size(); ++n) {
     Term& t = terms_[n];
-    const Contact& c = *t.contact;
-    const double depth = c.depth(x);
-    t.is_active = depth > 0 && t.can_move;
+    Contact& c = *t.contact;
+    const double beyond = c.beyond(point_of(t)), depth = std::max(0.0, beyond);
+    t.is_active = (depth > 0 || (num_linearised_ == 0 && will_push(t, beyond))) && t.can_move;
     if (!t.is_active) t.friction = 0;
     if (!t.is_active) continue;
-    have_pushed_[n] = 1;
-    const Vec3 slide = c.slide(x);
-    t.friction = friction_stiffness(t, depth, slide);
-    const Vec3 push = c.stiffness * depth * c.normal - t.friction * slide;
-    Spring spring{.num_particles = c.num_particles,
-                  .weight = c.weight,
-                  .normal = c.normal,
-                  .beyond_friction = c.stiffness - t.friction,
-                  .friction = t.friction};
-    for (int k = 0; k < c.num_particles; ++k) {
-      const int at = spring.at[k] = x.rows.index(c.particle[k]);
-      force.set(at, force.get(at) + c.weight[k] * push);
-    }
-    active_.push_back(spring);
+    c.has_pushed |= depth > 0;
+    held_.push_back(static_cast<int>(n));
+    const Vec3 slide = slide_of(t);
+    t.friction = friction_stiffness(t, depth, slide.norm());
+    const Vec3 push = c.stiffness * beyond * c.normal - t.friction * slide;
+    for (int k = 0; k < c.num_particles; ++k) f_[t.point[k]] += c.weight[k] * push;
+    active_.push_back({.num_particles = c.num_particles,
+                       .point = t.point,
+                       .weight = c.weight,
+                       .normal = c.normal,
+                       .beyond_friction = c.stiffness - t.friction,
+                       .friction = t.friction});
     energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
   }
   ++num_linearised_;
+  if (active_.empty()) return energy;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    Vec3Array& field = *force[points_[p].member];
+    field.set(points_[p].at, field.get(points_[p].at) + f_[p]);
+  }
   return energy;
 }
 
-double ContactTerms::energy(const OffsetPositions& x) const {
+double ContactTerms::energy(std::span<const Positions> x) {
+  gather(x);
   double energy = 0;
   for (const Term& t : terms_) {
-    const double depth = t.contact->depth(x);
+    const double depth = depth_of(t);
     energy += 0.5 * t.contact->stiffness * depth * depth;
-    if (t.is_active) energy += 0.5 * t.friction * t.contact->slide(x).squaredNorm();
+    if (t.is_active) energy += 0.5 * t.friction * slide_of(t).squaredNorm();
   }
   return energy;
 }
 
-void ContactTerms::compute_forces(const OffsetPositions& x, const Vec3Array& others,
-                                  std::vector<Vec3>& forces) const {
-  forces.clear();
-  std::vector<const Contact*> contacts;
-  int num_particles = 0;
-  for (const Term& t : terms_) {
-    const Contact& c = *t.contact;
-    Vec3 force = Vec3::Zero();
-    if (t.can_move) force = c.stiffness * c.depth(x) * c.normal;
-    if (t.is_active) force -= t.friction * c.slide(x);
-    forces.push_back(force);
+void ContactTerms::compute_forces(std::span<const Positions> x, std::span<const Vec3Array* const> others) {
+  gather(x);
+  std::vector<Contact*> contacts;
+  std::vector<std::array<int, 4>> at;
+  std::vector<char> is_pinned;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    f_[p] = others[points_[p].member]->get(points_[p].at);
+    is_pinned.push_back(points_[p].mass_per_step == 0);
+  }
+  for (Term& t : terms_) {
+    Contact& c = *t.contact;
+    if (t.can_move) c.force = c.stiffness * depth_of(t) * c.normal;
+    if (t.is_active) c.force -= t.friction * slide_of(t);
+    for (int k = 0; k < c.num_particles; ++k) f_[t.point[k]] += c.weight[k] * c.force;
     contacts.push_back(&c);
-    for (int k = 0; k < c.num_particles; ++k) num_particles = std::max(num_particles, c.particle[k] + 1);
+    at.push_back(t.point);
   }
-  std::vector<Vec3> left;
-  for (int i = 0; i < num_particles; ++i) left.push_back(others.get(x.rows.index(i)));
-  for (std::size_t n = 0; n < contacts.size(); ++n) {
-    const Contact& c = *contacts[n];
-    for (int k = 0; k < c.num_particles; ++k) left[c.particle[k]] += c.weight[k] * forces[n];
-  }
-  give_rest_to_contacts(contacts, left, forces);
+  give_rest_to_contacts(at, f_, is_pinned, contacts);
 }
 
-double ContactTerms::add_product(const Vec3Array& p, Vec3Array& q) const {
+double ContactTerms::add_product(std::span<CgBlock* const> blocks) {
+  if (active_.empty()) return 0;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    x_[p] = blocks[points_[p].member]->direction.get(points_[p].at);
+    f_[p].setZero();
+  }
   double dot = 0;
   for (const Spring& s : active_) {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < s.num_particles; ++k) sum += s.weight[k] * p.get(s.at[k]);
+    Vec3 sum = s.weight[0] * x_[s.point[0]];
+    for (int k = 1; k < s.num_particles; ++k) sum += s.weight[k] * x_[s.point[k]];
     const Vec3 product = s.beyond_friction * s.normal.dot(sum) * s.normal + s.friction * sum;
-    for (int k = 0; k < s.num_particles; ++k) q.set(s.at[k], q.get(s.at[k]) + s.weight[k] * product);
+    for (int k = 0; k < s.num_particles; ++k) f_[s.point[k]] += s.weight[k] * product;
     dot += sum.dot(product);
+  }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    Vec3Array& q = blocks[points_[p].member]->product;
+    q.set(points_[p].at, q.get(points_[p].at) + f_[p]);
   }
   return dot;
 }
 
-void ContactTerms::add_to_preconditioners(const PaddedRows& rows, std::vector<float>& stiff,
-                                          std::vector<float>& along, ContactFilter& filter) const {
-  for (const Term& t : terms_) {
-    if (!t.is_active) continue;
+void ContactTerms::add_to_preconditioners(std::span<const Preconditioners> preconditioners) const {
+  for (const int n : held_) {
+    const Term& t = terms_[n];
     const Contact& c = *t.contact;
     for (int k = 0; k < c.num_particles; ++k) {
       const double share = c.weight[k] * c.weight[k];
       if (share == 0) continue;
-      const int at = rows.index(c.particle[k]);
-      stiff[at] += static_cast<float>(share * std::max(c.stiffness, t.friction));
-      along[at] += static_cast<float>(share * t.friction);
-      filter.hold(rows, c.particle[k], c.normal);
+      const Point& point = points_[t.point[k]];
+      const auto& [stiff, along, filter] = preconditioners[point.member];
+      (*stiff)[point.at] += static_cast<float>(share * std::max(c.stiffness, t.friction));
+      (*along)[point.at] += static_cast<float>(share * t.friction);
+      filter->hold(point.at, c.normal, stiff->size());
     }
+  }
+}
+
+void ContactTerms::touch(FreeBodies& bodies) const {
+  for (const int n : held_) {
+    const Term& t = terms_[n];
+    std::array<FreeBodies::Place, 4> places;
+    for (int k = 0; k < t.contact->num_particles; ++k) {
+      const Point& point = points_[t.point[k]];
+      places[k] = {point.member, point.particle};
+    }
+    bodies.touch({places.data(), static_cast<std::size_t>(t.contact->num_particles)}, t.contact->is_mutual());
   }
 }
 

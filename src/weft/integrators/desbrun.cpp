@@ -20,7 +20,7 @@ namespace {
 
 using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-class DesbrunIntegrator final : public Integrator {
+class DesbrunIntegrator final : public ClothIntegrator {
  public:
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step, JobSystem&,
                            ClothState& state) override {
@@ -128,6 +128,8 @@ class DesbrunIntegrator final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_desbrun() { return std::make_unique<DesbrunIntegrator>(); }
+std::unique_ptr<Integrator> make_desbrun() {
+  return make_one_by_one([] { return std::make_unique<DesbrunIntegrator>(); });
+}
 
 }  // namespace weft

@@ -17,8 +17,9 @@ constexpr double kStiffReach = 70;  // from here on a second Newton step pays
 constexpr int kMostTimes = 4;
 constexpr int kFewest = 5;
 
-/// Contacts are stiff, and friction needs their forces.
-constexpr int kIterationsInContact = 15;
+/// Many short Newton steps find out what touches, and how it slides, sooner than few long ones.
+constexpr double kShareInContact = 0.8;  // of the usual iterations, at least …
+constexpr int kFewestInContact = 8;
 
 /// The share of the decrease so far below which an iteration is not worth it [1].
 double enough_for(NewtonQuality quality) {
@@ -54,7 +55,7 @@ Effort choose_effort(const NewtonSettings& settings, double reach) {
   Effort effort;
   if (settings.iterations > 0) {
     effort.free = {settings.iterations, 0};
-    effort.in_contact = {std::max(settings.iterations, kIterationsInContact), 0};
+    effort.in_contact = {std::max(settings.iterations, kFewestInContact), 0};
     return effort;
   }
   // The power 5/16, by square roots: they have the same bits everywhere.
@@ -63,7 +64,7 @@ Effort choose_effort(const NewtonSettings& settings, double reach) {
   const int iterations = std::max(static_cast<int>(std::lround(usual)), kFewest);
   effort.free = {kMostTimes * iterations, enough_for(settings.quality),
                  fewest_for(settings.quality, iterations)};
-  effort.in_contact = {std::max(iterations, kIterationsInContact), 0};
+  effort.in_contact = {std::max(static_cast<int>(std::lround(kShareInContact * usual)), kFewestInContact), 0};
   const bool is_stiff = reach > kStiffReach && settings.quality != NewtonQuality::fast;
   if (is_stiff || settings.quality == NewtonQuality::high) effort.newton_steps = 2;
   return effort;

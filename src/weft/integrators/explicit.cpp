@@ -11,7 +11,7 @@ namespace {
 /// Share of the stability limit that automatic substeps use: the limit is that of the cloth at rest.
 constexpr double kSafety = 0.5;
 
-class ExplicitIntegrator final : public Integrator {
+class ExplicitIntegrator final : public ClothIntegrator {
  public:
   explicit ExplicitIntegrator(const ExplicitSettings& settings) : settings_(settings) {}
 
@@ -51,7 +51,7 @@ double explicit_step_limit(const ClothModel& model, const Wind& wind) {
 }
 
 std::unique_ptr<Integrator> make_explicit(const ExplicitSettings& settings) {
-  return std::make_unique<ExplicitIntegrator>(settings);
+  return make_one_by_one([=] { return std::make_unique<ExplicitIntegrator>(settings); });
 }
 
 }  // namespace weft

@@ -28,37 +28,80 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
   for (int i = 0; i < n; ++i) {
     if (root(i) == i && number[i] == 0) number[i] = count++;
   }
+  count_ = count;
   piece_.clear();
-  moment_.resize(count);
-  weight_.resize(count);
-  is_held_.assign(count, 0);
   if (count == 0) return;
   for (int i = 0; i < n; ++i) piece_.push_back(number[root(i)]);
 }
 
-void FreePieces::hold(int particle) {
-  if (!piece_.empty() && piece_[particle] >= 0) is_held_[piece_[particle]] = 1;
+void FreeBodies::begin(std::span<const Member> members) {
+  members_.assign(members.begin(), members.end());
+  first_piece_.assign(1, 0);
+  for (const Member& m : members_) first_piece_.push_back(first_piece_.back() + m.pieces->size());
+  release();
 }
 
-void FreePieces::release() { std::fill(is_held_.begin(), is_held_.end(), char{0}); }
+void FreeBodies::release() {
+  parent_.resize(first_piece_.back());
+  std::iota(parent_.begin(), parent_.end(), 0);
+  is_held_.assign(parent_.size(), 0);
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    if (members_[m].is_held)
+      std::fill(is_held_.begin() + first_piece_[m], is_held_.begin() + first_piece_[m + 1], char{1});
+  }
+}
 
-void FreePieces::remove_mean(const PaddedRows& rows, const std::vector<float>& weight,
-                             Vec3Array& displacement) {
-  if (piece_.empty()) return;
-  std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
-  std::fill(weight_.begin(), weight_.end(), 0.0);
-  const int n = static_cast<int>(piece_.size());
-  for (int i = 0; i < n; ++i) {
-    if (piece_[i] < 0) continue;
-    const int at = rows.index(i);
-    weight_[piece_[i]] += weight[at];
-    moment_[piece_[i]] += static_cast<double>(weight[at]) * displacement.get(at);
+int FreeBodies::root_of(int piece) const {
+  while (parent_[piece] != piece) piece = parent_[piece];
+  return piece;
+}
+
+int FreeBodies::piece_of(const Place& place) const {
+  const int piece = members_[place.member].pieces->piece_of(place.particle);
+  return piece < 0 ? -1 : root_of(first_piece_[place.member] + piece);
+}
+
+void FreeBodies::touch(std::span<const Place> places, bool is_mutual) {
+  int joined = -1;
+  bool is_held = !is_mutual;
+  for (const Place& place : places) {
+    const int piece = piece_of(place);
+    is_held |= piece < 0 || is_held_[piece];
+    if (piece < 0 || piece == joined) continue;
+    if (joined < 0) {
+      joined = piece;
+      continue;
+    }
+    parent_[std::max(joined, piece)] = std::min(joined, piece);
+    joined = std::min(joined, piece);
   }
-  for (int i = 0; i < n; ++i) {
-    if (piece_[i] < 0 || is_held_[piece_[i]]) continue;
-    const int at = rows.index(i);
-    displacement.set(at, displacement.get(at) - moment_[piece_[i]] / weight_[piece_[i]]);
-  }
+  if (joined >= 0 && is_held) is_held_[joined] = 1;
+}
+
+void FreeBodies::remove_mean(std::span<Vec3Array* const> displacements) {
+  if (parent_.empty()) return;
+  moment_.assign(parent_.size(), Vec3::Zero());
+  weight_.assign(parent_.size(), 0.0);
+  for (int& p : parent_) p = root_of(p);
+  const auto for_free = [&](const auto& body) {
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      const auto& [pieces, rows, weight, is_held] = members_[m];
+      if (pieces->size() == 0) continue;
+      for (int i = 0; i < rows->num_particles(); ++i) {
+        const int piece = pieces->piece_of(i);
+        if (piece < 0) continue;
+        const int root = parent_[first_piece_[m] + piece], at = rows->index(i);
+        if (!is_held_[root]) body(root, (*weight)[at], at, *displacements[m]);
+      }
+    }
+  };
+  for_free([&](int root, float weight, int at, const Vec3Array& displacement) {
+    weight_[root] += weight;
+    moment_[root] += static_cast<double>(weight) * displacement.get(at);
+  });
+  for_free([&](int root, float, int at, Vec3Array& displacement) {
+    displacement.set(at, displacement.get(at) - moment_[root] / weight_[root]);
+  });
 }
 
 }  // namespace weft

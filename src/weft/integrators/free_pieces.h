@@ -1,6 +1,8 @@
 #pragma once
-/// Private to integrators/: the pieces of a cloth that no pin holds.
+/// Private to integrators/: the pieces of cloth that no pin holds.
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "weft/core/padded_rows.h"
@@ -9,24 +11,53 @@
 
 namespace weft {
 
-/// Pieces of cloth that hang together by springs or elements, without a pinned particle among them.
+/// Pieces of a cloth that hang together by springs or elements, without a pinned particle among them.
 class FreePieces {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);
 
-  /// Something outside pushes the piece of this particle, until release(): its mean is left alone.
-  void hold(int particle);
-  void release();
-
-  /// Takes from the displacements of each free piece their mean, weighted by `weight` (laid out by `rows`).
-  void remove_mean(const PaddedRows& rows, const std::vector<float>& weight, Vec3Array& displacement);
+  int size() const { return count_; }
+  int piece_of(int particle) const { return piece_.empty() ? -1 : piece_[particle]; }  // -1: it is held
 
  private:
-  std::vector<int>
-      piece_;  // of each particle, -1: pinned or tied to a pin; empty if there are no free pieces
+  int count_ = 0;
+  std::vector<int> piece_;  // (num_particles) -1: pinned or tied to a pin; empty if there are no free pieces
+};
+
+/// The free pieces of several cloths, joined by the contacts between them: neither springs nor such contacts
+/// move the middle of what nothing else touches, which is how momentum is kept.
+class FreeBodies {
+ public:
+  struct Member {
+    const FreePieces* pieces = nullptr;
+    const PaddedRows* rows = nullptr;
+    const std::vector<float>* weight = nullptr;  // D, laid out by the rows [N/m]
+    bool is_held = false;                        // something outside acts on all of it
+  };
+  void begin(std::span<const Member> members);
+
+  /// A particle of the member of this number.
+  struct Place {
+    int member = 0, particle = 0;
+  };
+
+  /// What a contact does: joins the pieces of its particles if they push each other, else holds them.
+  void release();
+  void touch(std::span<const Place> places, bool is_mutual);
+
+  /// Takes from the displacements of each free body their mean, weighted by D (members).
+  void remove_mean(std::span<Vec3Array* const> displacements);
+
+ private:
+  int root_of(int piece) const;
+  int piece_of(const Place& place) const;
+
+  std::vector<Member> members_;
+  std::vector<int> first_piece_;  // (members + 1)
+  std::vector<int> parent_;       // (pieces)
+  std::vector<char> is_held_;     // (pieces) counts at roots
   std::vector<Vec3> moment_;
   std::vector<double> weight_;
-  std::vector<char> is_held_;
 };
 
 }  // namespace weft

@@ -39,8 +39,18 @@ struct Environment {
   double time = 0;               // at the end of the step [s]
   Wind wind;
   PinTargets pins;
-  std::vector<Contact> contacts;      // for integrators that resolve them
-  bool tells_contact_forces = false;  // whether contact_forces() will be asked for
+};
+
+/// One cloth during a step.
+struct Body {
+  const ClothModel* model = nullptr;
+  const Environment* environment = nullptr;
+  ClothState* state = nullptr;
+};
+
+struct SystemStep {
+  double step = 0;                    // [s]
+  bool tells_contact_forces = false;  // whether Contact::force is wanted
   WorkClock* clock = nullptr;         // of the whole step; null: not measured
 };
 
@@ -90,34 +100,39 @@ struct IntegratorSettings {
 /// What one call of advance() has to tell.
 struct IntegratorReport {
   bool converged = true;                 // false: the result is finite, but less exact than asked for
+  int unconverged = -1;                  // the first cloth of which that is so
   int iterations = 0;                    // of the nonlinear solver, summed [1]
   std::optional<int> linear_iterations;  // of the linear solver inside it, summed [1]
   std::optional<int> guard_events;       // how often the guard stepped in: see newton [1]
+
+  /// Adds the report of other cloths, of which `cloth` is the first.
+  void include(const IntegratorReport& other, int cloth);
 };
 
+/// Moves all cloths of a world together. The result depends on the arguments alone; what an integrator keeps
+/// between calls only saves time.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Into how many equal substeps a step must be cut, each with its own contact response [1].
+  /// Into how many equal substeps a step must be cut for a cloth, each with its own contact response [1].
   virtual int num_substeps(const ClothModel&, const Environment&, double /*step*/) const { return 1; }
 
-  /// Whether advance() resolves environment.contacts; else they are left empty.
+  /// Whether advance() resolves contacts; else there are to be none.
   virtual bool resolves_contacts() const { return false; }
 
-  /// Moves the cloth from t to t + step. Pinned particles end at their targets, with velocity (x' − x)/step.
-  /// Anything may differ from the call before: model, environment, step. The result depends on the arguments
-  /// alone; what an integrator keeps between calls only saves time.
-  virtual IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
-                                   JobSystem& jobs, ClothState& state) = 0;
+  /// Moves the cloths from t to t + step. Pinned particles end at their targets, with velocity (x' − x)/step.
+  /// Anything may differ from the call before. Cloth that no contact joins to other cloth moves as it would
+  /// alone, bit by bit.
+  virtual IntegratorReport advance(std::span<const Body> bodies, std::span<Contact> contacts,
+                                   const SystemStep& step, JobSystem& jobs) = 0;
 
-  /// The force on each contact's Σ w_i x_i in the last advance(), friction included (contacts); empty for
-  /// integrators that do not resolve them, and if the environment did not ask for them [N].
-  virtual std::span<const Vec3> contact_forces() const { return {}; }
-
-  /// Whether each contact has pushed in the last advance() (contacts); empty for integrators that do not
-  /// resolve them.
-  virtual std::span<const char> pushing_contacts() const { return {}; }
+  /// One cloth without contact.
+  IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
+                           JobSystem& jobs, ClothState& state) {
+    const Body body{&model, &environment, &state};
+    return advance({&body, 1}, {}, {.step = step}, jobs);
+  }
 };
 
 /// Names that make_integrator knows, in the order of the list above.

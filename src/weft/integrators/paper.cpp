@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-class PaperIntegrator final : public Integrator {
+class PaperIntegrator final : public ClothIntegrator {
  public:
   explicit PaperIntegrator(const PaperSettings& settings) : settings_(settings) {}
 
@@ -38,7 +38,7 @@ class PaperIntegrator final : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> make_paper(const PaperSettings& settings) {
-  return std::make_unique<PaperIntegrator>(settings);
+  return make_one_by_one([=] { return std::make_unique<PaperIntegrator>(settings); });
 }
 
 }  // namespace weft

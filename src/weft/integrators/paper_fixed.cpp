@@ -16,7 +16,7 @@
 namespace weft {
 namespace {
 
-class PaperFixedIntegrator final : public Integrator {
+class PaperFixedIntegrator final : public ClothIntegrator {
  public:
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
@@ -47,6 +47,8 @@ class PaperFixedIntegrator final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_paper_fixed() { return std::make_unique<PaperFixedIntegrator>(); }
+std::unique_ptr<Integrator> make_paper_fixed() {
+  return make_one_by_one([] { return std::make_unique<PaperFixedIntegrator>(); });
+}
 
 }  // namespace weft

@@ -7,7 +7,7 @@
 namespace weft {
 namespace {
 
-class XpbdIntegrator final : public Integrator {
+class XpbdIntegrator final : public ClothIntegrator {
  public:
   explicit XpbdIntegrator(const XpbdSettings& settings) : settings_(settings) {}
 
@@ -79,7 +79,7 @@ class XpbdIntegrator final : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> make_xpbd(const XpbdSettings& settings) {
-  return std::make_unique<XpbdIntegrator>(settings);
+  return make_one_by_one([=] { return std::make_unique<XpbdIntegrator>(settings); });
 }
 
 }  // namespace weft

@@ -36,19 +36,19 @@ void clear(Vec3Array& a) {
 
 }  // namespace
 
-void ConjugateGradients::begin(const Vec3Array& b, Vec3Array& x) {
-  residual_ = b;
-  if (x.size() != b.size()) x.resize(b.size());
-  clear(x);
-  if (direction_.size() != b.size()) {
-    for (Vec3Array* field : {&preconditioned_, &direction_, &product_}) *field = Vec3Array(b.size());
+void CgBlock::begin() {
+  residual = *b;
+  if (x->size() != b->size()) x->resize(b->size());
+  clear(*x);
+  if (direction.size() != b->size()) {
+    for (Vec3Array* field : {&preconditioned, &direction, &product}) *field = Vec3Array(b->size());
   }
-  clear(direction_);
+  clear(direction);
 }
 
-void ConjugateGradients::turn(double beta, JobSystem& jobs) {
+void CgBlock::turn(double beta, JobSystem& jobs) {
   const auto scale = static_cast<float>(beta);
-  Vec3Array &z = preconditioned_, &p = direction_;
+  Vec3Array &z = preconditioned, &p = direction;
   parallel_for(jobs, static_cast<int>(p.size()), kGrain, [&](int begin, int end) {
     turn_multi(scale, z.x(), p.x(), begin, end);
     turn_multi(scale, z.y(), p.y(), begin, end);
@@ -56,13 +56,13 @@ void ConjugateGradients::turn(double beta, JobSystem& jobs) {
   });
 }
 
-void ConjugateGradients::advance(double alpha, JobSystem& jobs, Vec3Array& x) {
+void CgBlock::advance(double alpha, JobSystem& jobs) {
   const auto share = static_cast<float>(alpha);
-  Vec3Array &p = direction_, &q = product_, &r = residual_;
+  Vec3Array &p = direction, &q = product, &r = residual;
   parallel_for(jobs, static_cast<int>(p.size()), kGrain, [&](int begin, int end) {
-    advance_multi(share, p.x(), q.x(), x.x(), r.x(), begin, end);
-    advance_multi(share, p.y(), q.y(), x.y(), r.y(), begin, end);
-    advance_multi(share, p.z(), q.z(), x.z(), r.z(), begin, end);
+    advance_multi(share, p.x(), q.x(), x->x(), r.x(), begin, end);
+    advance_multi(share, p.y(), q.y(), x->y(), r.y(), begin, end);
+    advance_multi(share, p.z(), q.z(), x->z(), r.z(), begin, end);
   });
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// Preconditioned conjugate gradients in floats, for matrices that are only known by what they do.
 
+#include <span>
+
 #include "weft/core/job_system.h"
 #include "weft/core/vec3_array.h"
 
@@ -19,41 +21,62 @@ struct CgReport {
   double decrease = 0;  // of ½ xᵀAx − bᵀx, from x = 0 [J]
 };
 
+/// One part of the vectors, and room for what a solve needs beside them.
+struct CgBlock {
+  const Vec3Array* b = nullptr;
+  Vec3Array* x = nullptr;
+  Vec3Array residual, preconditioned, direction, product;
+
+  void begin();                                 // r = b, x = p = 0
+  void turn(double beta, JobSystem& jobs);      // p = z + β p
+  void advance(double alpha, JobSystem& jobs);  // x += α p, r −= α A p
+};
+
+/// Solves A x = b from x = 0, all blocks together: α and β are common. multiply() computes product = A
+/// direction in every block and returns p·q; precondition() computes preconditioned ≈ A⁻¹ residual and
+/// returns r·z. Both work in a fixed order, so the result has the same bits for any number of threads. Stops
+/// early where A or the preconditioner turn out not to be positive definite.
+template <class Multiply, class Precondition>
+CgReport solve_conjugate_gradients(const Multiply& multiply, const Precondition& precondition,
+                                   std::span<CgBlock* const> blocks, const CgSettings& settings,
+                                   JobSystem& jobs) {
+  for (CgBlock* block : blocks) block->begin();
+  CgReport report;
+  double rz = precondition(), beta = 0;
+  while (report.iterations < settings.iterations && rz > 0) {
+    for (CgBlock* block : blocks) block->turn(beta, jobs);
+    const double curvature = multiply();
+    if (!(curvature > 0)) break;
+    for (CgBlock* block : blocks) block->advance(rz / curvature, jobs);
+    ++report.iterations;
+    const double decrease = 0.5 * rz * rz / curvature;
+    report.decrease += decrease;
+    const bool is_enough = decrease < settings.enough * report.decrease;
+    if (is_enough && report.iterations >= settings.least) break;
+    if (report.iterations == settings.iterations) break;
+    const double next = precondition();
+    beta = next / rz;
+    rz = next;
+  }
+  return report;
+}
+
+/// The same for one block: multiply(p, q) and precondition(r, z).
 class ConjugateGradients {
  public:
-  /// Solves A x = b from x = 0. multiply(p, q) computes q = A p and returns p·q; precondition(r, z) computes
-  /// z ≈ A⁻¹ r and returns r·z. Both work in a fixed order, so the result has the same bits for any number of
-  /// threads. Stops early where A or the preconditioner turn out not to be positive definite.
   template <class Multiply, class Precondition>
   CgReport solve(const Multiply& multiply, const Precondition& precondition, const Vec3Array& b,
                  const CgSettings& settings, JobSystem& jobs, Vec3Array& x) {
-    begin(b, x);
-    CgReport report;
-    double rz = precondition(residual_, preconditioned_), beta = 0;
-    while (report.iterations < settings.iterations && rz > 0) {
-      turn(beta, jobs);
-      const double curvature = multiply(direction_, product_);
-      if (!(curvature > 0)) break;
-      advance(rz / curvature, jobs, x);
-      ++report.iterations;
-      const double decrease = 0.5 * rz * rz / curvature;
-      report.decrease += decrease;
-      const bool is_enough = decrease < settings.enough * report.decrease;
-      if (is_enough && report.iterations >= settings.least) break;
-      if (report.iterations == settings.iterations) break;
-      const double next = precondition(residual_, preconditioned_);
-      beta = next / rz;
-      rz = next;
-    }
-    return report;
+    block_.b = &b;
+    block_.x = &x;
+    CgBlock* const blocks[] = {&block_};
+    return solve_conjugate_gradients([&] { return multiply(block_.direction, block_.product); },
+                                     [&] { return precondition(block_.residual, block_.preconditioned); },
+                                     blocks, settings, jobs);
   }
 
  private:
-  void begin(const Vec3Array& b, Vec3Array& x);               // r = b, x = p = 0
-  void turn(double beta, JobSystem& jobs);                    // p = z + β p
-  void advance(double alpha, JobSystem& jobs, Vec3Array& x);  // x += α p, r −= α A p
-
-  Vec3Array residual_, preconditioned_, direction_, product_;
+  CgBlock block_;
 };
 
 }  // namespace weft

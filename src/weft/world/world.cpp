@@ -85,7 +85,7 @@ constexpr double kCalm = 0.5;       // severity of a part that could have been l
 
 }  // namespace
 
-World::World() : jobs_(make_serial_jobs()) {}
+World::World() : integrator_(make_integrator({})), jobs_(make_serial_jobs()) {}
 
 World::Cloth& World::at(ClothId id) { return cloths_.at(static_cast<std::size_t>(id.index)); }
 const World::Cloth& World::at(ClothId id) const { return cloths_.at(static_cast<std::size_t>(id.index)); }
@@ -107,7 +107,6 @@ ClothId World::add_cloth(const ClothDesc& desc) {
   require(find_non_finite(cloth.state) < 0,
           "cloth \"" + desc.name + "\" has a position that is not a finite number");
   cloth.is_pinned.assign(positions.size(), 0);
-  cloth.integrator = make_integrator(integrator_settings_);
   cloths_.push_back(std::move(cloth));
   return {num_cloths() - 1};
 }
@@ -158,7 +157,7 @@ void World::set_material(ClothId id, const ClothMaterial& material) {
 
 void World::set_wind(const Wind& wind) {
   require_air(wind, integrator_settings_.integrator);
-  environment_.wind = wind;
+  wind_ = wind;
 }
 
 ContactSystem::Place World::find_place(const std::string& name) const {
@@ -211,104 +210,95 @@ std::vector<std::array<std::string, 2>> World::passing_pairs() const {
 }
 
 void World::set_integrator(const IntegratorSettings& settings) {
-  make_integrator(settings);  // throws before anything has changed
+  std::unique_ptr<Integrator> integrator = make_integrator(settings);  // throws before anything has changed
   for (const Cloth& cloth : cloths_) {
     if (cloth.model->elements) require_elements_move(settings.integrator, cloth.name);
   }
-  require_air(environment_.wind, settings.integrator);
+  require_air(wind_, settings.integrator);
   integrator_settings_ = settings;
-  for (Cloth& cloth : cloths_) {
-    cloth.integrator = make_integrator(settings);
-    cloth.state.history.step = 0;
-  }
+  integrator_ = std::move(integrator);
+  for (Cloth& cloth : cloths_) cloth.state.history.step = 0;
 }
 
-void World::aim_pins(Cloth& cloth, double time) {
+void World::set_environment(Cloth& cloth, double time) {
+  Environment& environment = cloth.environment;
+  environment.gravity = gravity_;
+  environment.time = time;
+  environment.wind = wind_;
+  environment.pins.particle.clear();
+  environment.pins.position.clear();
   poses_.clear();
   for (const Pin& pin : cloth.pins) poses_.push_back(pin.motion.at(time));
-  cloth.targets.particle.clear();
-  cloth.targets.position.clear();
   for (const PinnedParticle& p : cloth.pinned) {
-    cloth.targets.particle.push_back(p.particle);
-    cloth.targets.position.push_back(apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor));
+    environment.pins.particle.push_back(p.particle);
+    environment.pins.position.push_back(apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor));
   }
 }
 
 /// As many as the cloth that needs most: they meet at the end of every one.
 int World::num_substeps(double dt) const {
   int substeps = 1;
-  for (const Cloth& cloth : cloths_) {
-    substeps = std::max(substeps, cloth.integrator->num_substeps(*cloth.model, environment_, dt));
-  }
+  const Environment environment{.gravity = gravity_, .wind = wind_};
+  for (const Cloth& cloth : cloths_)
+    substeps = std::max(substeps, integrator_->num_substeps(*cloth.model, environment, dt));
   return substeps;
 }
 
 void World::show_contact_cloths() {
   contact_cloths_.clear();
-  const Wind& wind = environment_.wind;
-  const bool is_still = wind.drag == 0 && wind.air.density == 0;
-  for (Cloth& cloth : cloths_) {
-    const bool is_free = is_still && cloth.pinned.empty() && cloth.hands.are_empty();
-    contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned, is_free});
-  }
+  for (Cloth& cloth : cloths_) contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
 }
 
 void World::begin_contact(double time, double dt) {
   show_contact_cloths();
-  pin_positions_.clear();
-  bool is_predicted = false;
-  for (Cloth& cloth : cloths_) {
-    pin_positions_.insert(pin_positions_.end(), cloth.targets.position.begin(), cloth.targets.position.end());
-    is_predicted |= cloth.integrator->resolves_contacts();
-  }
   contact_system_.begin_step(
       contact_cloths_, colliders_,
       {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_, .clock = &clock_});
-  if (is_predicted) contact_system_.predict(environment_.gravity, pin_positions_, *jobs_);
+  if (!integrator_->resolves_contacts()) return;
+  pin_positions_.clear();
+  for (const Cloth& cloth : cloths_) {
+    const std::vector<Vec3>& pins = cloth.environment.pins.position;
+    pin_positions_.insert(pin_positions_.end(), pins.begin(), pins.end());
+  }
+  contact_system_.predict(gravity_, pin_positions_, *jobs_);
+  contact_system_.find_contacts(contacts_);
 }
 
 /// One substep of all cloths, to `time`.
 void World::advance(double time, double dt, StepReport& report) {
-  // What moves by prescription.
-  for (Cloth& cloth : cloths_) aim_pins(cloth, time);
-  // What is held.
+  // Kinematics.
+  for (Cloth& cloth : cloths_) set_environment(cloth, time);
+  // Attachments.
   for (Cloth& cloth : cloths_) {
-    cloth.held_model =
-        &cloth.hands.begin(cloth.model, cloth.is_pinned, environment_.gravity, dt, cloth.state);
+    cloth.held_model = &cloth.hands.begin(cloth.model, cloth.is_pinned, gravity_, dt, cloth.state);
     if (!cloth.hands.are_empty()) cloth.state.history.step = 0;  // its past does not know of the hands
   }
+  // Contact candidates.
+  contacts_.clear();
   if (contact_) begin_contact(time, dt);
-  for (int c = 0; c < num_cloths(); ++c) {
-    Cloth& cloth = cloths_[c];
-    // What is in the cloth's way.
-    environment_.pins = cloth.targets;
-    environment_.time = time;
-    environment_.contacts.clear();
-    environment_.tells_contact_forces = tracks_contacts_;
-    environment_.clock = &clock_;
-    if (contact_ && cloth.integrator->resolves_contacts()) {
-      contact_system_.find_contacts(c, environment_.contacts);
-    }
-    // The cloth's own motion.
-    const IntegratorReport done =
-        cloth.integrator->advance(*cloth.held_model, environment_, dt, *jobs_, cloth.state);
-    cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
-    report.iterations += done.iterations;
-    add(done.linear_iterations, report.linear_iterations);
-    add(done.guard_events, report.guard_events);
-    if (!done.converged) has_converged_[c] = 0;
-    if (!contact_) continue;
-    if (tracks_contacts_) contact_system_.add_solved(c, cloth.integrator->contact_forces());
-    contact_system_.end_of(c, cloth.integrator->pushing_contacts());
-  }
+  // The solve.
+  solve(dt, report);
   if (!contact_) return;
-  contact_system_.keep_momentum(environment_.gravity);
-  // What has come too close all the same.
+  contact_system_.take_solved(contacts_);
+  // Contact projection.
   contact_system_.hold_off(*jobs_);
-  // What would still go through anything.
+  // Continuous collision detection: the fail-safe.
   stop_crossings(report);
   const int wild = contact_system_.wild_cloth();
   if (wild >= 0) is_wild_[wild] = 1;
+}
+
+/// Of all cloths together.
+void World::solve(double dt, StepReport& report) {
+  bodies_.clear();
+  for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
+  const SystemStep step{.step = dt, .tells_contact_forces = tracks_contacts_, .clock = &clock_};
+  const IntegratorReport done = integrator_->advance(bodies_, contacts_, step, *jobs_);
+  for (Cloth& cloth : cloths_) cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
+  report.iterations += done.iterations;
+  add(done.linear_iterations, report.linear_iterations);
+  add(done.guard_events, report.guard_events);
+  if (!done.converged) report.warnings.push_back({WarningCode::not_converged, done.unconverged});
 }
 
 void World::stop_crossings(StepReport& report) {
@@ -401,7 +391,7 @@ bool World::divides() const {
 
 bool World::is_driven() const {
   const auto moves = [](const auto& thing) { return !thing.motion.is_still(); };
-  if (environment_.wind.drag > 0 || environment_.wind.air.density > 0) return true;
+  if (wind_.drag > 0 || wind_.air.density > 0) return true;
   const auto is_deforming = [](const Collider& c) {
     const auto* mesh = std::get_if<MeshShape>(&c.shape);
     return mesh && mesh->sequence;
@@ -424,7 +414,6 @@ int World::num_parts_at_most(double dt) const {
 
 /// Takes all cloths from `before` to `time` in a step of dt, and says how good it was.
 StepCheck World::try_part(const Snapshot& before, double time, double dt, StepReport& report) {
-  has_converged_.assign(cloths_.size(), 1);
   is_wild_.assign(cloths_.size(), 0);
   advance(time, dt, report);
   for (int c = 0; c < num_cloths(); ++c) {
@@ -433,13 +422,12 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
   }
   for (int c = 0; c < num_cloths(); ++c) {
     if (is_wild_[c]) report.warnings.push_back({WarningCode::contact_skipped, c});
-    if (!has_converged_[c]) report.warnings.push_back({WarningCode::not_converged, c});
   }
   if (!divides()) return {};
   checked_.clear();
   for (int c = 0; c < num_cloths(); ++c)
     checked_.push_back({*cloths_[c].model, before.states[c], cloths_[c].state});
-  StepCheck check = check_step(checked_, environment_.gravity, dt, is_driven());
+  StepCheck check = check_step(checked_, gravity_, dt, is_driven());
   for (int c = 0; c < num_cloths(); ++c) {
     if (is_wild_[c]) check.include({StepFault::skipped, 1, 0, c, -1});
   }

@@ -93,7 +93,7 @@ class World {
     at(cloth).hands.set_target(grab, target);
   }
   void set_material(ClothId cloth, const ClothMaterial& material);
-  void set_gravity(const Vec3& gravity) { environment_.gravity = gravity; }  // [m/s²]
+  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }  // [m/s²]
   /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
   void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
@@ -145,8 +145,8 @@ class World {
   /// The names of things that go through each other (pairs).
   std::vector<std::array<std::string, 2>> passing_pairs() const;
 
-  const Vec3& gravity() const { return environment_.gravity; }
-  const Wind& wind() const { return environment_.wind; }
+  const Vec3& gravity() const { return gravity_; }
+  const Wind& wind() const { return wind_; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
   const StepDivision& division() const { return division_; }
 
@@ -175,12 +175,11 @@ class World {
     ClothState state;
     std::vector<Pin> pins;
     std::vector<PinnedParticle> pinned;  // by ascending particle
-    PinTargets targets;                  // of a substep
+    Environment environment;             // of a substep
     std::vector<char> is_pinned;         // (num_particles)
     Hands hands;
     const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where hands hold it
     Vec3 grab_impulse = Vec3::Zero();        // of all hands in the last step [N·s]
-    std::unique_ptr<Integrator> integrator;
   };
 
   Cloth& at(ClothId id);
@@ -202,12 +201,15 @@ class World {
   ContactSystem::Place find_place(const std::string& name) const;
   ContactRule& rule_for(const std::string& a, const std::string& b);
   void save(Snapshot& snapshot) const;
-  void aim_pins(Cloth& cloth, double time);
+  void set_environment(Cloth& cloth, double time);
+  void solve(double dt, StepReport& report);
 
   double time_ = 0;
   bool contact_ = true, tracks_contacts_ = false;
-  Environment environment_;  // its pins and contacts are filled in for each cloth
+  Vec3 gravity_ = {0, -9.81, 0};  // [m/s²]
+  Wind wind_;
   IntegratorSettings integrator_settings_;
+  std::unique_ptr<Integrator> integrator_;
   StepDivision division_;
   double part_ = 0;  // the length that steps are divided into, 0: they are not [s]
   int calm_ = 0;     // parts in a row that could have been longer
@@ -221,8 +223,10 @@ class World {
   WorkClock clock_;
   ContactSystem contact_system_;
   std::vector<ContactCloth> contact_cloths_;
-  std::vector<Vec3> pin_positions_;            // of all cloths
-  std::vector<char> has_converged_, is_wild_;  // (cloths)
+  std::vector<Body> bodies_;
+  std::vector<Contact> contacts_;
+  std::vector<Vec3> pin_positions_;  // of all cloths
+  std::vector<char> is_wild_;        // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_step_, before_part_;
   std::vector<CheckedCloth> checked_;
