@@ -234,7 +234,7 @@ void bench_rest(const ContactExperiment& setup, double seconds) {
       "## Rest\n\n"
       "A sheet of 0.8 m, {0}×{0} cells, dropped from 1 cm; of the second half of {1} s. `rise` is the most "
       "that its middle rose by "
-      "in a step at any time, `force` what all contacts bear over the weight.\n\n"
+      "in a step at any time, `force` what all contacts bear over the weight, on the mean.\n\n"
       "| on | kinetic energy J/kg | drift mm | rise mm | force |\n|---|--:|--:|--:|--:|\n",
       setup.cells, seconds);
   for (const auto& [name, support] :

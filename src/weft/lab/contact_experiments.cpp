@@ -226,13 +226,15 @@ RestingSheet rest_on(const ContactExperiment& setup, Support support, double sec
   };
   run(world, setup, seconds / 2, watch_rise);
   const Vec3 before = middle_of(world, sheet);
+  double impulse = 0;  // of all contacts, upwards [N·s]
   run(world, setup, seconds / 2, [&] {
     watch_rise();
     rest.kinetic =
         std::max(rest.kinetic, compute_kinetic_energy(world.model(sheet), world.state(sheet)) / mass);
     rest.drift = std::max(rest.drift, (middle_of(world, sheet) - before).norm());
+    for (const ContactPoint& p : world.contact_points()) impulse += p.force.y() / setup.steps_per_second;
   });
-  for (const ContactPoint& p : world.contact_points()) rest.force += p.force.y() / (mass * kGravity);
+  rest.force = impulse / (mass * kGravity * seconds / 2);
   return rest;
 }
 

@@ -62,7 +62,7 @@ struct RestingSheet {
   double kinetic = 0;  // the most in the second half of the time [J/kg]
   double drift = 0;    // of the middle in the second half [m]
   double rise = 0;     // the most that the middle ever rose by from one step to the next [m]
-  double force = 0;    // of all contacts over the weight, at the end [1]
+  double force = 0;    // of all contacts over the weight, mean of the second half [1]
 };
 enum class Support { ball, floor };
 RestingSheet rest_on(const ContactExperiment& setup, Support support, double seconds);

@@ -123,7 +123,7 @@ Claim cloth_comes_to_rest(const ChapterOptions& options) {
       fmt::format("A sheet of 0.8 m dropped from 1 cm, `newton` at 60 steps per second: of the second half "
                   "of {:.0f} s the most kinetic energy per mass, how far its "
                   "middle has moved, by how much that ever rose in a step, and what all contacts bear over "
-                  "its weight at the end.",
+                  "its weight on the mean.",
                   seconds)};
   claim.tables = {
       {{"on", "kinetic energy, J/kg", "drift, mm", "rise in a step, mm", "force over weight"}, {}}};
