@@ -33,18 +33,11 @@ struct Constraint {
     return result;
   }
 
-  /// Σ w_i²/m_i over its vertices from `begin` to before `end` [1/kg].
-  double inverse_mass_of(const std::vector<double>& inverse_masses, int begin, int end) const {
-    double result = 0;
-    for (int k = 0; k < num_vertices; ++k) {
-      if (vertex[k] >= begin && vertex[k] < end) result += weight[k] * weight[k] * inverse_masses[vertex[k]];
-    }
-    return result;
-  }
-
   /// Σ w_i²/m_i over all its vertices [1/kg].
   double inverse_mass_of(const std::vector<double>& inverse_masses) const {
-    return inverse_mass_of(inverse_masses, 0, static_cast<int>(inverse_masses.size()));
+    double result = 0;
+    for (int k = 0; k < num_vertices; ++k) result += weight[k] * weight[k] * inverse_masses[vertex[k]];
+    return result;
   }
 
   /// Adds the impulse p, each vertex' share over its mass.

@@ -10,6 +10,9 @@
 
 namespace weft {
 
+/// The share of its gap that a solve may leave a contact short of [1].
+constexpr double kMaxLack = 0.3;
+
 /// A point of cloth, or the gap between two, that a step must keep on one side of a plane.
 ///
 ///                 o Σ w_i x_i
@@ -36,7 +39,7 @@ struct Contact {
 
   // What the solve found.
   bool has_pushed = false;    // at any time in it
-  bool is_solved = false;     // all contacts of cloths that it joins keep most of their gaps
+  bool is_solved = false;     // no contact of its group lacks more than kMaxLack
   Vec3 force = Vec3::Zero();  // on Σ w_i x_i, friction included; if it was asked for [N]
 
   /// Whether cloth pushes cloth: Σ w_i = 0, else ±1.
@@ -46,7 +49,7 @@ struct Contact {
     return std::abs(sum) < 0.5;
   }
 
-  /// How far a point is beyond the plane, negative if it is not [m]; and 0 if it is not.
+  /// How far a point is beyond the plane; negative, or as a depth 0, if it is not [m].
   double beyond(const Vec3& point) const { return offset - normal.dot(point); }
   double depth_at(const Vec3& point) const { return std::max(0.0, beyond(point)); }
 

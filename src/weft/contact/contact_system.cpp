@@ -25,7 +25,6 @@ constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of conta
 constexpr int kPassesAfterSolve = 4;
 constexpr double kSlidingSpeed = 0.01;  // slower, static friction holds [m/s]
 constexpr int kSearches = 6;            // after friction, contacts are looked for anew this often
-constexpr double kMostLack = 0.3;       // of the gap, that the solve may leave
 constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
 /// How far cloth may move before pairs are searched again: a share of its cells, or of its thickness.
@@ -273,10 +272,11 @@ void ContactSystem::take_solved(std::span<const Contact> contacts) {
   read_ends();
   is_solved_.assign(cloths_.size(), is_predicted_);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
-    for (int k = 0; k < contacts[n].num_particles; ++k)
-      is_solved_[mesh_of(first_vertex_, contacts[n].particle[k])] = contacts[n].is_solved;
-    add_touch(constraints_[found_[n]], contacts[n].force);
-    if (step_.clock && contacts[n].has_pushed) ++step_.clock->times.active;
+    const Contact& c = contacts[n];
+    for (const int v : {c.particle[0], c.particle[c.num_particles - 1]})
+      is_solved_[mesh_of(first_vertex_, v)] = c.is_solved;
+    add_touch(constraints_[found_[n]], c.force);
+    if (step_.clock && c.has_pushed) ++step_.clock->times.active;
   }
 }
 
@@ -384,7 +384,7 @@ int ContactSystem::wild_cloth() const {
   return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
-/// Whether the solve has kept all cloths of a constraint apart.
+/// Whether the solve has kept apart all cloths of a constraint.
 bool ContactSystem::is_solved(const Constraint& c) const {
   for (int k = 0; k < c.num_vertices; ++k) {
     const int v = c.vertex[k];
@@ -393,11 +393,23 @@ bool ContactSystem::is_solved(const Constraint& c) const {
   return true;
 }
 
+/// From now on it has not. Returns whether it had one of them.
+bool ContactSystem::mark_unsolved(const Constraint& c) {
+  bool has_changed = false;
+  for (int k = 0; k < c.num_vertices; ++k) {
+    if (c.vertex[k] >= first_vertex_.back()) continue;
+    char& is_solved = is_solved_[mesh_of(first_vertex_, c.vertex[k])];
+    has_changed |= is_solved != 0;
+    is_solved = 0;
+  }
+  return has_changed;
+}
+
 /// Whether the solve has kept apart all cloths, and each has gone where contacts were looked for.
 bool ContactSystem::went_as_expected() const {
   if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
   for (int v = 0; v < first_vertex_.back(); ++v) {
-    const double most = 0.5 * kMostLack * motion_.half_thickness[v];
+    const double most = 0.5 * kMaxLack * motion_.half_thickness[v];
     if ((motion_.end[v] - expected_[v]).squaredNorm() > most * most) return false;
   }
   return true;
@@ -407,21 +419,12 @@ bool ContactSystem::went_as_expected() const {
 void ContactSystem::leave_out_solved() {
   if (!is_predicted_) return;
   for (const Constraint& c : constraints_) {
-    if (c.target - c.normal.dot(c.sum(motion_.end)) <= kMostLack * kept_gap(c)) continue;
-    for (int k = 0; k < c.num_vertices; ++k) {
-      if (c.vertex[k] < first_vertex_.back()) is_solved_[mesh_of(first_vertex_, c.vertex[k])] = 0;
-    }
+    if (c.target - c.normal.dot(c.sum(motion_.end)) > kMaxLack * kept_gap(c)) mark_unsolved(c);
   }
   for (bool is_spreading = true; is_spreading;) {
     is_spreading = false;
     for (const Constraint& c : constraints_) {
-      if (is_solved(c)) continue;
-      for (int k = 0; k < c.num_vertices; ++k) {
-        if (c.vertex[k] >= first_vertex_.back()) continue;
-        char& is = is_solved_[mesh_of(first_vertex_, c.vertex[k])];
-        is_spreading |= is != 0;
-        is = 0;
-      }
+      if (!is_solved(c)) is_spreading |= mark_unsolved(c);
     }
   }
   std::erase_if(constraints_, [&](const Constraint& c) { return is_solved(c); });
@@ -433,10 +436,12 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   proximity_.update(motion_, jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
-  if (went_as_expected()) return;
+  const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
+  is_clear_ = lists_are_empty && !has_plain_shapes();
+  if (is_clear_ || went_as_expected()) return;
   collect_pairs(jobs);
   collect_shapes(0.0);
-  is_clear_ = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty() && !is_near_shape_;
+  is_clear_ = lists_are_empty && !is_near_shape_;
   leave_out_solved();
   if (constraints_.empty()) return;
   project(jobs);

@@ -178,6 +178,7 @@ class ContactSystem {
   bool is_of_this_world() const;
   void read_ends();
   bool is_solved(const Constraint& c) const;
+  bool mark_unsolved(const Constraint& c);
   bool went_as_expected() const;
   void leave_out_solved();
   void find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);

@@ -11,8 +11,7 @@ constexpr int kGuesses = 2;           // linearisations for which friction goes 
 constexpr double kMostOfGuess = 3;    // … and then by no more than so many times as much
 constexpr double kLeastOfSlide = 0.7, kMostOfSlide = 1.5;  // that the next slide is expected to be
 constexpr double kBarely = 0.01;                           // of the gap, that is left between what touches
-constexpr double kMostLack = 0.3;                          // of the gap, where the solve may stop
-constexpr double kFrictionChange = 0.02;                   // of friction's limit, likewise
+constexpr double kFrictionChange = 0.02;                   // of friction's limit, where the solve may stop
 
 }  // namespace
 
@@ -56,26 +55,21 @@ void ContactTerms::begin(std::span<Contact> contacts, std::span<const int> which
   if (!terms_.empty()) find_points(members, step);
 }
 
-/// Of every particle of a contact, once.
+/// One for every particle of a contact.
 void ContactTerms::find_points(std::span<const Member> members, double step) {
-  const auto end_of = [](const Member& m) { return m.first_particle + m.model->num_particles(); };
-  number_.assign(end_of(members.back()), -1);
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    for (const int p : members[m].pins->particle) number_[members[m].first_particle + p] = -2;
-  }
+  for (const int particle : numbered_) number_[particle] = -1;
+  numbered_.clear();
+  const Member& last = members.back();
+  const std::size_t size = last.first_particle + last.model->num_particles();
+  if (number_.size() < size) number_.resize(size, -1);
   for (Term& t : terms_) {
     const Contact& c = *t.contact;
     for (int k = 0; k < c.num_particles; ++k) {
       int& number = number_[c.particle[k]];
       if (number < 0) {
-        const auto after = std::upper_bound(members.begin(), members.end(), c.particle[k],
-                                            [](int i, const Member& m) { return i < m.first_particle; });
-        const auto member = static_cast<int>(after - members.begin()) - 1;
-        const Member& m = members[member];
-        const int particle = c.particle[k] - m.first_particle;
-        const double mass = number == -2 ? 0 : m.model->mass[particle];
         number = static_cast<int>(points_.size());
-        points_.push_back({member, particle, m.rows->index(particle), mass / (step * step)});
+        numbered_.push_back(c.particle[k]);
+        points_.push_back(make_point(members, c.particle[k], step));
       }
       t.point[k] = number;
       t.can_move |= c.weight[k] != 0 && points_[number].mass_per_step > 0;
@@ -83,6 +77,18 @@ void ContactTerms::find_points(std::span<const Member> members, double step) {
   }
   x_.resize(points_.size());
   f_.resize(points_.size());
+}
+
+ContactTerms::Point ContactTerms::make_point(std::span<const Member> members, int number, double step) {
+  const auto after = std::upper_bound(members.begin(), members.end(), number,
+                                      [](int i, const Member& m) { return i < m.first_particle; });
+  const auto member = static_cast<int>(after - members.begin()) - 1;
+  const Member& m = members[member];
+  const int particle = number - m.first_particle;
+  const std::vector<int>& pins = m.pins->particle;
+  const bool is_pinned = std::binary_search(pins.begin(), pins.end(), particle);
+  const double mass = is_pinned ? 0 : m.model->mass[particle];
+  return {member, particle, m.rows->index(particle), mass / (step * step)};
 }
 
 void ContactTerms::gather(std::span<const Positions> x) {
@@ -130,8 +136,8 @@ void ContactTerms::guess(std::span<const Positions> y) {
     const Contact& c = *t.contact;
     for (int k = 0; k < c.num_particles; ++k) {
       const int p = t.point[k];
-      if (borne_[p] == 0) t.inertia += c.weight[k] * c.weight[k] * points_[p].mass_per_step;
-      if (borne_[p] > 0) t.inertia += c.weight[k] * c.weight[k] / borne_[p] * points_[p].mass_per_step;
+      const double share = c.weight[k] * c.weight[k] / (borne_[p] > 0 ? borne_[p] : 1);
+      t.inertia += share * points_[p].mass_per_step;
     }
     t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * depth_of(t), c.depth_before);
     const Vec3 slide = slide_of(t);
@@ -173,7 +179,7 @@ ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
     limits += limit;
     changes += std::abs(limit * std::min(1.0, slide / sticking_) - t.friction * slide);
   }
-  return {lack / kMostLack, limits > 0 ? changes / (kFrictionChange * limits) : 0};
+  return {lack / kMaxLack, limits > 0 ? changes / (kFrictionChange * limits) : 0};
 }
 
 void ContactTerms::set_solved(bool is_solved) {

@@ -62,7 +62,7 @@ class ContactTerms {
   /// (members).
   void guess(std::span<const Positions> y);
 
-  /// How far a solve that has come to these positions is from its end, of 1: it is good enough.
+  /// What a solve leaves over at these positions, over what it may leave [1].
   struct Unrest {
     double lack = 0;      // the largest depth
     double friction = 0;  // by how much friction would change
@@ -127,6 +127,7 @@ class ContactTerms {
   };
 
   void find_points(std::span<const Member> members, double step);
+  static Point make_point(std::span<const Member> members, int number, double step);
   void gather(std::span<const Positions> x);
   Vec3 point_of(const Term& term) const;
   double depth_of(const Term& term) const;
@@ -139,6 +140,7 @@ class ContactTerms {
   int num_linearised_ = 0;  // in this step
   std::vector<Point> points_;
   std::vector<int> number_;    // (particles of all bodies) in points_, -1: none
+  std::vector<int> numbered_;  // particles that are
   std::vector<double> borne_;  // (points) Σ w² of the contacts that push
   std::vector<Vec3> x_, f_;    // (points) positions or directions; forces or products
   std::vector<Term> terms_;

@@ -3,20 +3,17 @@
 #include "weft/core/error.h"
 
 namespace weft {
-namespace {
 
-void add(const std::optional<int>& count, std::optional<int>& sum) {
+void add_count(const std::optional<int>& count, std::optional<int>& sum) {
   if (count) sum = sum.value_or(0) + *count;
 }
-
-}  // namespace
 
 void IntegratorReport::include(const IntegratorReport& other, int cloth) {
   if (converged && !other.converged) unconverged = cloth;
   converged &= other.converged;
   iterations += other.iterations;
-  add(other.linear_iterations, linear_iterations);
-  add(other.guard_events, guard_events);
+  add_count(other.linear_iterations, linear_iterations);
+  add_count(other.guard_events, guard_events);
 }
 
 const std::vector<std::string_view>& integrator_names() {

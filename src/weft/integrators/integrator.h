@@ -97,6 +97,9 @@ struct IntegratorSettings {
   bool is_double = false;
 };
 
+/// Adds a count to a sum; both may be empty.
+void add_count(const std::optional<int>& count, std::optional<int>& sum);
+
 /// What one call of advance() has to tell.
 struct IntegratorReport {
   bool converged = true;                 // false: the result is finite, but less exact than asked for

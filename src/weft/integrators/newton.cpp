@@ -86,6 +86,9 @@ class NewtonGroup {
   void predict() {
     bool is_euler =
         std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->had_contact(); });
+    if (!contacts_.empty()) {
+      for (NewtonCloth* cloth : cloths_) cloth->remember_gain();
+    }
     if (!is_euler && !contacts_.empty()) {
       positions_.clear();
       for (NewtonCloth* cloth : cloths_) positions_.push_back(cloth->place_freely(*jobs_));

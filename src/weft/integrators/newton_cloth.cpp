@@ -94,7 +94,6 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
   pin_motion_.prepare(pins, step_, *state_);
-  mean_gain_ = find_mean_gain();
   weft::predict(scheme_, rows_, jobs, *state_, potential_.target);
   for (std::size_t p = 0; p < pinned_.size(); ++p) {
     potential_.target.set(rows_.index(pinned_[p]), pins.position[p] - state_->origin);
@@ -132,7 +131,7 @@ void NewtonCloth::set_weights(double rate) {
     potential_.weight[rows_.index(i)] = static_cast<float>(per_mass * model_->mass[i]);
 }
 
-Vec3 NewtonCloth::find_mean_gain() const {
+void NewtonCloth::remember_gain() {
   Vec3 sum = Vec3::Zero();
   double mass = 0;
   for (std::size_t i = 0; i < state_->x.size(); ++i) {
@@ -141,7 +140,7 @@ Vec3 NewtonCloth::find_mean_gain() const {
   }
   const Vec3 gain = sum / mass;
   const double size = gain.norm(), most = step_ * gravity().norm();
-  return size > most ? Vec3(most / size * gain) : gain;
+  mean_gain_ = size > most ? Vec3(most / size * gain) : gain;
 }
 
 void NewtonCloth::coast(bool accelerates) {

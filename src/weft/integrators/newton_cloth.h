@@ -29,6 +29,9 @@ class NewtonCloth {
   /// Where implicit Euler without springs would take it; its state stays as it is.
   ContactTerms::Positions place_freely(JobSystem& jobs);
 
+  /// Remembers the mean acceleration of the step before, for coast(). To be called before predict().
+  void remember_gain();
+
   /// Predicts by BDF2 or implicit Euler. The correction e is zero.
   void predict(bool is_euler, JobSystem& jobs);
 
@@ -103,7 +106,6 @@ class NewtonCloth {
   void prepare_matrices(JobSystem& jobs);
   void set_weights(double rate);
   double energy_noise() const;
-  Vec3 find_mean_gain() const;
   void copy_lag();
   double energy_at(const Vec3Array& offset, JobSystem& jobs);
   void update_stiffer_couplings(bool is_first, JobSystem& jobs);

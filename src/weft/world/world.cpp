@@ -73,10 +73,6 @@ int find_non_finite(const ClothState& state) {
   return -1;
 }
 
-void add(const std::optional<int>& count, std::optional<int>& sum) {
-  if (count) sum = sum.value_or(0) + *count;
-}
-
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kMaxParts = 1 << 12;  // of one step [1]
 constexpr int kCalmParts = 4;       // in a row, before parts become longer
@@ -288,7 +284,7 @@ void World::advance(double time, double dt, StepReport& report) {
   if (wild >= 0) is_wild_[wild] = 1;
 }
 
-/// Of all cloths together.
+/// Solves for all cloths together.
 void World::solve(double dt, StepReport& report) {
   bodies_.clear();
   for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
@@ -296,8 +292,8 @@ void World::solve(double dt, StepReport& report) {
   const IntegratorReport done = integrator_->advance(bodies_, contacts_, step, *jobs_);
   for (Cloth& cloth : cloths_) cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
   report.iterations += done.iterations;
-  add(done.linear_iterations, report.linear_iterations);
-  add(done.guard_events, report.guard_events);
+  add_count(done.linear_iterations, report.linear_iterations);
+  add_count(done.guard_events, report.guard_events);
   if (!done.converged) report.warnings.push_back({WarningCode::not_converged, done.unconverged});
 }
 
@@ -439,8 +435,8 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
 void World::accept(const StepReport& part, StepReport& report) {
   report.substeps = std::max(report.substeps, part.substeps);
   report.iterations += part.iterations;
-  add(part.linear_iterations, report.linear_iterations);
-  add(part.guard_events, report.guard_events);
+  add_count(part.linear_iterations, report.linear_iterations);
+  add_count(part.guard_events, report.guard_events);
   report.hits += part.hits;
   report.zones += part.zones;
   for (const StepWarning& warning : part.warnings) {
