@@ -11,8 +11,7 @@
 namespace weft {
 namespace {
 
-constexpr int kCellsPerPatch = 2;      // of a grid, along each side
-constexpr std::size_t kTriangles = 8;  // of a mesh's patch, at most
+constexpr int kCellsPerPatch = 2;  // of a grid, along each side
 
 /// Sums in floats are good to this much of a gradient of about 1 [1].
 constexpr float kRounding = 1e-4f;
@@ -206,12 +205,12 @@ void Patches::group(const Surface& surface, int first_triangle, int end_triangle
     if (is_taken[seed - first_triangle]) continue;
     patch.assign(1, seed);
     is_taken[seed - first_triangle] = 1;
-    for (std::size_t n = 0; n < patch.size() && patch.size() < kTriangles; ++n) {
-      for (int corner = 0; corner < 3 && patch.size() < kTriangles; ++corner) {
+    for (std::size_t n = 0; n < patch.size() && patch.size() < kMostTriangles; ++n) {
+      for (int corner = 0; corner < 3 && patch.size() < kMostTriangles; ++corner) {
         const std::array<int, 2> side = {surface.triangles[patch[n]][corner],
                                          surface.triangles[patch[n]][(corner + 1) % 3]};
         surface.for_triangles_with(side, [&](int t) {
-          if (is_taken[t - first_triangle] || patch.size() == kTriangles) return;
+          if (is_taken[t - first_triangle] || patch.size() == kMostTriangles) return;
           is_taken[t - first_triangle] = 1;
           patch.push_back(t);
         });

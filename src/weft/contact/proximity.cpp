@@ -379,7 +379,8 @@ void Proximity::find_pairs(JobSystem& jobs) {
   if (!patch_pairs_.empty()) measure_triangles(jobs);
   const auto add_near = [&](int p, PairChunk& chunk) { add_pairs_of_patches(patch_pairs_[p], chunk); };
   const auto add_fan = [&](int p, PairChunk& chunk) {
-    add_pairs_of_triangles(fans_[p].a, fans_[p].b, true, chunk);
+    const auto [a, b] = fans_[p];
+    add_pairs_of_triangles(a, b, box_of(surface_.triangles[a]), box_of(surface_.triangles[b]), true, chunk);
   };
   add_pairs(static_cast<int>(patch_pairs_.size()), kGrain, add_near, jobs);
   find_fans(jobs);
@@ -450,26 +451,55 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
 
 void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const {
   if (!pair.is_new && !is_renewed_patch_[pair.a] && !is_renewed_patch_[pair.b]) return;
-  const std::span<const int> first = patches_.triangles(pair.a), second = patches_.triangles(pair.b);
-  for (std::size_t m = 0; m < first.size(); ++m) {
-    const int s = first[m];
+  const bool is_self = pair.a == pair.b;
+  std::array<int, Patches::kMostTriangles> near{};  // of the second, that may meet the first
+  int num_near = 0;
+  for (const int t : patches_.triangles(pair.b)) {
+    if (is_self || patch_box_[pair.a].may_meet(triangle_box_[t])) near[num_near++] = t;
+  }
+  if (num_near == 0) return;
+  int next = 0;
+  for (const int s : patches_.triangles(pair.a)) {
+    ++next;
     const SweptBox& box = triangle_box_[s];
-    if (!patch_box_[pair.b].may_meet(box)) continue;
-    for (std::size_t n = pair.a == pair.b ? m + 1 : 0; n < second.size(); ++n) {
-      const int t = second[n];
+    if (!is_self && !patch_box_[pair.b].may_meet(box)) continue;
+    for (int n = is_self ? next : 0; n < num_near; ++n) {
+      const int t = near[n];
       if (!pair.is_new && !is_renewed_[s] && !is_renewed_[t]) continue;
       if (!box.may_meet(triangle_box_[t]) ||
           num_shared_vertices(surface_.triangles[s], surface_.triangles[t]) > 0)
         continue;
-      if (!pass(s, t)) add_pairs_of_triangles(std::min(s, t), std::max(s, t), false, chunk);
+      if (pass(s, t) || stay_apart(s, t)) continue;
+      const auto [low, high] = std::minmax(s, t);
+      add_pairs_of_triangles(low, high, triangle_box_[low], triangle_box_[high], false, chunk);
     }
   }
 }
 
-void Proximity::add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const {
+/// Whether a plane keeps two triangles apart at all times, square to the line between their centres: along
+/// any direction, what moves in straight lines is nearest at the start or at the end.
+bool Proximity::stay_apart(int first, int second) const {
+  const Triangle &a = surface_.triangles[first], &b = surface_.triangles[second];
+  const std::vector<Float4>&x = at_start_.x, &y = at_end_.x;
+  const auto centre = [&](const Triangle& t) -> Float4 {
+    return x[t[0]] + x[t[1]] + x[t[2]] + y[t[0]] + y[t[1]] + y[t[2]];
+  };
+  const auto highest = [](const Float4& n, const std::vector<Float4>& at, const Triangle& t) {
+    return std::max({n.dot(at[t[0]]), n.dot(at[t[1]]), n.dot(at[t[2]])});
+  };
+  const auto margin = [&](const Triangle& t) {
+    return std::max({margin_[t[0]], margin_[t[1]], margin_[t[2]]});
+  };
+  const Float4 towards = centre(b) - centre(a), back = -towards;
+  const float room = (margin(a) + margin(b)) * towards.norm();
+  return highest(towards, y, a) + highest(back, y, b) < -room &&
+         highest(towards, x, a) + highest(back, x, b) < -room;
+}
+
+void Proximity::add_pairs_of_triangles(int first, int second, const SweptBox& box_a, const SweptBox& box_b,
+                                       bool is_fan, PairChunk& chunk) const {
   const Surface::OwnedFeatures &a = surface_.owned[first], &b = surface_.owned[second];
   const Triangle &ta = surface_.triangles[first], &tb = surface_.triangles[second];
-  const SweptBox box_a = box_of(ta), box_b = box_of(tb);
   for (const int v : a.vertex) {
     if (v >= 0 && !has_vertex(tb, v) && box_of({&v, 1}).may_meet(box_b))
       add_vertex_triangle(v, second, is_fan, chunk);

@@ -135,7 +135,9 @@ class Proximity {
   void add_pairs(int count, int grain, const Add& add, JobSystem& jobs);
   void put_in_order(int end_of_a, std::vector<FeaturePair>& pairs);
   void add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const;
-  void add_pairs_of_triangles(int first, int second, bool is_fan, PairChunk& chunk) const;
+  bool stay_apart(int first, int second) const;
+  void add_pairs_of_triangles(int first, int second, const SweptBox& box_a, const SweptBox& box_b,
+                              bool is_fan, PairChunk& chunk) const;
   void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
   void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
   template <class Distance>
