@@ -230,6 +230,11 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_things(std::move(things));
+  std::vector<double> half_thickness(n, 0.0);
+  for (std::size_t cloth = 0; cloth < cloths_.size(); ++cloth)
+    std::fill(&half_thickness[first_vertex_[cloth]], &half_thickness[first_vertex_[cloth + 1]],
+              cloths_[cloth].model->material.thickness / 2);
+  proximity_.find_tight(std::move(half_thickness), *make_serial_jobs());
   return true;
 }
 

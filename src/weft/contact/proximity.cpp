@@ -67,7 +67,60 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
   parts_[0].leaf_pairs.reserve(patch_room);
   triangle_box_.resize(surface_.triangles.size());
   is_searched_.reserve(patches_.size());
+  thing_of_vertex_.assign(surface_.num_vertices, 0);
+  is_tight_.assign(surface_.num_vertices, 0);
   made_for_.end.clear();
+}
+
+void Proximity::set_things(std::vector<int> thing_of_triangle) {
+  thing_of_triangle_ = std::move(thing_of_triangle);
+  thing_of_vertex_.assign(surface_.num_vertices, -1);
+  for (std::size_t t = 0; t < thing_of_triangle_.size(); ++t) {
+    for (const int v : surface_.triangles[t]) thing_of_vertex_[v] = thing_of_triangle_[t];
+  }
+}
+
+/// By the lists of cloths that lie at rest side by side, and of colliders that are nowhere near.
+void Proximity::find_tight(std::vector<double> half_thickness, JobSystem& jobs) {
+  is_tight_.assign(surface_.num_vertices, 0);
+  if (num_cloth_vertices_ == 0) return;
+  const double thickest = *std::max_element(half_thickness.begin(), half_thickness.end());
+  const double room = 4 * (thickest + slacks_.most);
+  SurfaceMotion rest{.half_thickness = std::move(half_thickness)};
+  rest.start = rest_;
+  double end = 0;  // of the cloths before
+  for (int v = 0; v < num_cloth_vertices_;) {
+    const int first = v, thing = thing_of_vertex_[v];
+    double low = rest_[v].x(), high = low;
+    for (; v < num_cloth_vertices_ && thing_of_vertex_[v] == thing; ++v) {
+      low = std::min(low, rest_[v].x());
+      high = std::max(high, rest_[v].x());
+    }
+    for (int i = first; i < v; ++i) rest.start[i].x() += end - low;
+    end += high - low + room;
+  }
+  rest.start.resize(surface_.num_vertices, Vec3(-room, 0, 0));
+  rest.end = rest.start;
+  update(rest, jobs);
+  const auto mark = [&](double distance, std::span<const int> a, std::span<const int> b) {
+    if (distance >= rest.half_thickness[a[0]] + rest.half_thickness[b[0]]) return;
+    for (const std::span<const int> feature : {a, b}) {
+      for (const int v : feature) is_tight_[v] = 1;
+    }
+  };
+  for (const FeaturePair& p : vertex_triangle_) {
+    const Triangle& t = surface_.triangles[p.b];
+    const std::vector<Vec3>& x = rest.start;
+    mark(point_triangle_distance(x[p.a], x[t[0]], x[t[1]], x[t[2]]).distance(), {&p.a, 1}, t);
+  }
+  for (const FeaturePair& p : edge_edge_) {
+    const std::array<int, 2>&e = surface_.edges[p.a], &f = surface_.edges[p.b];
+    const std::vector<Vec3>& x = rest.start;
+    mark(edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]).distance(), e, f);
+  }
+  made_for_.end.clear();
+  slack_ = slacks_.most;
+  num_calm_ = 0;
 }
 
 void Proximity::let_pass(const std::vector<char>& passes) {
@@ -536,14 +589,34 @@ double Proximity::reach_between(const std::array<int, kA>& a, const std::array<i
   return motion.half_thickness[a[0]] + motion.half_thickness[b[0]] + 2 * made_with_ + std::sqrt(travel_sq);
 }
 
-/// distance(x) is that of the two features where vertices are at x. Neighbours on the mesh, in one fan, may
-/// always come nearer than at rest.
-template <class Distance>
-void Proximity::add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
-                         std::vector<FeaturePair>& pairs) const {
+/// a and b are the corners of the two features, distance(x) is theirs where vertices are at x. Neighbours on
+/// the mesh may always come nearer than at rest, other layers of a cloth as near.
+template <std::size_t kA, std::size_t kB, class Distance>
+void Proximity::add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b,
+                         bool is_fan, const Distance& distance, std::vector<FeaturePair>& pairs) const {
+  const double reach = reach_between(a, b);
   if (distance(made_for_.start).distance_sq > reach * reach) return;
-  if (is_fan) pair.max_gap = kShareOfRest * static_cast<float>(distance(rest_).distance());
+  if (is_fan || are_tight(a[0], b[0])) {
+    const float share = is_fan || are_beside(a, b) ? kShareOfRest : 1.0f;
+    pair.max_gap = share * static_cast<float>(distance(rest_).distance());
+  }
   pairs.push_back(pair);
+}
+
+bool Proximity::are_tight(int vertex, int other) const {
+  return is_tight_[vertex] && is_tight_[other] && thing_of_vertex_[vertex] == thing_of_vertex_[other];
+}
+
+/// Whether an edge leads from one of a's vertices to one of b's.
+bool Proximity::are_beside(std::span<const int> a, std::span<const int> b) const {
+  for (const int v : a) {
+    for (const int t : surface_.triangles_at(v)) {
+      for (const int w : b) {
+        if (has_vertex(surface_.triangles[t], w)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const {
@@ -551,7 +624,7 @@ void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairC
   const auto distance = [&](const std::vector<Vec3>& x) {
     return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
   };
-  add_pair({vertex, triangle}, reach_between(std::array{vertex}, t), is_fan, distance, chunk.vertex_triangle);
+  add_pair({vertex, triangle}, std::array{vertex}, t, is_fan, distance, chunk.vertex_triangle);
 }
 
 void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const {
@@ -560,7 +633,7 @@ void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const
   const auto distance = [&](const std::vector<Vec3>& x) {
     return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
   };
-  add_pair({a, b}, reach_between(e, f), is_fan, distance, chunk.edge_edge);
+  add_pair({a, b}, e, f, is_fan, distance, chunk.edge_edge);
 }
 
 /// Whether the cloth makes a point there, where vertices are at x: seen along the sum of all normals at it, a

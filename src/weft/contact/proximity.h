@@ -23,7 +23,7 @@ struct SurfaceMotion {
 /// A vertex and a triangle, or two edges.
 struct FeaturePair {
   int a = 0, b = 0;
-  float max_gap = std::numeric_limits<float>::infinity();  // neighbours on the mesh may come this close [m]
+  float max_gap = std::numeric_limits<float>::infinity();  // what is near at rest may come this close [m]
 };
 
 /// Verlet lists of close pairs: a vertex's pairs stay valid while its motion, relative to the mean of all
@@ -49,8 +49,12 @@ class Proximity {
 
   /// What each triangle belongs to (triangles), and which of these go through each other: `passes` (things,
   /// things) is symmetric; empty: none do. Pairs of those that do are not listed.
-  void set_things(std::vector<int> thing_of_triangle) { thing_of_triangle_ = std::move(thing_of_triangle); }
+  void set_things(std::vector<int> thing_of_triangle);
   void let_pass(const std::vector<char>& passes);
+
+  /// Finds where cloth is nearer to itself at rest than it is thick: short edges, pleats, a lining. What is
+  /// so near may stay so. `half_thickness` (num_vertices) [m]. After set_things, before the first update.
+  void find_tight(std::vector<double> half_thickness, JobSystem& jobs);
 
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
   /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
@@ -140,9 +144,11 @@ class Proximity {
                               bool is_fan, PairChunk& chunk) const;
   void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
   void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
-  template <class Distance>
-  void add_pair(FeaturePair pair, double reach, bool is_fan, const Distance& distance,
-                std::vector<FeaturePair>& pairs) const;
+  template <std::size_t kA, std::size_t kB, class Distance>
+  void add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b, bool is_fan,
+                const Distance& distance, std::vector<FeaturePair>& pairs) const;
+  bool are_tight(int vertex, int other) const;
+  bool are_beside(std::span<const int> a, std::span<const int> b) const;
   template <std::size_t kA, std::size_t kB>
   double reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const;
   bool is_sharp(int vertex, const std::vector<Float4>& x) const;
@@ -152,7 +158,8 @@ class Proximity {
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
-  std::vector<int> thing_of_triangle_;
+  std::vector<int> thing_of_triangle_, thing_of_vertex_;
+  std::vector<char> is_tight_;  // (num_vertices) nearer to its own cloth at rest than it is thick
   std::vector<char> passes_;
   std::size_t num_things_ = 0;
   Slack slacks_;
