@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "common.h"
 #include "weft/core/error.h"
+#include "weft/run/start_check.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -12,13 +13,27 @@
 namespace weft::app {
 namespace {
 
-/// Reads the scene and builds its world: meshes and pins are judged too.
-int check(const std::string& scene, const Overrides& overrides) {
-  const std::filesystem::path file = find_scene(scene);
-  const SceneWorld built = build_world(read_scene(file, overrides), make_serial_jobs());
-  for (const std::string& warning : built.warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
-  fmt::print("{}: good\n", file.string());
-  return kDone;
+/// Reads the scene and builds its world: meshes, pins, sizes and the start are judged too. Returns whether
+/// there is nothing to say against it.
+bool check(const std::string& name, const Overrides& overrides) {
+  const std::filesystem::path file = find_scene(name);
+  const SceneDesc scene = read_scene(file, overrides);
+  const SceneWorld built = build_world(scene, make_serial_jobs());
+  for (const std::string& line : describe_sizes(built.world)) fmt::print("  {}\n", line);
+  std::vector<std::string> warnings = built.warnings;
+  const auto add = [&](const std::vector<std::string>& found) {
+    warnings.insert(warnings.end(), found.begin(), found.end());
+  };
+  add(judge_sizes(scene, built.world));
+  if (scene.contact) {
+    const std::vector<std::string> crossed = judge_start(built.world);
+    add(crossed);
+    if (!crossed.empty() && !scene.untangle)
+      warnings.push_back("solver.untangle = true sets apart what crosses at the start");
+  }
+  for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
+  if (warnings.empty()) fmt::print("{}: good\n", file.string());
+  return warnings.empty();
 }
 
 }  // namespace
@@ -32,10 +47,12 @@ void add_check_command(CLI::App& app, int& exit_code) {
   file->excludes(list);
   auto overrides = std::make_shared<Overrides>();
   add_set_option(*command, *overrides);
-  command->callback([scene, keys, overrides, &exit_code] {
+  auto strict = std::make_shared<bool>(false);
+  command->add_flag("--strict", *strict, "Exit with 1 if there is a warning");
+  command->callback([scene, keys, overrides, strict, &exit_code] {
     if (*keys) return fmt::print("{}", describe_scene_keys());
     if (scene->empty()) throw InputError("FILE is required; or --keys, to list the keys of scene files");
-    exit_code = check(*scene, *overrides);
+    if (!check(*scene, *overrides) && *strict) exit_code = kNotClean;
   });
 }
 

@@ -8,6 +8,7 @@
 #include "weft/core/version.h"
 #include "weft/run/film.h"
 #include "weft/run/frame_checks.h"
+#include "weft/run/start_check.h"
 #include "weft/run/stopwatch.h"
 #include "weft/run/warnings.h"
 #include "weft/scene/scene_world.h"
@@ -18,9 +19,7 @@
 namespace weft {
 namespace {
 
-constexpr int kMostInfeasible = 100;     // listed in a report
-constexpr int kMostJudged = 100000;      // crossings at the start that are told apart by surfaces
-constexpr double kInsideAtStart = 1e-6;  // cloth that starts deeper inside a collider is told of [m]
+constexpr int kMostInfeasible = 100;  // listed in a report
 
 std::string hex(std::uint64_t value) {
   char digits[17];
@@ -46,16 +45,7 @@ class Recorder {
 
   /// Warns of cloth that crosses something before anything has moved, or refuses it by an InputError.
   void judge_start(const SceneDesc& scene) {
-    const FrameToCheck start = frames_.now();
-    const verify::FrameCheck check = verify::check_frame(start.frame, kMostJudged);
-    std::vector<std::string> found = verify::describe_by_surfaces(start.frame, check.first);
-    for (std::string& sentence : found) sentence.insert(0, "at the start ");
-    if (check.penetration() > kInsideAtStart) {
-      char depth[32];
-      std::snprintf(depth, sizeof depth, "%.3g", 1000 * check.penetration());
-      found.push_back("at the start " + verify::describe(start.frame, *check.deepest) + " is " + depth +
-                      " mm deep");
-    }
+    const std::vector<std::string> found = weft::judge_start(world_);
     report_.warnings.insert(report_.warnings.end(), found.begin(), found.end());
     if (found.empty() || scene.crossed_start == CrossedStart::warn) return;
     std::string all = "the start is refused (solver.crossed_start = \"refuse\"):";

@@ -93,7 +93,7 @@ bool has_any(const TomlTable& table, std::span<const char* const> keys) {
 
 std::optional<FabricDesc> read_named_fabric(const TomlValue& value, const std::filesystem::path& folder) {
   std::string name;
-  value.read(name);
+  if (!value.read(name)) return {};
   try {
     const FabricPreset preset = load_fabric(name, folder);
     return FabricDesc{.name = preset.name, .numbers = preset.fabric};
@@ -109,13 +109,17 @@ std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
   if (const TomlValue name = cloth.get("fabric"); name && name.is_string())
     return read_named_fabric(name, folder);
   TomlTable table = cloth.table("fabric");
-  if (!has_any(table, kSiKeys)) {
+  const TomlValue base = table.get("base");
+  if (!base && !has_any(table, kSiKeys)) {
     material = read_springs(table);
     return {};
   }
   for (const char* key : kSpringKeys)
     table.refuse(key, "a fabric has either spring stiffnesses or SI values (c11 to bend_bias)");
-  return FabricDesc{.name = "fabric", .numbers = read_fabric_numbers(table, false)};
+  FabricDesc fabric{.name = "fabric", .numbers = {}};
+  if (base) fabric = read_named_fabric(base, folder).value_or(fabric);
+  fabric.numbers = read_fabric_numbers(table, false, fabric.numbers);
+  return fabric;
 }
 
 void read_warp(TomlTable& cloth, FabricDesc& fabric) {

@@ -46,14 +46,20 @@ void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& cu
 /// read has its default, and was reported.
 void judge_together(TomlTable& table, const Fabric& fabric) {
   for (const FabricMistake& mistake : find_mistakes(fabric)) {
-    if (const TomlValue value = table.get(mistake.field)) value.mistake(mistake.reason);
+    if (const TomlValue value = table.get(mistake.field))
+      value.mistake(mistake.reason);
+    else if (table.has("base"))
+      table.get("base").mistake("its " + mistake.field + ' ' + mistake.reason);
   }
 }
 
 }  // namespace
 
-Fabric read_fabric_numbers(TomlTable& table, bool needs_all) {
-  Fabric f;
+Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base) {
+  Fabric f = base;
+  // A stiffness of the table's own stands for a curve of the base.
+  if (table.has("c11")) f.stretch_warp.clear();
+  if (table.has("c22")) f.stretch_weft.clear();
   const auto read = [&](const char* key, double& target, const NumberRule& rule) {
     if (needs_all) table.require({key}, "a number in " + std::string(rule.unit));
     table.read(key, target, rule);

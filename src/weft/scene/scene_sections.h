@@ -28,9 +28,9 @@ void read_static_friction(TomlTable& table, double friction, double& static_fric
 /// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 
-/// A fabric's numbers in SI, and what they are together. `needs_all`: only damping and what follows it have
-/// defaults.
-Fabric read_fabric_numbers(TomlTable& table, bool needs_all);
+/// A fabric's numbers in SI, and what they are together; what is left out is as in `base`. `needs_all`: only
+/// damping and what follows it may be.
+Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base = {});
 
 /// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
 MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);

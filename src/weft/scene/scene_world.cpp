@@ -74,17 +74,30 @@ Stuff make_springs_on_grid(const ClothSceneDesc& desc, const Grid& grid, std::ve
   return {material, build_grid_bending_elements(grid, *warp, fabric.numbers)};
 }
 
-/// Along the direction that is given, or as the mesh's texture coordinates say.
+/// Whether most of the surface is nearer to upright than to level, at rest.
+bool stands_upright(const TriangleMesh& mesh) {
+  double upright = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 area = (mesh.positions[j] - mesh.positions[i]).cross(mesh.positions[k] - mesh.positions[i]);
+    upright += area.norm() - std::sqrt(2.0) * std::abs(area.y());
+  }
+  return upright > 0;
+}
+
+/// Along the direction that is given, or as the mesh's texture coordinates say; without either, along the
+/// body in what is worn.
 WarpField find_warp(const ClothSceneDesc& desc, const LoadedCloth& loaded,
                     std::vector<std::string>& warnings) {
   const std::string who = "cloth \"" + desc.name + "\": ";
   const TriangleMesh& mesh = loaded.topology->mesh;
+  if (!desc.fabric->warp && loaded.uv.empty()) {
+    const bool stands = stands_upright(mesh);
+    warnings.push_back(who +
+                       "its mesh has no texture coordinates, which would say where warp goes; it goes " +
+                       (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
+    return warp_from_direction(mesh, stands ? Vec3::UnitY() : Vec3::UnitX());
+  }
   const bool is_given = desc.fabric->warp.has_value();
-  if (!is_given && loaded.uv.empty())
-    throw InputError(
-        who +
-        "its mesh has no texture coordinates, which would say where warp goes; unwrap it, or give "
-        "a direction as warp = [1, 0, 0]");
   WarpField warp = is_given ? warp_from_direction(mesh, *desc.fabric->warp) : warp_from_uv(mesh, loaded.uv);
   if (warp.num_guessed == 0) return warp;
   warnings.push_back(

@@ -1,0 +1,137 @@
+#include "weft/run/start_check.h"
+
+#include <Eigen/Geometry>
+#include <cstdio>
+#include <optional>
+#include <variant>
+
+#include "weft/run/frame_checks.h"
+
+namespace weft {
+namespace {
+
+constexpr int kMostJudged = 100000;      // crossings that are told apart by surfaces
+constexpr double kInsideAtStart = 1e-6;  // cloth that is deeper inside a collider is told of [m]
+
+constexpr double kTooLarge = 20;      // for cloth and for those who wear it [m] …
+constexpr double kMillimetres = 500;  // … and for a file in centimetres [m]
+constexpr double kMostTimes = 30;     // as large as a cloth a collider may be
+constexpr double kLying = 2;          // what lies is so many times as deep as high
+constexpr double kFlat = 0.1;         // share of its depth: what is no higher is a sheet
+
+std::string format(const char* text, double number) {
+  char result[96];
+  std::snprintf(result, sizeof result, text, number);
+  return result;
+}
+
+/// A cloth or a mesh among the colliders.
+struct Thing {
+  std::string name;  // `cloth "shirt"`
+  Vec3 size = Vec3::Zero();
+  int num_triangles = 0;
+  const MeshFile* file = nullptr;  // null: it has none
+  bool is_turned = false;          // by the scene
+  double largest() const { return size.maxCoeff(); }
+};
+
+Vec3 size_of(const std::vector<Vec3>& positions) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : positions) box.extend(p);
+  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
+}
+
+/// Cloths come first. `scene` is where their files are; null: unknown.
+std::vector<Thing> list_things(const World& world, const SceneDesc* scene) {
+  std::vector<Thing> things;
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    std::vector<Vec3> positions;
+    for (int i = 0; i < world.model({c}).num_particles(); ++i)
+      positions.push_back(world.state({c}).position(i));
+    things.push_back({"cloth \"" + world.name({c}) + '"', size_of(positions),
+                      world.model({c}).topology->mesh.num_triangles(),
+                      scene ? std::get_if<MeshFile>(&scene->cloths[c].shape) : nullptr,
+                      scene && !scene->cloths[c].rotation_deg.isZero()});
+  }
+  for (std::size_t c = 0; c < world.colliders().size(); ++c) {
+    const ColliderShape shape = shape_at(world.colliders()[c], 0);
+    const MeshShape* mesh = std::get_if<MeshShape>(&shape);
+    if (!mesh) continue;
+    std::vector<Vec3> positions;
+    for (int v = 0; v < mesh->mesh->num_vertices(); ++v) positions.push_back(mesh->vertex(v));
+    const PlacedMesh* placed = scene ? std::get_if<PlacedMesh>(&scene->colliders[c].shape) : nullptr;
+    things.push_back({"collider \"" + world.colliders()[c].name + '"', size_of(positions),
+                      mesh->mesh->num_triangles(), placed ? &placed->source : nullptr});
+  }
+  return things;
+}
+
+bool is_in_another_unit(const Thing& thing) { return thing.file && thing.largest() > kTooLarge; }
+
+std::optional<std::string> judge_unit(const Thing& thing) {
+  if (!is_in_another_unit(thing)) return {};
+  const bool is_millimetres = thing.largest() > kMillimetres;
+  return thing.name + format(" is %.3g m large; is its file in ", thing.largest()) +
+         (is_millimetres ? "millimetres" : "centimetres") +
+         format("? scale = %g", thing.file->scale * (is_millimetres ? 1e-3 : 1e-2));
+}
+
+std::optional<std::string> judge_ratio(const Thing& cloth, const Thing& collider) {
+  if (!cloth.file || !collider.file || is_in_another_unit(cloth) || is_in_another_unit(collider)) return {};
+  const double ratio = collider.largest() / cloth.largest();
+  if (ratio < kMostTimes && ratio > 1 / kMostTimes) return {};
+  return cloth.name + format(" is %.3g m large and ", cloth.largest()) + collider.name +
+         format(" %.3g m; are both files in the same unit? scale multiplies a file's", collider.largest());
+}
+
+/// Beside something that stands. A sheet may lie.
+std::optional<std::string> judge_up(const Thing& cloth, const Thing& collider) {
+  const bool lies = cloth.size.z() > kLying * cloth.size.y() && cloth.size.y() > kFlat * cloth.size.z(),
+             stands = collider.size.y() > kLying * collider.size.z();
+  if (!cloth.file || cloth.file->up_is_z || cloth.is_turned || !lies || !stands) return {};
+  return cloth.name + " lies on its back beside " + collider.name +
+         ", which stands; does z point up in its file? up = \"z\"";
+}
+
+}  // namespace
+
+std::vector<std::string> judge_start(const World& world) {
+  const WorldFrames frames(world);
+  const FrameToCheck start = frames.now();
+  const verify::FrameCheck check = verify::check_frame(start.frame, kMostJudged);
+  std::vector<std::string> found = verify::describe_by_surfaces(start.frame, check.first);
+  for (std::string& sentence : found) sentence.insert(0, "at the start ");
+  if (check.penetration() > kInsideAtStart)
+    found.push_back("at the start " + verify::describe(start.frame, *check.deepest) +
+                    format(" is %.3g mm deep", 1000 * check.penetration()));
+  return found;
+}
+
+std::vector<std::string> describe_sizes(const World& world) {
+  std::vector<std::string> lines;
+  for (const Thing& thing : list_things(world, nullptr)) {
+    lines.push_back(thing.name + format(": %.3g m wide, ", thing.size.x()) +
+                    format("%.3g m high, ", thing.size.y()) + format("%.3g m deep, ", thing.size.z()) +
+                    std::to_string(thing.num_triangles) + " triangles");
+  }
+  return lines;
+}
+
+std::vector<std::string> judge_sizes(const SceneDesc& scene, const World& world) {
+  std::vector<std::string> found;
+  const auto add = [&](std::optional<std::string> sentence) {
+    if (sentence) found.push_back(std::move(*sentence));
+  };
+  const std::vector<Thing> things = list_things(world, &scene);
+  const std::size_t num_cloths = scene.cloths.size();
+  for (const Thing& thing : things) add(judge_unit(thing));
+  for (std::size_t cloth = 0; cloth < num_cloths; ++cloth) {
+    for (std::size_t other = num_cloths; other < things.size(); ++other) {
+      add(judge_ratio(things[cloth], things[other]));
+      add(judge_up(things[cloth], things[other]));
+    }
+  }
+  return found;
+}
+
+}  // namespace weft

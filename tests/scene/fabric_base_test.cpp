@@ -1,0 +1,52 @@
+/// A fabric by name with numbers of one's own.
+
+#include <gtest/gtest.h>
+
+#include "weft/core/error.h"
+#include "weft/fabric/presets.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft {
+namespace {
+
+SceneDesc scene_with(const std::string& fabric) {
+  return parse_scene(
+      "[scene]\nformat = 1\n[[cloth]]\ngrid = { size = [1, 1], cells = [4, 4] }\nfabric = " + fabric + "\n",
+      "scene.toml");
+}
+
+TEST(FabricBase, GivesWhatATableLeavesOut) {
+  const SceneDesc scene = scene_with("{ base = \"denim\", thickness = 0.0003 }");
+  const Fabric denim = find_fabric("denim").fabric;
+  ASSERT_TRUE(scene.cloths[0].fabric);
+  EXPECT_EQ(scene.cloths[0].fabric->name, "denim");
+  EXPECT_EQ(scene.cloths[0].fabric->numbers.c11, denim.c11);
+  EXPECT_EQ(scene.cloths[0].material.density, denim.density);
+  EXPECT_EQ(scene.cloths[0].material.thickness, 0.0003);
+  EXPECT_NE(denim.thickness, 0.0003);
+}
+
+TEST(FabricBase, OfAnotherNameIsAnsweredWithTheNearest) {
+  try {
+    scene_with("{ base = \"denmi\", thickness = 0.0003 }");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean \"denim\"?"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FabricBase, ThatDoesNotGoWithTheNumbersIsToldOf) {
+  try {
+    scene_with("{ base = \"denim\", thickness = 0.00001 }");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("base: its density"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FabricBase, HasNoSprings) {
+  EXPECT_THROW(scene_with("{ base = \"denim\", spring_bend = 1 }"), InputError);
+}
+
+}  // namespace
+}  // namespace weft
