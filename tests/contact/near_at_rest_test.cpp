@@ -95,6 +95,21 @@ TEST_P(NearAtRest, AShortEdgeDoesNotPushItsNeighbours) {
   EXPECT_LT(farthest, 1e-3) << "it falls as one";
 }
 
+TEST_P(NearAtRest, ALiningStaysWhereItIsWhenClothBecomesThicker) {
+  World world;
+  world.set_integrator({.integrator = GetParam()});
+  world.set_gravity(Vec3::Zero());
+  const ClothId id = add_cloth(world, "coat", lined_sheet());
+  ClothMaterial material = world.model(id).material;
+  material.thickness = kApart / 2;
+  world.set_material(id, material);
+  ASSERT_TRUE(world.step(1.0 / 60).ok);
+  material.thickness = kThickness;
+  world.set_material(id, material);
+  for (int s = 0; s < 30; ++s) ASSERT_TRUE(world.step(1.0 / 60).ok);
+  EXPECT_NEAR(least_distance(world, id, id, sheet().num_vertices()), kApart, 1e-6);
+}
+
 TEST_P(NearAtRest, TwoClothsAreSetApartByTheirThickness) {
   World world;
   world.set_integrator({.integrator = GetParam()});

@@ -53,7 +53,7 @@ class Proximity {
   void let_pass(const std::vector<char>& passes);
 
   /// Finds where cloth is nearer to itself at rest than it is thick: short edges, pleats, a lining. What is
-  /// so near may stay so. `half_thickness` (num_vertices) [m]. After set_things, before the first update.
+  /// so near may stay so. `half_thickness` (num_vertices) [m]. After set_things; the lists are made anew.
   void find_tight(std::vector<double> half_thickness, JobSystem& jobs);
 
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
