@@ -81,23 +81,11 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
       inverse_mass_[v] = (*cloths_[c].is_pinned)[i] ? 0.0 : 1 / model.mass[i];
     }
   }
-  find_tight();
   const double unknown = std::numeric_limits<double>::infinity();
   clearance_.begin_step(shapes_, first_vertex_.back(), is_new ? unknown : std::sqrt(travel_sq));
   place_bodies();
   set_laws();
   remember_velocities();
-}
-
-/// Again where a cloth has become thicker or thinner.
-void ContactSystem::find_tight() {
-  const auto is_same = [](double thickness, const ContactCloth& cloth) {
-    return thickness == cloth.model->material.thickness;
-  };
-  if (std::equal(thickness_.begin(), thickness_.end(), cloths_.begin(), cloths_.end(), is_same)) return;
-  thickness_.clear();
-  for (const ContactCloth& cloth : cloths_) thickness_.push_back(cloth.model->material.thickness);
-  proximity_.find_tight(motion_.half_thickness, *make_serial_jobs());
 }
 
 /// Of two cloths the friction is the geometric mean of both, of a cloth and a collider the collider's, where
@@ -242,7 +230,6 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_things(std::move(things));
-  thickness_.clear();
   return true;
 }
 

@@ -138,7 +138,6 @@ class ContactSystem {
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
   bool renumber(const std::vector<Collider>& colliders);
-  void find_tight();
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
@@ -194,7 +193,6 @@ class ContactSystem {
   std::vector<std::shared_ptr<const ClothTopology>> numbered_cloths_;
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
-  std::vector<double> thickness_;  // (cloths) of which proximity_ knows what is tight [m]
   std::vector<Body> bodies_;
   std::vector<char> is_solid_;    // (num_vertices) on a closed mesh
   std::vector<char> passes_;      // (things, things) go through each other; empty: none do

@@ -205,12 +205,12 @@ void Patches::group(const Surface& surface, int first_triangle, int end_triangle
     if (is_taken[seed - first_triangle]) continue;
     patch.assign(1, seed);
     is_taken[seed - first_triangle] = 1;
-    for (std::size_t n = 0; n < patch.size() && patch.size() < kMostTriangles; ++n) {
-      for (int corner = 0; corner < 3 && patch.size() < kMostTriangles; ++corner) {
+    for (std::size_t n = 0; n < patch.size() && patch.size() < kMaxTriangles; ++n) {
+      for (int corner = 0; corner < 3 && patch.size() < kMaxTriangles; ++corner) {
         const std::array<int, 2> side = {surface.triangles[patch[n]][corner],
                                          surface.triangles[patch[n]][(corner + 1) % 3]};
         surface.for_triangles_with(side, [&](int t) {
-          if (is_taken[t - first_triangle] || patch.size() == kMostTriangles) return;
+          if (is_taken[t - first_triangle] || patch.size() == kMaxTriangles) return;
           is_taken[t - first_triangle] = 1;
           patch.push_back(t);
         });

@@ -42,7 +42,7 @@ struct PatchDeformation {
 
 class Patches {
  public:
-  static constexpr std::size_t kMostTriangles = 8;  // of a patch
+  static constexpr std::size_t kMaxTriangles = 8;  // of a patch
 
   /// Appends the patches of a cloth that is a grid, whose mesh is build_grid_mesh(); of a cloth that is a
   /// mesh, at rest at `rest` (vertices of the surface, or more); or of a collider. All cloths come before all

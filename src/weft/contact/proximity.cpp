@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "weft/contact/collect.h"
-#include "weft/geometry/distance.h"
 
 namespace weft {
 namespace {
@@ -67,66 +66,63 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
   parts_[0].leaf_pairs.reserve(patch_room);
   triangle_box_.resize(surface_.triangles.size());
   is_searched_.reserve(patches_.size());
-  thing_of_vertex_.assign(surface_.num_vertices, 0);
-  is_tight_.assign(surface_.num_vertices, 0);
+  tight_for_.clear();
   made_for_.end.clear();
 }
 
-void Proximity::set_things(std::vector<int> thing_of_triangle) {
-  thing_of_triangle_ = std::move(thing_of_triangle);
-  thing_of_vertex_.assign(surface_.num_vertices, -1);
-  for (std::size_t t = 0; t < thing_of_triangle_.size(); ++t) {
-    for (const int v : surface_.triangles[t]) thing_of_vertex_[v] = thing_of_triangle_[t];
-  }
-}
-
-/// By the lists of cloths that lie at rest side by side, and of colliders that are nowhere near.
-void Proximity::find_tight(std::vector<double> half_thickness, JobSystem& jobs) {
+/// By the lists of cloths that lie at rest side by side along x, with all colliders beyond the last one.
+void Proximity::find_tight(const std::vector<double>& half_thickness, JobSystem& jobs) {
+  tight_for_ = half_thickness;
   is_tight_.assign(surface_.num_vertices, 0);
   if (num_cloth_vertices_ == 0) return;
   const double thickest = *std::max_element(half_thickness.begin(), half_thickness.end());
   const double room = 4 * (thickest + slacks_.most);
-  SurfaceMotion rest{.half_thickness = std::move(half_thickness)};
-  rest.start = rest_;
-  double end = 0;  // of the cloths before
-  for (int v = 0; v < num_cloth_vertices_;) {
-    const int first = v, thing = thing_of_vertex_[v];
-    double low = rest_[v].x(), high = low;
-    for (; v < num_cloth_vertices_ && thing_of_vertex_[v] == thing; ++v) {
-      low = std::min(low, rest_[v].x());
-      high = std::max(high, rest_[v].x());
+  std::vector<double> low, high;  // (cloths)
+  for (int v = 0; v < num_cloth_vertices_; ++v) {
+    const std::size_t thing = thing_of(v);
+    if (thing >= low.size()) {
+      low.resize(thing + 1, std::numeric_limits<double>::infinity());
+      high.resize(thing + 1, -low[thing]);
     }
-    for (int i = first; i < v; ++i) rest.start[i].x() += end - low;
-    end += high - low + room;
+    low[thing] = std::min(low[thing], rest_[v].x());
+    high[thing] = std::max(high[thing], rest_[v].x());
   }
-  rest.start.resize(surface_.num_vertices, Vec3(-room, 0, 0));
+  std::vector<double> shift;  // (cloths)
+  double end = 0;
+  for (std::size_t thing = 0; thing < low.size(); ++thing) {
+    shift.push_back(end - low[thing]);
+    end += high[thing] - low[thing] + room;
+  }
+  SurfaceMotion rest{.start = rest_, .end = {}, .half_thickness = half_thickness};
+  for (int v = 0; v < num_cloth_vertices_; ++v) rest.start[v].x() += shift[thing_of(v)];
+  rest.start.resize(surface_.num_vertices, Vec3(end, 0, 0));
   rest.end = rest.start;
-  update(rest, jobs);
+  rebuild(rest, jobs);
   const auto mark = [&](double distance, std::span<const int> a, std::span<const int> b) {
-    if (distance >= rest.half_thickness[a[0]] + rest.half_thickness[b[0]]) return;
+    if (distance >= half_thickness[a[0]] + half_thickness[b[0]]) return;
     for (const std::span<const int> feature : {a, b}) {
       for (const int v : feature) is_tight_[v] = 1;
     }
   };
-  for (const FeaturePair& p : vertex_triangle_) {
-    const Triangle& t = surface_.triangles[p.b];
-    const std::vector<Vec3>& x = rest.start;
-    mark(point_triangle_distance(x[p.a], x[t[0]], x[t[1]], x[t[2]]).distance(), {&p.a, 1}, t);
-  }
-  for (const FeaturePair& p : edge_edge_) {
-    const std::array<int, 2>&e = surface_.edges[p.a], &f = surface_.edges[p.b];
-    const std::vector<Vec3>& x = rest.start;
-    mark(edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]).distance(), e, f);
-  }
-  made_for_.end.clear();
+  for (const FeaturePair& p : vertex_triangle_)
+    mark(distance_to_triangle(p, rest.start).distance(), {&p.a, 1}, surface_.triangles[p.b]);
+  for (const FeaturePair& p : edge_edge_)
+    mark(distance_of_edges(p, rest.start).distance(), surface_.edges[p.a], surface_.edges[p.b]);
   slack_ = slacks_.most;
   num_calm_ = 0;
+}
+
+/// Of a cloth's vertex; those of no triangle are in none's way.
+int Proximity::thing_of(int vertex) const {
+  const std::span<const int> fan = surface_.triangles_at(vertex);
+  return fan.empty() || thing_of_triangle_.empty() ? 0 : thing_of_triangle_[fan[0]];
 }
 
 void Proximity::let_pass(const std::vector<char>& passes) {
   if (passes == passes_) return;
   passes_ = passes;
   num_things_ = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(passes.size()))));
+  tight_for_.clear();
   made_for_.end.clear();
 }
 
@@ -138,6 +134,7 @@ bool Proximity::pass(int triangle, int other) const {
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
   const WorkScope scope(clock_, &WorkTimes::lists);
   if (made_for_.end.size() != motion.end.size() || motion.half_thickness != made_for_.half_thickness) {
+    if (tight_for_ != motion.half_thickness) find_tight(motion.half_thickness, jobs);
     rebuild(motion, jobs);
   } else {
     find_moved(motion);
@@ -504,19 +501,17 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
 
 void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const {
   if (!pair.is_new && !is_renewed_patch_[pair.a] && !is_renewed_patch_[pair.b]) return;
-  const bool is_self = pair.a == pair.b;
-  std::array<int, Patches::kMostTriangles> near{};  // of the second, that may meet the first
-  int num_near = 0;
-  for (const int t : patches_.triangles(pair.b)) {
-    if (is_self || patch_box_[pair.a].may_meet(triangle_box_[t])) near[num_near++] = t;
+  const std::span<const int> first = patches_.triangles(pair.a), second = patches_.triangles(pair.b);
+  std::array<int, Patches::kMaxTriangles> near{};  // of the second, that may meet the first
+  std::size_t num_near = 0;
+  for (const int t : second) {
+    if (patch_box_[pair.a].may_meet(triangle_box_[t])) near[num_near++] = t;
   }
-  if (num_near == 0) return;
-  int next = 0;
-  for (const int s : patches_.triangles(pair.a)) {
-    ++next;
+  for (std::size_t m = 0; m < first.size(); ++m) {
+    const int s = first[m];
     const SweptBox& box = triangle_box_[s];
-    if (!is_self && !patch_box_[pair.b].may_meet(box)) continue;
-    for (int n = is_self ? next : 0; n < num_near; ++n) {
+    if (!patch_box_[pair.b].may_meet(box)) continue;
+    for (std::size_t n = pair.a == pair.b ? m + 1 : 0; n < num_near; ++n) {
       const int t = near[n];
       if (!pair.is_new && !is_renewed_[s] && !is_renewed_[t]) continue;
       if (!box.may_meet(triangle_box_[t]) ||
@@ -604,10 +599,10 @@ void Proximity::add_pair(FeaturePair pair, const std::array<int, kA>& a, const s
 }
 
 bool Proximity::are_tight(int vertex, int other) const {
-  return is_tight_[vertex] && is_tight_[other] && thing_of_vertex_[vertex] == thing_of_vertex_[other];
+  return is_tight_[vertex] && is_tight_[other] && thing_of(vertex) == thing_of(other);
 }
 
-/// Whether an edge leads from one of a's vertices to one of b's.
+/// Whether the two share a vertex, or an edge joins them.
 bool Proximity::are_beside(std::span<const int> a, std::span<const int> b) const {
   for (const int v : a) {
     for (const int t : surface_.triangles_at(v)) {
@@ -620,20 +615,29 @@ bool Proximity::are_beside(std::span<const int> a, std::span<const int> b) const
 }
 
 void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const {
-  const Triangle& t = surface_.triangles[triangle];
-  const auto distance = [&](const std::vector<Vec3>& x) {
-    return point_triangle_distance(x[vertex], x[t[0]], x[t[1]], x[t[2]]);
-  };
-  add_pair({vertex, triangle}, std::array{vertex}, t, is_fan, distance, chunk.vertex_triangle);
+  const FeaturePair pair{vertex, triangle};
+  const auto distance = [&](const std::vector<Vec3>& x) { return distance_to_triangle(pair, x); };
+  add_pair(pair, std::array{vertex}, surface_.triangles[triangle], is_fan, distance, chunk.vertex_triangle);
 }
 
 void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
-  const auto distance = [&](const std::vector<Vec3>& x) {
-    return edge_edge_distance(x[e[0]], x[e[1]], x[f[0]], x[f[1]]);
-  };
-  add_pair({a, b}, e, f, is_fan, distance, chunk.edge_edge);
+  const FeaturePair pair{a, b};
+  const auto distance = [&](const std::vector<Vec3>& x) { return distance_of_edges(pair, x); };
+  add_pair(pair, e, f, is_fan, distance, chunk.edge_edge);
+}
+
+PointTriangleDistance Proximity::distance_to_triangle(const FeaturePair& pair,
+                                                      const std::vector<Vec3>& x) const {
+  const auto [i, j, k] = surface_.triangles[pair.b];
+  return point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
+}
+
+EdgeEdgeDistance Proximity::distance_of_edges(const FeaturePair& pair, const std::vector<Vec3>& x) const {
+  const auto [i, j] = surface_.edges[pair.a];
+  const auto [k, l] = surface_.edges[pair.b];
+  return edge_edge_distance(x[i], x[j], x[k], x[l]);
 }
 
 /// Whether the cloth makes a point there, where vertices are at x: seen along the sum of all normals at it, a

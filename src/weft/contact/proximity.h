@@ -11,6 +11,7 @@
 #include "weft/core/job_system.h"
 #include "weft/core/work_times.h"
 #include "weft/geometry/aabb_tree.h"
+#include "weft/geometry/distance.h"
 
 namespace weft {
 
@@ -49,15 +50,13 @@ class Proximity {
 
   /// What each triangle belongs to (triangles), and which of these go through each other: `passes` (things,
   /// things) is symmetric; empty: none do. Pairs of those that do are not listed.
-  void set_things(std::vector<int> thing_of_triangle);
+  void set_things(std::vector<int> thing_of_triangle) { thing_of_triangle_ = std::move(thing_of_triangle); }
   void let_pass(const std::vector<char>& passes);
 
-  /// Finds where cloth is nearer to itself at rest than it is thick: short edges, pleats, a lining. What is
-  /// so near may stay so. `half_thickness` (num_vertices) [m]. After set_things; the lists are made anew.
-  void find_tight(std::vector<double> half_thickness, JobSystem& jobs);
-
   /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
-  /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex.
+  /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex. Cloth that is
+  /// nearer to itself at rest than it is thick (short edges, pleats, a lining) may stay so:
+  /// FeaturePair::max_gap.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
 
   /// From now on updates are measured; null: they are not.
@@ -117,6 +116,8 @@ class Proximity {
     std::vector<PatchDeformation> patches;
   };
 
+  void find_tight(const std::vector<double>& half_thickness, JobSystem& jobs);
+  int thing_of(int vertex) const;
   void find_moved(const SurfaceMotion& motion);
   void find_drift(const SurfaceMotion& motion);
   void choose_slack();
@@ -147,6 +148,8 @@ class Proximity {
   template <std::size_t kA, std::size_t kB, class Distance>
   void add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b, bool is_fan,
                 const Distance& distance, std::vector<FeaturePair>& pairs) const;
+  PointTriangleDistance distance_to_triangle(const FeaturePair& pair, const std::vector<Vec3>& x) const;
+  EdgeEdgeDistance distance_of_edges(const FeaturePair& pair, const std::vector<Vec3>& x) const;
   bool are_tight(int vertex, int other) const;
   bool are_beside(std::span<const int> a, std::span<const int> b) const;
   template <std::size_t kA, std::size_t kB>
@@ -158,8 +161,9 @@ class Proximity {
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
-  std::vector<int> thing_of_triangle_, thing_of_vertex_;
-  std::vector<char> is_tight_;  // (num_vertices) nearer to its own cloth at rest than it is thick
+  std::vector<int> thing_of_triangle_;
+  std::vector<char> is_tight_;     // (num_vertices) nearer to its own cloth at rest than it is thick …
+  std::vector<double> tight_for_;  // … with these half thicknesses; empty: to be found again [m]
   std::vector<char> passes_;
   std::size_t num_things_ = 0;
   Slack slacks_;
