@@ -19,14 +19,15 @@ bool check(const std::string& name, const Overrides& overrides) {
   const std::filesystem::path file = find_scene(name);
   const SceneDesc scene = read_scene(file, overrides);
   const SceneWorld built = build_world(scene, make_serial_jobs());
-  for (const std::string& line : describe_sizes(built.world)) fmt::print("  {}\n", line);
+  const SizeCheck sizes = check_sizes(scene, built.world);
+  for (const std::string& line : sizes.sizes) fmt::print("  {}\n", line);
   std::vector<std::string> warnings = built.warnings;
   const auto add = [&](const std::vector<std::string>& found) {
     warnings.insert(warnings.end(), found.begin(), found.end());
   };
-  add(judge_sizes(scene, built.world));
+  add(sizes.warnings);
   if (scene.contact) {
-    const std::vector<std::string> crossed = judge_start(built.world);
+    const std::vector<std::string> crossed = check_start(built.world);
     add(crossed);
     if (!crossed.empty() && !scene.untangle)
       warnings.push_back("solver.untangle = true sets apart what crosses at the start");

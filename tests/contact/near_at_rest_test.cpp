@@ -49,12 +49,18 @@ double least_distance(const World& world, ClothId upper, ClothId lower, int firs
   return least;
 }
 
-class NearAtRest : public testing::TestWithParam<const char*> {};
+class NearAtRest : public testing::TestWithParam<const char*> {
+ protected:
+  static World weightless_world() {
+    World world;
+    world.set_integrator({.integrator = GetParam()});
+    world.set_gravity(Vec3::Zero());
+    return world;
+  }
+};
 
 TEST_P(NearAtRest, ALiningStaysWhereItIs) {
-  World world;
-  world.set_integrator({.integrator = GetParam()});
-  world.set_gravity(Vec3::Zero());
+  World world = weightless_world();
   const ClothId id = add_cloth(world, "coat", lined_sheet());
   for (int s = 0; s < 30; ++s) ASSERT_TRUE(world.step(1.0 / 60).ok);
   EXPECT_LT(compute_kinetic_energy(world.model(id), world.state(id)), 1e-11);
@@ -62,9 +68,7 @@ TEST_P(NearAtRest, ALiningStaysWhereItIs) {
 }
 
 TEST_P(NearAtRest, AShellDoesNotGoThroughItsLining) {
-  World world;
-  world.set_integrator({.integrator = GetParam()});
-  world.set_gravity(Vec3::Zero());
+  World world = weightless_world();
   const TriangleMesh mesh = lined_sheet();
   const ClothId id = add_cloth(world, "coat", mesh);
   ClothState state = world.state(id);
@@ -96,9 +100,7 @@ TEST_P(NearAtRest, AShortEdgeDoesNotPushItsNeighbours) {
 }
 
 TEST_P(NearAtRest, ALiningStaysWhereItIsWhenClothBecomesThicker) {
-  World world;
-  world.set_integrator({.integrator = GetParam()});
-  world.set_gravity(Vec3::Zero());
+  World world = weightless_world();
   const ClothId id = add_cloth(world, "coat", lined_sheet());
   ClothMaterial material = world.model(id).material;
   material.thickness = kApart / 2;
@@ -111,9 +113,7 @@ TEST_P(NearAtRest, ALiningStaysWhereItIsWhenClothBecomesThicker) {
 }
 
 TEST_P(NearAtRest, TwoClothsAreSetApartByTheirThickness) {
-  World world;
-  world.set_integrator({.integrator = GetParam()});
-  world.set_gravity(Vec3::Zero());
+  World world = weightless_world();
   TriangleMesh lower = sheet();
   for (Vec3& p : lower.positions) p.y() -= kApart;
   const ClothId shell = add_cloth(world, "shell", sheet()), lining = add_cloth(world, "lining", lower);

@@ -44,8 +44,8 @@ class Recorder {
   }
 
   /// Warns of cloth that crosses something before anything has moved, or refuses it by an InputError.
-  void judge_start(const SceneDesc& scene) {
-    const std::vector<std::string> found = weft::judge_start(world_);
+  void check_start(const SceneDesc& scene) {
+    const std::vector<std::string> found = weft::check_start(world_);
     report_.warnings.insert(report_.warnings.end(), found.begin(), found.end());
     if (found.empty() || scene.crossed_start == CrossedStart::warn) return;
     std::string all = "the start is refused (solver.crossed_start = \"refuse\"):";
@@ -166,7 +166,7 @@ class Run {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
     warn_about_paper(scene, built_.world, result_.report.warnings);
-    recorder_.judge_start(scene);
+    recorder_.check_start(scene);
     built_.world.track_contacts(options.audit);
     if (options.record_animation) film_.add_frame();
     if (options.check_passages) watch_passages();

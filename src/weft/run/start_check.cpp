@@ -10,12 +10,12 @@
 namespace weft {
 namespace {
 
-constexpr int kMostJudged = 100000;      // crossings that are told apart by surfaces
+constexpr int kMaxTold = 100000;         // crossings that are told apart by surfaces
 constexpr double kInsideAtStart = 1e-6;  // cloth that is deeper inside a collider is told of [m]
 
 constexpr double kTooLarge = 20;      // for cloth and for those who wear it [m] …
 constexpr double kMillimetres = 500;  // … and for a file in centimetres [m]
-constexpr double kMostTimes = 30;     // as large as a cloth a collider may be
+constexpr double kMaxRatio = 30;      // as large as a cloth a collider may be
 constexpr double kLying = 2;          // what lies is so many times as deep as high
 constexpr double kFlat = 0.1;         // share of its depth: what is no higher is a sheet
 
@@ -26,7 +26,7 @@ std::string format(const char* text, double number) {
 }
 
 /// A cloth or a mesh among the colliders.
-struct Thing {
+struct MeshBody {
   std::string name;  // `cloth "shirt"`
   Vec3 size = Vec3::Zero();
   int num_triangles = 0;
@@ -41,17 +41,16 @@ Vec3 size_of(const std::vector<Vec3>& positions) {
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
 }
 
-/// Cloths come first. `scene` is where their files are; null: unknown.
-std::vector<Thing> list_things(const World& world, const SceneDesc* scene) {
-  std::vector<Thing> things;
+/// Cloths come first.
+std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
+  std::vector<MeshBody> bodies;
   for (int c = 0; c < world.num_cloths(); ++c) {
     std::vector<Vec3> positions;
     for (int i = 0; i < world.model({c}).num_particles(); ++i)
       positions.push_back(world.state({c}).position(i));
-    things.push_back({"cloth \"" + world.name({c}) + '"', size_of(positions),
+    bodies.push_back({"cloth \"" + world.name({c}) + '"', size_of(positions),
                       world.model({c}).topology->mesh.num_triangles(),
-                      scene ? std::get_if<MeshFile>(&scene->cloths[c].shape) : nullptr,
-                      scene && !scene->cloths[c].rotation_deg.isZero()});
+                      std::get_if<MeshFile>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
   }
   for (std::size_t c = 0; c < world.colliders().size(); ++c) {
     const ColliderShape shape = shape_at(world.colliders()[c], 0);
@@ -59,33 +58,38 @@ std::vector<Thing> list_things(const World& world, const SceneDesc* scene) {
     if (!mesh) continue;
     std::vector<Vec3> positions;
     for (int v = 0; v < mesh->mesh->num_vertices(); ++v) positions.push_back(mesh->vertex(v));
-    const PlacedMesh* placed = scene ? std::get_if<PlacedMesh>(&scene->colliders[c].shape) : nullptr;
-    things.push_back({"collider \"" + world.colliders()[c].name + '"', size_of(positions),
+    const PlacedMesh* placed = std::get_if<PlacedMesh>(&scene.colliders[c].shape);
+    bodies.push_back({"collider \"" + world.colliders()[c].name + '"', size_of(positions),
                       mesh->mesh->num_triangles(), placed ? &placed->source : nullptr});
   }
-  return things;
+  return bodies;
 }
 
-bool is_in_another_unit(const Thing& thing) { return thing.file && thing.largest() > kTooLarge; }
+std::string describe_size(const MeshBody& body) {
+  return body.name + format(": %.3g m wide, ", body.size.x()) + format("%.3g m high, ", body.size.y()) +
+         format("%.3g m deep, ", body.size.z()) + std::to_string(body.num_triangles) + " triangles";
+}
 
-std::optional<std::string> judge_unit(const Thing& thing) {
-  if (!is_in_another_unit(thing)) return {};
-  const bool is_millimetres = thing.largest() > kMillimetres;
-  return thing.name + format(" is %.3g m large; is its file in ", thing.largest()) +
+bool is_in_another_unit(const MeshBody& body) { return body.file && body.largest() > kTooLarge; }
+
+std::optional<std::string> check_unit(const MeshBody& body) {
+  if (!is_in_another_unit(body)) return {};
+  const bool is_millimetres = body.largest() > kMillimetres;
+  return body.name + format(" is %.3g m large; is its file in ", body.largest()) +
          (is_millimetres ? "millimetres" : "centimetres") +
-         format("? scale = %g", thing.file->scale * (is_millimetres ? 1e-3 : 1e-2));
+         format("? scale = %g", body.file->scale * (is_millimetres ? 1e-3 : 1e-2));
 }
 
-std::optional<std::string> judge_ratio(const Thing& cloth, const Thing& collider) {
+std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& collider) {
   if (!cloth.file || !collider.file || is_in_another_unit(cloth) || is_in_another_unit(collider)) return {};
   const double ratio = collider.largest() / cloth.largest();
-  if (ratio < kMostTimes && ratio > 1 / kMostTimes) return {};
+  if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return {};
   return cloth.name + format(" is %.3g m large and ", cloth.largest()) + collider.name +
          format(" %.3g m; are both files in the same unit? scale multiplies a file's", collider.largest());
 }
 
 /// Beside something that stands. A sheet may lie.
-std::optional<std::string> judge_up(const Thing& cloth, const Thing& collider) {
+std::optional<std::string> check_up(const MeshBody& cloth, const MeshBody& collider) {
   const bool lies = cloth.size.z() > kLying * cloth.size.y() && cloth.size.y() > kFlat * cloth.size.z(),
              stands = collider.size.y() > kLying * collider.size.z();
   if (!cloth.file || cloth.file->up_is_z || cloth.is_turned || !lies || !stands) return {};
@@ -95,10 +99,10 @@ std::optional<std::string> judge_up(const Thing& cloth, const Thing& collider) {
 
 }  // namespace
 
-std::vector<std::string> judge_start(const World& world) {
+std::vector<std::string> check_start(const World& world) {
   const WorldFrames frames(world);
   const FrameToCheck start = frames.now();
-  const verify::FrameCheck check = verify::check_frame(start.frame, kMostJudged);
+  const verify::FrameCheck check = verify::check_frame(start.frame, kMaxTold);
   std::vector<std::string> found = verify::describe_by_surfaces(start.frame, check.first);
   for (std::string& sentence : found) sentence.insert(0, "at the start ");
   if (check.penetration() > kInsideAtStart)
@@ -107,31 +111,24 @@ std::vector<std::string> judge_start(const World& world) {
   return found;
 }
 
-std::vector<std::string> describe_sizes(const World& world) {
-  std::vector<std::string> lines;
-  for (const Thing& thing : list_things(world, nullptr)) {
-    lines.push_back(thing.name + format(": %.3g m wide, ", thing.size.x()) +
-                    format("%.3g m high, ", thing.size.y()) + format("%.3g m deep, ", thing.size.z()) +
-                    std::to_string(thing.num_triangles) + " triangles");
-  }
-  return lines;
-}
-
-std::vector<std::string> judge_sizes(const SceneDesc& scene, const World& world) {
-  std::vector<std::string> found;
-  const auto add = [&](std::optional<std::string> sentence) {
-    if (sentence) found.push_back(std::move(*sentence));
+SizeCheck check_sizes(const SceneDesc& scene, const World& world) {
+  SizeCheck check;
+  const auto warn = [&](std::optional<std::string> sentence) {
+    if (sentence) check.warnings.push_back(std::move(*sentence));
   };
-  const std::vector<Thing> things = list_things(world, &scene);
+  const std::vector<MeshBody> bodies = list_bodies(scene, world);
   const std::size_t num_cloths = scene.cloths.size();
-  for (const Thing& thing : things) add(judge_unit(thing));
+  for (const MeshBody& body : bodies) {
+    check.sizes.push_back(describe_size(body));
+    warn(check_unit(body));
+  }
   for (std::size_t cloth = 0; cloth < num_cloths; ++cloth) {
-    for (std::size_t other = num_cloths; other < things.size(); ++other) {
-      add(judge_ratio(things[cloth], things[other]));
-      add(judge_up(things[cloth], things[other]));
+    for (std::size_t other = num_cloths; other < bodies.size(); ++other) {
+      warn(check_ratio(bodies[cloth], bodies[other]));
+      warn(check_up(bodies[cloth], bodies[other]));
     }
   }
-  return found;
+  return check;
 }
 
 }  // namespace weft

@@ -10,13 +10,16 @@
 namespace weft {
 
 /// A sentence for every two things that cross, or of which one is in the other, before anything has moved.
-std::vector<std::string> judge_start(const World& world);
+std::vector<std::string> check_start(const World& world);
 
-/// `cloth "shirt": 0.62 m wide, 0.71 m high, 0.24 m deep, 5230 triangles`, for every cloth and every mesh
-/// among the colliders. Wide, high and deep are along x, y and z.
-std::vector<std::string> describe_sizes(const World& world);
+struct SizeCheck {
+  /// `cloth "shirt": 0.62 m wide, 0.71 m high, 0.24 m deep, 5230 triangles`, for every cloth and every mesh
+  /// among the colliders. Wide, high and deep are along x, y and z.
+  std::vector<std::string> sizes;
+  std::vector<std::string> warnings;  // of a mesh that seems to be in another unit, or to lie on its back
+};
 
-/// A sentence for every mesh that seems to be in another unit, or to lie on its back. `world` is the scene's.
-std::vector<std::string> judge_sizes(const SceneDesc& scene, const World& world);
+/// `world` is the scene's.
+SizeCheck check_sizes(const SceneDesc& scene, const World& world);
 
 }  // namespace weft

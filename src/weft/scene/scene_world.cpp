@@ -90,18 +90,18 @@ WarpField find_warp(const ClothSceneDesc& desc, const LoadedCloth& loaded,
                     std::vector<std::string>& warnings) {
   const std::string who = "cloth \"" + desc.name + "\": ";
   const TriangleMesh& mesh = loaded.topology->mesh;
-  if (!desc.fabric->warp && loaded.uv.empty()) {
+  std::optional<Vec3> direction = desc.fabric->warp;
+  if (!direction && loaded.uv.empty()) {
     const bool stands = stands_upright(mesh);
+    direction = stands ? Vec3::UnitY() : Vec3::UnitX();
     warnings.push_back(who +
                        "its mesh has no texture coordinates, which would say where warp goes; it goes " +
                        (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
-    return warp_from_direction(mesh, stands ? Vec3::UnitY() : Vec3::UnitX());
   }
-  const bool is_given = desc.fabric->warp.has_value();
-  WarpField warp = is_given ? warp_from_direction(mesh, *desc.fabric->warp) : warp_from_uv(mesh, loaded.uv);
+  WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, loaded.uv);
   if (warp.num_guessed == 0) return warp;
   warnings.push_back(
-      who + (is_given ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
+      who + (direction ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
       std::to_string(warp.num_guessed) + (warp.num_guessed == 1 ? " triangle" : " triangles") +
       ", which got another axis");
   return warp;
