@@ -61,12 +61,22 @@ TEST_F(App, CheckAsksWhetherZPointsUp) {
 
 TEST_F(App, CheckSeesACrossedStart) {
   write_dressed_scene();
-  const std::string crossed = "weft check scene.toml --set 'cloth[0].position=[-0.8,0,0]'";
+  const std::string crossed =
+      "weft check scene.toml --set 'cloth[0].position=[-0.8,0,0]' --set solver.untangle=false";
   const Finished done = shell(crossed);
   EXPECT_TRUE(contains(done.out, "at the start cloth \"shirt\" triangle")) << done.out;
   EXPECT_TRUE(contains(done.out, "solver.untangle = true")) << done.out;
   EXPECT_FALSE(contains(done.out, ": good")) << done.out;
   EXPECT_EQ(shell(crossed + " --strict").exit_code, 1);
+}
+
+TEST_F(App, CheckFindsAMovingBodyBesideASceneNamedWithoutAFolder) {
+  write_dressed_scene();
+  for (const char* frame : {"walk_0.obj", "walk_1.obj"}) write_box(frame, {0, 0, 0}, {0.5, 1.8, 0.3});
+  const Finished done =
+      shell("sed -i 's/file = .*/frames = \"walk_*.obj\"/' scene.toml && weft check scene.toml");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "collider \"body\": 0.5 m wide")) << done.out << done.err;
 }
 
 TEST_F(App, CheckIsStrictlyContentWithShippedGarments) {

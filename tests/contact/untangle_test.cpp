@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/support.h"
+#include "weft/mesh/clean.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
@@ -108,6 +109,54 @@ TEST(Untangle, AFoldThroughItselfComesOut) {
   world.add_collider({"floor", Plane{Vec3(0, -0.2, 0), Vec3::UnitY()}, 0.3, {}});
   world.add_cloth({.name = "fold", .topology = topology, .material = kCotton, .positions = positions});
   expect_untangled(world, "cloth \"fold\"");
+}
+
+/// A tube of cloth along x.
+TriangleMesh make_sleeve(double radius, double length, int num_around, int num_along) {
+  TriangleMesh mesh;
+  for (int i = 0; i <= num_along; ++i) {
+    for (int k = 0; k < num_around; ++k) {
+      const double angle = 2 * 3.141592653589793 * k / num_around;
+      mesh.positions.push_back({length * (static_cast<double>(i) / num_along - 0.5), radius * std::cos(angle),
+                                radius * std::sin(angle)});
+    }
+  }
+  for (int i = 0; i < num_along; ++i) {
+    for (int k = 0; k < num_around; ++k) {
+      const int a = i * num_around + k, b = i * num_around + (k + 1) % num_around;
+      mesh.triangles.insert(mesh.triangles.end(),
+                            {{a, b, a + num_around}, {b, b + num_around, a + num_around}});
+    }
+  }
+  return mesh;
+}
+
+TEST(Untangle, AnArmHalfOutsideItsSleeveIsPutIntoIt) {
+  constexpr double kArm = 0.04, kSleeve = 0.046, kAside = 0.03;
+  World world;
+  const TriangleMesh arm = make_capsule_mesh({-0.3, 0, 0}, {0.3, 0, 0}, kArm, 24);
+  const CleanMesh closed = clean_mesh(arm, {.weld_distance = 0});
+  world.add_collider({"arm", MeshShape{.mesh = std::make_shared<const TriangleMesh>(closed.mesh)}, 0.3, {}});
+  const TriangleMesh sleeve = make_sleeve(kSleeve, 0.35, 36, 40);
+  std::vector<Vec3> positions = sleeve.positions;
+  for (Vec3& p : positions) p.y() += kAside;
+  const ClothId id = world.add_cloth({.name = "sleeve",
+                                      .topology = build_mesh_topology(sleeve),
+                                      .material = kCotton,
+                                      .positions = positions});
+  const UntangleReport report = world.untangle();
+  EXPECT_FALSE(report.crossed.empty());
+  for (const std::string& left : report.left) ADD_FAILURE() << left;
+  EXPECT_EQ(check(world).intersections, 0);
+  EXPECT_LT(largest_strain(world, id), 0.1);
+  double above = 0, below = 0;
+  for (int k = 0; k < 36; ++k) {  // the middle ring is around the arm
+    const Vec3 p = world.state(id).position(20 * 36 + k);
+    above = std::max(above, p.y());
+    below = std::min(below, p.y());
+  }
+  EXPECT_GT(above, kArm);
+  EXPECT_LT(below, -kArm);
 }
 
 TEST(Untangle, LeavesAloneWhatDoesNotCross) {

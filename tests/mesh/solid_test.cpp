@@ -15,6 +15,10 @@ TriangleMesh box(const Vec3& center, double half_size) {
   return clean_mesh(mesh, {.weld_distance = 0}).mesh;
 }
 
+void turn_inside_out(TriangleMesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
 TriangleMesh join(TriangleMesh mesh, const TriangleMesh& other) {
   const int first = mesh.num_vertices();
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
@@ -129,6 +133,18 @@ TEST(WindingNumbers, KnowOverlapsHollowsAndInsideOut) {
   EXPECT_EQ(compute_winding_numbers(join(box(Vec3::Zero(), 1), hollow), points),
             (std::vector<int>{0, 1, 0, 0}));
   EXPECT_EQ(compute_winding_numbers(hollow, points), (std::vector<int>{-1, 0, 0, 0}));
+}
+
+TEST(Shells, ThatFaceInwardsAreTurnedButHollowsAreNot) {
+  TriangleMesh hair = box(Vec3(0.5, 0.6, 0.5), 1), hollow = box(Vec3(0.2, 0.2, 0.2), 0.05);
+  turn_inside_out(hair);
+  turn_inside_out(hollow);
+  TriangleMesh mesh = join(join(box(Vec3::Zero(), 1), hair), hollow);
+  const Shells shells = turn_shells_outwards(mesh);
+  EXPECT_EQ(shells.count, 3);
+  EXPECT_EQ(shells.turned, 1);
+  const std::vector<Vec3> points = {{-0.7, 0.1, 0.1}, {0.7, 0.8, 0.9}, {1.2, 1.3, 1.2}, {0.21, 0.22, 0.23}};
+  EXPECT_EQ(compute_winding_numbers(mesh, points), (std::vector<int>{1, 2, 1, 1}));
 }
 
 }  // namespace

@@ -272,6 +272,8 @@ TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
   scene.cloths[1].name = "blade";
   scene.cloths[1].rotation_deg.x() += 90;
   scene.cloths[1].position = {-0.5, 2.1, 0};
+  scene.untangle = false;
+  scene.crossed_start = CrossedStart::allow;
   const RunReport report = run_scene(scene, {.frames = 2, .record_animation = false}).report;
   ASSERT_TRUE(report.intersections.has_value());
   EXPECT_GT(*report.intersections, 20);
@@ -334,8 +336,6 @@ SceneDesc crossed_sheets() {
 
 TEST(Report, OfAStartThatIsUntangledHasNoCrossings) {
   SceneDesc scene = crossed_sheets();
-  scene.untangle = true;
-  scene.crossed_start = CrossedStart::refuse;  // what is left
   const RunReport report = run_scene(scene, {.frames = 20, .record_animation = false}).report;
   EXPECT_EQ(report.intersections, 0);
   EXPECT_TRUE(warns(report, "set apart in "));
@@ -344,7 +344,7 @@ TEST(Report, OfAStartThatIsUntangledHasNoCrossings) {
 
 TEST(Report, OfACrossedStartThatIsRefusedNamesClothsTrianglesAndCounts) {
   SceneDesc scene = crossed_sheets();
-  scene.crossed_start = CrossedStart::refuse;
+  scene.untangle = false;
   try {
     run_scene(scene, {.frames = 1, .record_animation = false});
     FAIL();
@@ -353,8 +353,24 @@ TEST(Report, OfACrossedStartThatIsRefusedNamesClothsTrianglesAndCounts) {
     EXPECT_NE(message.find("cloth \"sheet\" triangle "), std::string::npos) << message;
     EXPECT_NE(message.find(" crosses cloth \"blade\" triangle "), std::string::npos) << message;
     EXPECT_NE(message.find(" crossing pairs"), std::string::npos) << message;
-    EXPECT_NE(message.find("solver.untangle = true"), std::string::npos) << message;
+    EXPECT_NE(message.find("solver.untangle = false"), std::string::npos) << message;
+    EXPECT_NE(message.find("solver.crossed_start = \"allow\""), std::string::npos) << message;
   }
+}
+
+TEST(Report, OfAPoleThroughASheetThatNothingCanSetApartIsRefused) {
+  SceneDesc scene = shipped("paper/fig6_ball", {});
+  scene.colliders[0].shape = Capsule{{0, -1, 0}, {0, 2, 0}, 0.1};
+  EXPECT_THROW(run_scene(scene, {.frames = 1, .record_animation = false}), InputError);
+}
+
+TEST(Report, OfACrossedStartThatIsAllowedWarns) {
+  SceneDesc scene = crossed_sheets();
+  scene.untangle = false;
+  scene.crossed_start = CrossedStart::allow;
+  const RunReport report = run_scene(scene, {.frames = 1, .record_animation = false}).report;
+  EXPECT_EQ(report.outcome, RunOutcome::done);
+  EXPECT_TRUE(warns(report, " crossing pairs"));
 }
 
 TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {

@@ -72,19 +72,20 @@ ContactSystem::Place ContactSystem::place_of_triangle(int triangle) const {
   return place;
 }
 
-UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
-                                       const std::vector<Collider>& colliders, const ContactStep& now) {
-  begin_step(cloths, colliders, now);
+/// After begin_step.
+Tangle ContactSystem::make_tangle() const {
   Tangle tangle{.surface = &surface(),
                 .first_vertex = first_vertex_,
                 .num_cloth_vertices = first_vertex_.back(),
                 .inverse_mass = &inverse_mass_,
                 .half_thickness = &motion_.half_thickness};
-  const auto pass = [&](const Place& cloth, const Place& other) {
+  const auto pass = [this](const Place& cloth, const Place& other) {
     return !laws_[law_of(cloth, other)].collide;
   };
-  tangle.pass = [&](int v, int w) { return pass(place_of(std::min(v, w)), place_of(std::max(v, w))); };
-  tangle.pass_solid = [&](int v, int collider) { return pass(place_of(v), {.collider = collider}); };
+  tangle.pass = [this, pass](int v, int w) {
+    return pass(place_of(std::min(v, w)), place_of(std::max(v, w)));
+  };
+  tangle.pass_solid = [this, pass](int v, int collider) { return pass(place_of(v), {.collider = collider}); };
   for (const ContactCloth& cloth : cloths_) {
     const TriangleMesh& mesh = cloth.model->topology->mesh;
     tangle.num_cloth_triangles += mesh.num_triangles();
@@ -100,9 +101,27 @@ UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
     tangle.solids.push_back(
         {body.collider, shapes_[body.collider].after, body.first_vertex, body.end_vertex});
   }
-  std::vector<Vec3> positions = motion_.end;  // of colliders
+  return tangle;
+}
+
+/// After begin_step: of cloths, and of colliders now.
+std::vector<Vec3> ContactSystem::positions_now() const {
+  std::vector<Vec3> positions = motion_.end;
   std::copy_n(motion_.start.begin(), first_vertex_.back(), positions.begin());
-  const UntangleResult result = weft::untangle(tangle, positions);
+  return positions;
+}
+
+Knots ContactSystem::find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
+                                const ContactStep& now) {
+  begin_step(cloths, colliders, now);
+  return weft::find_knots(make_tangle(), positions_now());
+}
+
+UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
+                                       const std::vector<Collider>& colliders, const ContactStep& now) {
+  begin_step(cloths, colliders, now);
+  std::vector<Vec3> positions = positions_now();
+  const UntangleResult result = weft::untangle(make_tangle(), positions);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {

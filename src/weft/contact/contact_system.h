@@ -85,7 +85,9 @@ class ContactSystem {
   /// What zones of the last line do is not in it.
   std::vector<ContactPoint> contact_points() const;
 
-  /// Sets apart what crosses as it is, colliders where they are, now (see untangle.h).
+  /// What crosses as it is, colliders where they are, now, and sets it apart (see untangle.h).
+  Knots find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
+                   const ContactStep& now);
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                           const ContactStep& now);
   const Surface& surface() const { return proximity_.surface(); }
@@ -138,6 +140,8 @@ class ContactSystem {
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
   bool renumber(const std::vector<Collider>& colliders);
+  Tangle make_tangle() const;
+  std::vector<Vec3> positions_now() const;
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);

@@ -14,12 +14,13 @@
 namespace weft {
 namespace {
 
-constexpr int kMostRounds = 600;
-constexpr int kPullPasses = 20;       // over all edges in a round
-constexpr double kMostStretch = 1.1;  // of an edge, or as much as it has at the start
-constexpr double kLeastGap = 1e-4;    // that cloth is given from what it crossed [m]
-constexpr double kMostOfEdge = 0.5;   // no push is longer than this share of the cloth's mean edge
-constexpr double kShortening = 0.1;   // of the mean edge: how far a cut's end moves in a round
+constexpr int kMinRounds = 60, kMaxRounds = 600;  // that may be made …
+constexpr int kMaxTriangles = 4'000'000;          // … and triangles looked at in them: some seconds
+constexpr int kPullPasses = 20;                   // over all edges in a round
+constexpr double kMostStretch = 1.1;              // of an edge, or as much as it has at the start
+constexpr double kLeastGap = 1e-4;                // that cloth is given from what it crossed [m]
+constexpr double kMostOfEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
+constexpr double kShortening = 0.1;  // of the mean edge: how far a cut's end moves in a round
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -44,28 +45,68 @@ class Untangler {
     build_trees();
   }
 
+  /// Keeps the best of all rounds.
   UntangleResult run() {
     UntangleResult result;
     result.before = result.after = find_knots();
-    while (!result.after.empty() && result.rounds < kMostRounds) {
+    std::vector<Vec3> best = x_;
+    Knots knots = result.after;
+    const int num_triangles = static_cast<int>(surface_.triangles.size());
+    const int most = std::clamp(kMaxTriangles / std::max(num_triangles, 1), kMinRounds, kMaxRounds);
+    while (!knots.empty() && result.rounds < most) {
       ++result.rounds;
-      for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
-      push_ = std::vector<Vec3>(x_.size(), Vec3::Zero());
-      count_ = std::vector<int>(x_.size(), 0);
-      find_cuts(result.after.pierced);
-      for (const Pierced& p : result.after.pierced) push_back(p);
-      for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
-        if (count_[v] > 0) x_[v] += push_[v] / count_[v];
-      }
-      pull();
-      for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
-      round();
-      result.after = find_knots();
+      move_apart(knots);
+      knots = find_knots();
+      if (knots.size() >= result.after.size()) continue;
+      result.after = knots;
+      best = x_;
     }
+    x_ = best;
     return result;
   }
 
+  Knots find_knots() {
+    Knots knots;
+    cloth_tree_.refit([&](int t) { return box_of(x_, surface_.triangles[t]); }, *jobs_);
+    PairSearch search;
+    cloth_tree_.find_self_pairs(*jobs_, search);
+    for (const auto& [s, t] : search.pairs) add_pierced(s, t, knots.pierced);
+    const int first = tangle_.num_cloth_triangles;
+    if (static_cast<int>(surface_.triangles.size()) > first) {
+      cloth_tree_.find_pairs(body_tree_, *jobs_, search);
+      for (const auto& [s, t] : search.pairs) add_pierced(s, t + first, knots.pierced);
+    }
+    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+      const std::span<const int> fan = surface_.triangles_at(v);
+      for (std::size_t f = 0; f < fan.size(); ++f) {
+        for (std::size_t g = f + 1; g < fan.size(); ++g) add_pierced(fan[f], fan[g], knots.pierced);
+      }
+    }
+    std::sort(knots.pierced.begin(), knots.pierced.end());
+    knots.pierced.erase(std::unique(knots.pierced.begin(), knots.pierced.end()), knots.pierced.end());
+    for (std::size_t s = 0; s < meshes_.size(); ++s) {
+      for (const int v : find_inside(s))
+        knots.inside.push_back({v, tangle_.solids[s].collider, way_out(s, x_[v]).depth});
+    }
+    return knots;
+  }
+
  private:
+  /// A round.
+  void move_apart(const Knots& knots) {
+    for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
+    push_ = std::vector<Vec3>(x_.size(), Vec3::Zero());
+    count_ = std::vector<int>(x_.size(), 0);
+    find_cuts(knots.pierced);
+    for (const Pierced& p : knots.pierced) push_back(p);
+    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+      if (count_[v] > 0) x_[v] += push_[v] / count_[v];
+    }
+    pull();
+    for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
+    round();
+  }
+
   bool is_cloth(int v) const { return v < tangle_.num_cloth_vertices; }
   bool is_free(int v) const { return inverse_mass_[v] > 0; }
 
@@ -114,31 +155,6 @@ class Untangler {
   }
 
   // ---- What crosses ----
-
-  Knots find_knots() {
-    Knots knots;
-    cloth_tree_.refit([&](int t) { return box_of(x_, surface_.triangles[t]); }, *jobs_);
-    PairSearch search;
-    cloth_tree_.find_self_pairs(*jobs_, search);
-    for (const auto& [s, t] : search.pairs) add_pierced(s, t, knots.pierced);
-    const int first = tangle_.num_cloth_triangles;
-    if (static_cast<int>(surface_.triangles.size()) > first) {
-      cloth_tree_.find_pairs(body_tree_, *jobs_, search);
-      for (const auto& [s, t] : search.pairs) add_pierced(s, t + first, knots.pierced);
-    }
-    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
-      const std::span<const int> fan = surface_.triangles_at(v);
-      for (std::size_t f = 0; f < fan.size(); ++f) {
-        for (std::size_t g = f + 1; g < fan.size(); ++g) add_pierced(fan[f], fan[g], knots.pierced);
-      }
-    }
-    std::sort(knots.pierced.begin(), knots.pierced.end());
-    knots.pierced.erase(std::unique(knots.pierced.begin(), knots.pierced.end()), knots.pierced.end());
-    for (std::size_t s = 0; s < meshes_.size(); ++s) {
-      for (const int v : find_inside(s)) knots.inside.push_back({v, tangle_.solids[s].collider});
-    }
-    return knots;
-  }
 
   void add_pierced(int s, int t, std::vector<Pierced>& pierced) const {
     if (tangle_.pass(surface_.triangles[s][0], surface_.triangles[t][0])) return;
@@ -522,6 +538,11 @@ class Untangler {
 };
 
 }  // namespace
+
+Knots find_knots(const Tangle& tangle, const std::vector<Vec3>& positions) {
+  std::vector<Vec3> x = positions;
+  return Untangler(tangle, x).find_knots();
+}
 
 UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions) {
   return Untangler(tangle, positions).run();

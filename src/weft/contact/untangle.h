@@ -50,6 +50,7 @@ struct Pierced {
 /// A particle inside a solid.
 struct Inside {
   int vertex = 0, collider = 0;
+  double depth = 0;  // [m]
 };
 
 struct Knots {
@@ -57,7 +58,11 @@ struct Knots {
   std::vector<Inside> inside;
 
   bool empty() const { return pierced.empty() && inside.empty(); }
+  std::size_t size() const { return pierced.size() + inside.size(); }
 };
+
+/// What crosses where vertices are at `positions` (num_vertices).
+Knots find_knots(const Tangle& tangle, const std::vector<Vec3>& positions);
 
 struct UntangleResult {
   Knots before, after;

@@ -32,6 +32,52 @@ int cross_upwards(const TriangleMesh& mesh, const Triangle& tri, const Vec3& p) 
   return 0;
 }
 
+/// Triangles that vertices join, shell by shell; shells in the order of their first triangles.
+std::vector<std::vector<int>> find_shells(const TriangleMesh& mesh) {
+  std::vector<int> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    for (const int v : {t[1], t[2]}) parent[root(v)] = root(t[0]);
+  }
+  std::vector<std::vector<int>> shells;
+  std::vector<int> number(mesh.positions.size(), -1);
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    int& shell = number[root(mesh.triangles[t][0])];
+    if (shell < 0) {
+      shell = static_cast<int>(shells.size());
+      shells.emplace_back();
+    }
+    shells[shell].push_back(t);
+  }
+  return shells;
+}
+
+TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  TriangleMesh part{mesh.positions, {}};
+  for (const int t : triangles) part.triangles.push_back(mesh.triangles[t]);
+  return part;
+}
+
+/// Whether a shell is inside the others with nearly all of its vertices.
+bool is_hollow(const TriangleMesh& mesh, const std::vector<int>& shell) {
+  constexpr double kNearlyAll = 0.99;
+  std::vector<char> is_own(mesh.triangles.size(), 0);
+  for (const int t : shell) is_own[t] = 1;
+  TriangleMesh others{mesh.positions, {}};
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    if (!is_own[t]) others.triangles.push_back(mesh.triangles[t]);
+  }
+  std::vector<Vec3> points;
+  for (const int t : shell) points.push_back(mesh.positions[mesh.triangles[t][0]]);
+  const std::vector<int> winding = compute_winding_numbers(others, points);
+  const auto outside = std::count(winding.begin(), winding.end(), 0);
+  return static_cast<double>(outside) < (1 - kNearlyAll) * static_cast<double>(points.size());
+}
+
 }  // namespace
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
@@ -68,8 +114,16 @@ double compute_signed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
-void turn_inside_out(TriangleMesh& mesh) {
-  for (Triangle& tri : mesh.triangles) std::swap(tri[1], tri[2]);
+Shells turn_shells_outwards(TriangleMesh& mesh) {
+  const std::vector<std::vector<int>> shells = find_shells(mesh);
+  Shells result{.count = static_cast<int>(shells.size())};
+  for (const std::vector<int>& shell : shells) {
+    const TriangleMesh part = part_of(mesh, shell);
+    if (compute_signed_volume(part) >= 0 || is_hollow(mesh, shell)) continue;
+    for (const int t : shell) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    ++result.turned;
+  }
+  return result;
 }
 
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points) {

@@ -14,7 +14,7 @@ struct SurfaceEdges {
   int non_manifold = 0;  // of more than two
   int twisted = 0;       // of two that run along it in the same direction: one of them faces the wrong way
   int unbalanced = 0;    // more triangles run along it in one direction than in the other: all but the good
-                       // ones, and those at which several good solids meet
+                         // ones, and those at which several good solids meet
 };
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh);
@@ -30,8 +30,15 @@ inline bool is_closed(const SurfaceEdges& edges) { return edges.unbalanced == 0;
 /// Of an open mesh the number depends on where it lies and means nothing.
 double compute_signed_volume(const TriangleMesh& mesh);
 
-/// Turns every triangle over.
-void turn_inside_out(TriangleMesh& mesh);
+/// Of a closed mesh's shells, its parts that no vertex joins.
+struct Shells {
+  int count = 0;
+  int turned = 0;  // that faced inwards
+};
+
+/// Turns the shells that face inwards right side out, but for hollows: those that are inside other shells
+/// altogether.
+Shells turn_shells_outwards(TriangleMesh& mesh);
 
 /// How often a closed mesh winds around each point (num_points): 1 inside where it faces outwards, -1 where
 /// it faces inwards, 0 outside and in hollows, 2 where two parts overlap. Found by the triangles above the

@@ -47,10 +47,11 @@ class Recorder {
   void check_start(const SceneDesc& scene) {
     const std::vector<std::string> found = weft::check_start(world_);
     report_.warnings.insert(report_.warnings.end(), found.begin(), found.end());
-    if (found.empty() || scene.crossed_start == CrossedStart::warn) return;
-    std::string all = "the start is refused (solver.crossed_start = \"refuse\"):";
+    if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return;
+    std::string all = scene.untangle ? "the start crosses, and could not be set apart:"
+                                     : "the start crosses, and solver.untangle = false leaves it so:";
     for (const std::string& sentence : found) all += "\n  " + sentence;
-    throw InputError(all + "\nmove them apart, or let solver.untangle = true do it");
+    throw InputError(all + "\nmove them apart, or solver.crossed_start = \"allow\" runs all the same");
   }
 
   void add_frame() {

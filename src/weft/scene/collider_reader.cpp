@@ -71,7 +71,8 @@ std::vector<std::filesystem::path> find_files(const std::filesystem::path& patte
   const std::string begin = name.substr(0, star), end = name.substr(star + 1);
   std::vector<std::filesystem::path> files;
   std::error_code unreadable;
-  for (const auto& entry : std::filesystem::directory_iterator(pattern.parent_path(), unreadable)) {
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
     const std::string candidate = entry.path().filename().string();
     if (candidate.size() >= begin.size() + end.size() && candidate.starts_with(begin) &&
         candidate.ends_with(end))

@@ -120,8 +120,8 @@ struct WindDesc {
 
 /// What to do with a start at which cloth crosses something, after it has been untangled if that is wished.
 enum class CrossedStart {
-  warn,    // and run
   refuse,  // by an InputError that names it
+  allow,   // warn of it, and run
 };
 
 struct SceneDesc {
@@ -139,8 +139,8 @@ struct SceneDesc {
   std::optional<bool> adaptive;  // whether steps are divided where they are too long; empty: with newton
   int max_steps_per_frame = 16;  // into as many in all, >= 1
   bool contact = true;           // whether colliders, cloth itself and other cloths hold cloth off
-  bool untangle = false;         // set apart what crosses at the start
-  CrossedStart crossed_start = CrossedStart::warn;
+  bool untangle = true;          // set apart what crosses at the start, where there is contact
+  CrossedStart crossed_start = CrossedStart::refuse;
 
   int num_frames() const;  // round(duration · fps), at least 1
 };

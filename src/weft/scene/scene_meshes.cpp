@@ -45,10 +45,14 @@ void judge_as_solid(TriangleMesh& mesh, const std::string& who, std::vector<std:
   if (edges.border > 0) {
     warn("has a border of " + count_edges(edges.border) +
          ": cloth is held off on both sides, inside is not defined");
-  } else if (compute_signed_volume(mesh) < 0) {
-    turn_inside_out(mesh);
-    warn("is inside out (its triangles face inwards); it was turned right side out");
+    return;
   }
+  const Shells shells = turn_shells_outwards(mesh);
+  if (shells.turned == 0) return;
+  const std::string turned = std::to_string(shells.turned) + " of its " + std::to_string(shells.count);
+  warn((shells.count == 1 ? "is inside out (its triangles face inwards); it was"
+                          : turned + " shells are inside out (their triangles face inwards); they were") +
+       std::string(" turned right side out"));
 }
 
 struct ShapeMaker {

@@ -198,7 +198,7 @@ void read_solver(TomlTable table, SceneDesc& scene) {
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);
   table.read_choice<CrossedStart>("crossed_start", scene.crossed_start,
-                                  {{"warn", CrossedStart::warn}, {"refuse", CrossedStart::refuse}});
+                                  {{"refuse", CrossedStart::refuse}, {"allow", CrossedStart::allow}});
   table.table("explicit").read("substeps", solver.explicit_euler.substeps, IntegerRule{0, INT_MAX});
   table.table("paper").read_choice<bool>("damping_sign", solver.paper.printed_damping_sign,
                                          {{"corrected", false}, {"as_printed", true}});

@@ -263,7 +263,7 @@ void untangle(World& world, std::vector<std::string>& warnings) {
   for (const std::string& what : report.crossed)
     warnings.push_back("at the start " + what + (report.left.empty() ? how : ""));
   for (const std::string& what : report.left)
-    warnings.push_back("could not be untangled: " + what + "; move them apart, or unpin what is held there");
+    warnings.push_back("could not be untangled: " + what + "; move them apart");
 }
 
 }  // namespace
@@ -300,7 +300,8 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
     if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction);
     world.set_collision(a, b, rule.collide);
   }
-  scene.untangle ? untangle(world, result.warnings) : warn_about_start(world, result.warnings);
+  scene.untangle&& scene.contact ? untangle(world, result.warnings)
+                                 : warn_about_start(world, result.warnings);
   return result;
 }
 

@@ -349,23 +349,6 @@ std::vector<std::string> World::describe(const Knots& knots) const {
   return sentences;
 }
 
-UntangleReport World::untangle() {
-  UntangleReport report;
-  const Snapshot before = snapshot();
-  show_contact_cloths();
-  const UntangleResult result =
-      contact_system_.untangle(contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
-  report.rounds = result.rounds;
-  report.crossed = describe(result.before);
-  report.left = describe(result.after);
-  for (int c = 0; c < num_cloths(); ++c) {
-    const ClothState &now = cloths_[c].state, &then = before.states[c];
-    for (std::size_t i = 0; i < now.x.size(); ++i)
-      report.farthest = std::max(report.farthest, (now.position(i) - then.position(i)).norm());
-  }
-  return report;
-}
-
 std::vector<ContactPoint> World::contact_points() const {
   if (!contact_ || !tracks_contacts_) return {};
   return contact_system_.contact_points();

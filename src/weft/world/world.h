@@ -197,6 +197,10 @@ class World {
   void show_contact_cloths();
   InfeasiblePair describe(const Infeasible& pair) const;
   std::vector<std::string> describe(const Knots& knots) const;
+  Knots find_knots();
+  World make_stage() const;
+  void thin_colliders(const Knots& crossed, World& stage) const;
+  void rest();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
   ContactRule& rule_for(const std::string& a, const std::string& b);

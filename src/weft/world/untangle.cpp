@@ -1,0 +1,160 @@
+/// World::untangle: cloth that crosses something is set apart on a stage of its own, without gravity or wind.
+///
+/// 1. Solids that cloth is in become thinner, until cloth is outside (contact/shrink.h).
+/// 2. What still crosses, cloth with cloth or with plain shapes, is set apart (contact/untangle.h).
+/// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes meanwhile.
+/// After
+///    each step everything is at rest.
+///
+/// Whichever of start and end crosses less is kept.
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/contact/shrink.h"
+#include "weft/world/world.h"
+
+namespace weft {
+namespace {
+
+constexpr double kStep = 1.0 / 60;     // on the stage [s]
+constexpr double kGrowth = 1.5e-3;     // in a step, about [m]
+constexpr int kMaxSteps = 54;          // of growth …
+constexpr int kSettlingSteps = 6;      // … and after it
+constexpr double kMoreThanDeep = 1.2;  // times as deep as cloth is inside, solids become thinner …
+constexpr double kRoom = 2e-3;         // … and by so much more [m]
+constexpr double kMoreNextTime = 1.6;  // where that was not enough
+constexpr int kMaxTrials = 3;
+
+/// Where it is now.
+Collider still(const Collider& collider, double time) {
+  Collider result = collider;
+  result.shape = shape_at(collider, time);
+  result.motion = {};
+  if (MeshShape* shape = std::get_if<MeshShape>(&result.shape)) {
+    TriangleMesh mesh = *shape->mesh;
+    for (int v = 0; v < mesh.num_vertices(); ++v) mesh.positions[v] = shape->vertex(v);
+    *shape = {.mesh = std::make_shared<const TriangleMesh>(std::move(mesh))};
+  }
+  return result;
+}
+
+/// A still mesh that starts at other places.
+MeshShape growing_from(const std::vector<Vec3>& thin, const MeshShape& full, int steps) {
+  MeshShape shape = full;
+  shape.sequence = std::make_shared<const MeshSequence>(
+      std::vector<MeshSequence::Key>{{0, thin}, {steps * kStep, full.mesh->positions}});
+  return shape;
+}
+
+/// How deep cloth is in each collider (colliders) [m]; 0 where it is not.
+std::vector<double> compute_depths(const Knots& knots, std::size_t num_colliders) {
+  std::vector<double> depths(num_colliders, 0.0);
+  for (const Inside& inside : knots.inside)
+    depths[inside.collider] = std::max(depths[inside.collider], inside.depth);
+  return depths;
+}
+
+}  // namespace
+
+Knots World::find_knots() {
+  constexpr double kTouches = 1e-6;  // what is no deeper lies on the solid [m]
+  show_contact_cloths();
+  Knots knots =
+      contact_system_.find_knots(contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
+  std::erase_if(knots.inside, [](const Inside& inside) { return inside.depth <= kTouches; });
+  return knots;
+}
+
+/// The same cloths where they are, at rest, and the same colliders, which stay; nothing else acts.
+World World::make_stage() const {
+  World stage;
+  stage.jobs_ = jobs_;
+  stage.rules_ = rules_;
+  stage.gravity_.setZero();
+  stage.set_division({.shortest = kStep / 16});
+  for (const Collider& collider : colliders_) stage.add_collider(still(collider, time_));
+  for (const Cloth& cloth : cloths_) {
+    std::vector<Vec3> positions;
+    for (int i = 0; i < cloth.model->num_particles(); ++i) positions.push_back(cloth.state.position(i));
+    const ClothId id = stage.add_cloth({.name = cloth.name,
+                                        .topology = cloth.model->topology,
+                                        .material = cloth.model->material,
+                                        .elements = cloth.model->elements,
+                                        .positions = std::move(positions)});
+    Pin held;
+    for (const PinnedParticle& pinned : cloth.pinned) held.particles.push_back(pinned.particle);
+    stage.set_pins(id, {held});
+  }
+  return stage;
+}
+
+/// Puts thinner ones in place of the meshes that cloth is in, which grow back from the stage's start on.
+void World::thin_colliders(const Knots& crossed, World& stage) const {
+  const std::vector<double> depths = compute_depths(crossed, colliders_.size());
+  for (std::size_t c = 0; c < colliders_.size(); ++c) {
+    MeshShape* shape = std::get_if<MeshShape>(&stage.colliders_[c].shape);
+    if (!shape || depths[c] == 0) continue;
+    stage.colliders_[c].friction = stage.colliders_[c].static_friction = 0;
+    const MeshShape full = *shape;
+    const std::vector<double> radii = compute_inner_radii(*full.mesh);
+    double depth = kMoreThanDeep * depths[c] + kRoom;
+    for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
+      const int steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
+      *shape = growing_from(weft::shrink(*full.mesh, radii, depth), full, steps);
+      if (compute_depths(stage.find_knots(), colliders_.size())[c] == 0) break;
+    }
+  }
+}
+
+/// Takes all motion from all cloth.
+void World::rest() {
+  for (Cloth& cloth : cloths_) {
+    for (std::size_t i = 0; i < cloth.state.v.size(); ++i) cloth.state.v.set(i, Vec3::Zero());
+    cloth.state.history.step = 0;
+  }
+}
+
+UntangleReport World::untangle() {
+  UntangleReport report;
+  const Knots crossed = find_knots();
+  if (crossed.empty()) return report;
+  report.crossed = report.left = describe(crossed);
+  World stage = make_stage();
+  thin_colliders(crossed, stage);
+  stage.show_contact_cloths();
+  report.rounds = stage.contact_system_
+                      .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_})
+                      .rounds;
+  double growth = 0;  // takes so long [s]
+  for (const Collider& collider : stage.colliders_) {
+    const MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
+    if (shape && shape->sequence) growth = std::max(growth, shape->sequence->keys().back().time);
+  }
+  const int steps = static_cast<int>(std::lround(growth / kStep)) + kSettlingSteps;
+  for (int s = 0; s < steps; ++s) {
+    stage.rest();
+    if (!stage.step(kStep).ok) break;
+    ++report.rounds;
+  }
+  const Snapshot before = snapshot();
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    ClothState& state = cloths_[c].state;
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 place = stage.cloths_[c].state.position(i);
+      report.farthest = std::max(report.farthest, (place - state.position(i)).norm());
+      state.set_position(i, place);
+    }
+    state.history.step = 0;
+  }
+  const Knots left = find_knots();
+  if (left.size() < crossed.size()) {
+    report.left = describe(left);
+  } else {
+    restore(before);
+    report.farthest = 0;
+  }
+  return report;
+}
+
+}  // namespace weft

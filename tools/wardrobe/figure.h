@@ -1,0 +1,61 @@
+#pragma once
+/// A person to dress: a mesh of smoothly joined round cones, hair as a shell of its own, and a skeleton.
+///
+/// At rest the arms are 30 degrees below the horizontal, y is up, the face looks along z, the feet stand on
+/// y = 0. Vertices follow the bones near them (linear blend skinning), so that the skin goes through itself
+/// at armpits, elbows and crotch, as that of many game figures does.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/wardrobe/isosurface.h"
+
+namespace weft::wardrobe {
+
+enum Bone {
+  kHips,
+  kChest,
+  kHead,
+  kLeftArm,
+  kLeftForearm,
+  kLeftHand,
+  kRightArm,
+  kRightForearm,
+  kRightHand,
+  kLeftThigh,
+  kLeftShin,
+  kLeftFoot,
+  kRightThigh,
+  kRightShin,
+  kRightFoot,
+  kNumBones
+};
+
+/// What each bone is turned by against the one it hangs on: about x, y, z, in this order [degrees].
+using Pose = std::array<Vec3, kNumBones>;
+
+/// The figure's skin at rest, some of its bones alone, joined over a length of `blend`, its
+/// torso over 0.06 or more [m].
+Field body_field(const std::vector<Bone>& bones, double blend);
+
+/// Where the bone begins at rest [m].
+Vec3 joint_of(Bone bone);
+
+struct Figure {
+  TriangleMesh mesh;                                  // at rest; the hair comes last
+  int num_skin_triangles = 0;                         // before it
+  std::vector<std::array<float, kNumBones>> weights;  // (num_vertices) sums are 1 [1]
+};
+
+/// With cells of side `cell` [m]; 0.011 gives 15,000 vertices.
+Figure make_figure(double cell);
+
+/// The mesh's vertices in a pose (num_vertices) [m].
+std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose);
+
+/// A motion from rest: "stand" (arms sink a little), "walk", "kick" (the foot reaches 15 m/s), "fold" (the
+/// arms fold before the chest) or "sit". `time` [s].
+Pose pose_at(const std::string& motion, double time);
+
+}  // namespace weft::wardrobe
