@@ -21,6 +21,7 @@ bool check(const std::string& name, const Overrides& overrides) {
   const SceneWorld built = build_world(scene, make_serial_jobs());
   const SizeCheck sizes = check_sizes(scene, built.world);
   for (const std::string& line : sizes.sizes) fmt::print("  {}\n", line);
+  for (const std::string& note : built.notes) fmt::print("  {}\n", note);
   std::vector<std::string> warnings = built.warnings;
   const auto add = [&](const std::vector<std::string>& found) {
     warnings.insert(warnings.end(), found.begin(), found.end());

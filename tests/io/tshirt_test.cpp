@@ -61,6 +61,14 @@ TEST(TShirt, IsOneManifoldWithFourOpeningsOnceSewn) {
   EXPECT_EQ(mesh.num_vertices() - static_cast<int>(edges.size()) + mesh.num_triangles(), -2);
 }
 
+TEST(TShirt, IsTheSameShirtWhetherWeldedOrSewn) {
+  const TriangleMesh welded = sew_tshirt();
+  const CleanMesh sewn = clean_mesh(read_tshirt().mesh, {.sew_distance = 0.002});
+  EXPECT_TRUE(sewn.warnings.empty()) << sewn.warnings[0];
+  EXPECT_EQ(sewn.mesh.triangles, welded.triangles);
+  EXPECT_EQ(sewn.mesh.positions, welded.positions);
+}
+
 TEST(TShirt, FacesOutwardEverywhere) {
   const TriangleMesh mesh = sew_tshirt();
   std::set<std::pair<int, int>> half_edges;  // each direction of an edge once: neighbours agree

@@ -150,6 +150,17 @@ TEST(SceneReader, WeldsByYesNoOrDistance) {
   EXPECT_EQ(parse_weld("0").weld_distance, 0);
 }
 
+TEST(SceneReader, SewsByDistance) {
+  const TemporaryFile mesh("scene_reader_test_sew.obj");
+  const std::string cloth = "[[cloth]]\nmesh = \"scene_reader_test_sew.obj\"\n";
+  const auto parse_sew = [&](const std::string& key) {
+    return std::get<MeshFile>(parse_scene(kScene + cloth + key, mesh.path()).cloths.at(0).shape);
+  };
+  EXPECT_EQ(parse_sew("").sew_distance, 0);
+  EXPECT_EQ(parse_sew("sew = 0.002").sew_distance, 0.002);
+  EXPECT_FALSE(parse_sew("sew = 0.002").weld);
+}
+
 TEST(SceneReader, ReadsPinsInShort) {
   const std::vector<PinDesc> pins = parse_cloth("pins = [\"corner:1,0\", \"index:24\"]").pins;
   ASSERT_EQ(pins.size(), 2u);

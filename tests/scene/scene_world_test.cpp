@@ -46,6 +46,24 @@ factor = 2
                InputError);
 }
 
+TEST(SceneWorld, SewsPiecesAndTellsSo) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "weft_scene_world_sew";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "pieces.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\n"
+                                          "v 0.101 0 0\nv 0.101 0 0.1\nv 0.2 0 0.05\nv 0.101 0 0.06\n"
+                                          "vt 0 0\nvt 0.1 0\nvt 0 0.1\nvt 0.1 0.1\n"
+                                          "f 1/1 3/3 2/2\nf 2/2 3/3 4/4\nf 5/1 8/2 7/4\nf 8/2 6/3 7/4\n";
+  const std::string text =
+      "[scene]\nformat = 1\n[[cloth]]\nmesh = \"pieces.obj\"\nfabric = \"denim\"\nsew = 0.002\n"
+      "pins = [\"index:4\", \"index:7\"]\n";
+  const SceneWorld scene = build_world(parse_scene(text, folder / "scene.toml"), make_serial_jobs());
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(scene.notes, std::vector<std::string>{
+                             "cloth \"cloth\" (pieces.obj): sewed 1 seam: 5 vertices, 1 edge divided"});
+  EXPECT_EQ(scene.world.model({0}).num_particles(), 6);
+  EXPECT_EQ(scene.world.model({0}).topology->mesh.num_triangles(), 5);
+}
+
 /// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a folder of its own.
 class MeshCollider : public testing::Test {
  protected:

@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <set>
 
 #include "weft/core/error.h"
+#include "weft/mesh/sew.h"
 
 namespace weft {
 namespace {
 
 /// A triangle thinner than this, as area over longest edge squared, counts as having no area [1].
 constexpr double kMinThinness = 1e-10;
+
+/// Borders of different pieces that run within this distance of each other look like an open seam [m].
+constexpr double kMaxOpenSeam = 0.005;
 
 std::string number(long long n) { return std::to_string(n); }
 
@@ -96,6 +101,43 @@ std::pair<int, int> keep_triangles(CleanMesh& clean, const Keep& keep) {
   return {dropped, first};
 }
 
+std::string counted(int count, const std::string& noun) {
+  return number(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string in_digits(double value, const char* format) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void sew(CleanMesh& clean, double distance) {
+  SewnMesh sewn = sew_borders(clean.mesh, distance);
+  for (int& v : clean.vertex_of_source) v = v < 0 ? v : sewn.vertex_of_source[v];
+  for (int& t : sewn.source_triangle) t = clean.source_triangle[t];
+  clean.source_triangle = std::move(sewn.source_triangle);
+  clean.corner_weights = std::move(sewn.corner_weights);
+  clean.mesh = std::move(sewn.mesh);
+  clean.notes.push_back("sewed " + counted(sewn.num_seams, "seam") + ": " + number(sewn.num_joined) +
+                        " vertices, " + counted(sewn.num_divided, "edge") + " divided");
+}
+
+/// A distance rounded up to one digit that is not 0 [m].
+double round_up(double distance) {
+  double unit = 1e-4;
+  while (distance > 10 * unit) unit *= 10;
+  return std::max(1.0, std::ceil(distance / unit * (1 - 1e-9))) * unit;
+}
+
+void warn_about_open_seams(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  const OpenSeams open = find_open_seams(mesh, kMaxOpenSeam);
+  if (open.num_seams == 0) return;
+  warnings.push_back((open.num_seams == 1 ? std::string("2 borders run ")
+                                          : number(open.num_seams) + " pairs of borders run up to ") +
+                     in_digits(1000 * open.gap, "%.1f") +
+                     " mm apart: sew = " + in_digits(round_up(open.gap), "%g") + " would join them");
+}
+
 void warn_about_topology(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   const int coincident = count_moved(find_twins(mesh.positions, 0));
   if (coincident > 0) {
@@ -126,7 +168,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.source_triangle.resize(source.triangles.size());
   std::iota(result.source_triangle.begin(), result.source_triangle.end(), 0);
 
-  // Sew.
+  // Weld.
   std::vector<int> twin(source.positions.size());
   std::iota(twin.begin(), twin.end(), 0);
   if (options.weld_distance >= 0) {
@@ -176,7 +218,11 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.vertex_of_source.resize(source.positions.size());
   for (int v = 0; v < source.num_vertices(); ++v) result.vertex_of_source[v] = new_index[twin[v]];
 
-  if (options.is_cloth) warn_about_topology(mesh, warnings);
+  result.corner_weights.assign(mesh.triangles.size(), make_whole_weights());
+  if (options.sew_distance > 0) sew(result, options.sew_distance);
+  if (!options.is_cloth) return result;
+  warn_about_topology(mesh, warnings);
+  warn_about_open_seams(mesh, warnings);
   return result;
 }
 

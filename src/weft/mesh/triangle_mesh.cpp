@@ -6,6 +6,17 @@
 
 namespace weft {
 
+CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights) {
+  CornerUv result;
+  for (int corner = 0; corner < 3; ++corner) {
+    result[corner].setZero();
+    for (int k = 0; k < 3; ++k) {
+      if (weights[corner][k] != 0) result[corner] += weights[corner][k] * uv[k];
+    }
+  }
+  return result;
+}
+
 double triangle_area(const TriangleMesh& mesh, int t) {
   const auto& [a, b, c] = mesh.triangles[t];
   const auto& p = mesh.positions;

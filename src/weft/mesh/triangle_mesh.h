@@ -13,6 +13,15 @@ using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen 
 /// Texture coordinates of a triangle's corners: across a seam the same vertex has several.
 using CornerUv = std::array<Eigen::Vector2d, 3>;
 
+/// Where the corners of a part of a triangle lie in it: barycentric coordinates by corner, each summing to 1.
+using CornerWeights = std::array<Vec3, 3>;
+
+/// A triangle's corners in itself.
+inline CornerWeights make_whole_weights() { return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}; }
+
+/// Texture coordinates of a part of a triangle; corners without any (not a number) spoil no others.
+CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights);
+
 struct TriangleMesh {
   std::vector<Vec3> positions;      // (num_vertices) [m]
   std::vector<Triangle> triangles;  // (num_triangles)

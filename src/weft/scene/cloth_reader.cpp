@@ -46,6 +46,7 @@ void read_weld(TomlTable& cloth, MeshFile& mesh) {
 MeshFile read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
   MeshFile mesh = read_mesh_file(cloth, "mesh", folder);
   read_weld(cloth, mesh);
+  cloth.read("sew", mesh.sew_distance, above_zero("m"));
   return mesh;
 }
 
@@ -59,7 +60,7 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
   }
   read_model(cloth, model);
   const bool is_grid = grid && !mesh;
-  for (const char* key : {"up", "scale", "weld"}) {
+  for (const char* key : {"up", "scale", "weld", "sew"}) {
     if (is_grid) cloth.refuse(key, "only a mesh has it; a grid is in m, and turned by \"rotation\"");
     if (!is_grid) cloth.get(key);
   }

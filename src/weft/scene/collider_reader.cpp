@@ -111,6 +111,7 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   mesh.source.weld = true;
   mesh.source.weld_distance = 0;
   collider.refuse("weld", "a collider has no seams; its vertices are always sewn where they coincide");
+  collider.refuse("sew", "a collider has no seams; its vertices are always sewn where they coincide");
   collider.read("position", mesh.position, any_number("m"));
   collider.read("rotation", mesh.rotation_deg, any_number("degrees"), "[0, 90, 0]");
   return mesh;

@@ -48,6 +48,7 @@ struct MeshFile {
   double scale = 1;             // of the file's unit, > 0 [m]
   bool weld = false;            // sew vertices that coincide
   double weld_distance = 1e-6;  // within this distance, >= 0 [m]
+  double sew_distance = 0;      // a cloth's: sew borders within this distance, vertex on vertex or not [m]
 };
 
 /// A collider's mesh, where it is at the start.

@@ -130,12 +130,15 @@ CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owne
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   try {
     CleanMesh clean = clean_mesh(obj.mesh, {.weld_distance = source.weld ? source.weld_distance : -1,
+                                            .sew_distance = source.sew_distance,
                                             .is_cloth = use == MeshUse::cloth});
+    for (std::string& note : clean.notes) note = who + note;
     for (const auto* list : {&obj.warnings, &clean.warnings}) {
       for (const std::string& warning : *list) warnings.push_back(who + warning);
     }
     if (uv != nullptr && !obj.uv.empty()) {
-      for (const int t : clean.source_triangle) uv->push_back(obj.uv[t]);
+      for (std::size_t t = 0; t < clean.source_triangle.size(); ++t)
+        uv->push_back(interpolate(obj.uv[clean.source_triangle[t]], clean.corner_weights[t]));
     }
     return clean;
   } catch (const InputError& error) {

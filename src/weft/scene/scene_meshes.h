@@ -13,8 +13,8 @@ namespace weft {
 enum class MeshUse { cloth, collider };  // what a mesh is judged as
 
 /// Reads and cleans a mesh file; `uv` becomes its triangles' texture coordinates, empty if it has none.
-/// `owner` ("cloth \"shirt\"") begins every warning and error. Throws InputError where the mesh cannot be
-/// used.
+/// `owner` ("cloth \"shirt\"") begins every warning, note and error. Throws InputError where the mesh cannot
+/// be used.
 CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owner,
                     std::vector<std::string>& warnings, std::vector<CornerUv>* uv = nullptr);
 

@@ -29,7 +29,8 @@ std::optional<GridWarp> grid_warp(const FabricDesc& fabric) {
 }
 
 /// A grid whose warp is along neither axis is a mesh like any other.
-LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings) {
+LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings,
+                 std::vector<std::string>& notes) {
   if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
     if (desc.fabric && !grid_warp(*desc.fabric))
       return {build_mesh_topology(build_grid_mesh(*grid, diagonals_of(desc.model))), {}, {}};
@@ -38,6 +39,7 @@ LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings)
   std::vector<CornerUv> uv;
   CleanMesh clean =
       load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings, &uv);
+  notes.insert(notes.end(), clean.notes.begin(), clean.notes.end());
   return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source), std::move(uv)};
 }
 
@@ -282,7 +284,7 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   for (const ColliderSceneDesc& desc : scene.colliders)
     world.add_collider(make_collider(desc, result.warnings));
   for (const ClothSceneDesc& desc : scene.cloths) {
-    const LoadedCloth loaded = load(desc, result.warnings);
+    const LoadedCloth loaded = load(desc, result.warnings, result.notes);
     const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
     Stuff stuff = make_stuff(desc, loaded, result.warnings);
     multiply_spring_factors(desc, loaded, positions, stuff.material.spring_factors);

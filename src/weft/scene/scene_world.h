@@ -13,6 +13,7 @@ namespace weft {
 struct SceneWorld {
   World world;
   std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
+  std::vector<std::string> notes;     // what was done to meshes as the scene asks, in sentences
 };
 
 /// Loads meshes, places cloth, sets pins. A collider's mesh that faces inwards is turned right side out.
