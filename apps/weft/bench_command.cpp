@@ -5,6 +5,7 @@
 #include "bench/collision.h"
 #include "bench/contact.h"
 #include "bench/frontier.h"
+#include "bench/garments.h"
 #include "bench/integrators.h"
 #include "bench/kernels.h"
 #include "bench/pictures.h"
@@ -174,6 +175,29 @@ void add_scaling(CLI::App& bench) {
   command->callback([options] { bench::bench_scaling(*options); });
 }
 
+void add_garments(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<bench::GarmentBenchOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "garments", "Garments and a figure as people bring them, with defaults: what crosses, strain, cost");
+  command->add_option("--garments", options->garments, "Which, as in dress,coat (default: all)")
+      ->delimiter(',');
+  command->add_option("--motions", options->motions, "Which of stand, walk, kick, fold, sit (default: all)")
+      ->delimiter(',');
+  command->add_option("--frames", options->frames, "Of a sixtieth of a second")
+      ->check(CLI::Range(1, 6000))
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Of each run")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--cell", options->cell, "Mean edge of the garments, in m")
+      ->check(CLI::Range(0.003, 0.05))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for meshes and scenes (default: a temporary one)");
+  command->callback([options, &exit_code] {
+    if (!bench::bench_garments(*options)) exit_code = 1;
+  });
+}
+
 void add_random(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<bench::RandomBenchOptions>();
   CLI::App* command = bench.add_subcommand(
@@ -204,6 +228,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   add_collision(*command, exit_code);
   add_contact(*command, exit_code);
   add_pictures(*command);
+  add_garments(*command, exit_code);
   add_random(*command, exit_code);
   add_scaling(*command);
 }

@@ -54,7 +54,7 @@ std::vector<Piece> make_pieces(double cell) {
           {"skirt", make_skirt(cell), "wool_suiting", ""},
           {"coat", make_coat(1.5 * cell), "wool_suiting", ""},
           {"scarf", make_scarf(cell), "silk", ""},
-          {"dress", make_pleated_dress(cell), "silk", ""},
+          {"dress", make_pleated_dress(cell), "silk", "sew = 0.003\n"},
           {"sheet", make_sheet(1.5, static_cast<int>(0.9 / cell)), "silk", ""}};
 }
 

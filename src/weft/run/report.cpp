@@ -81,6 +81,7 @@ std::string to_json(const RunReport& r) {
       {"threads", r.threads},
       {"ms_per_frame", {{"median", r.ms_per_frame_median}, {"p95", r.ms_per_frame_p95}}},
       {"cpu_ms_per_frame", r.cpu_ms_per_frame},
+      {"untangle_seconds", r.untangle_seconds},
       {"max_strain", r.max_strain},
       {"min_strain", r.min_strain},
       {"mean_strain", r.mean_strain},

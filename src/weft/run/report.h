@@ -32,6 +32,7 @@ struct RunReport {
   double ms_per_frame_median = 0;         // wall time of the simulation alone [ms]
   double ms_per_frame_p95 = 0;            // [ms]
   double cpu_ms_per_frame = 0;            // process CPU time of the simulation alone, mean [ms]
+  double untangle_seconds = 0;            // that setting apart what crossed at the start took, wall time [s]
   double max_strain = 0, min_strain = 0;  // extremes over the run, of l/l0 − 1 over structural springs [1]
   double mean_strain = 0;                 // mean over springs and frames [1]
   std::vector<double> max_stretch, min_stretch;  // (frames) principal stretches of membranes; none: empty [1]

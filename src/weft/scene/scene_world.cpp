@@ -1,6 +1,7 @@
 #include "weft/scene/scene_world.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -256,9 +257,12 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   }
 }
 
-void untangle(World& world, std::vector<std::string>& warnings) {
-  const UntangleReport report = world.untangle();
+void untangle(SceneWorld& built) {
+  const auto start = std::chrono::steady_clock::now();
+  const UntangleReport report = built.world.untangle();
   if (report.rounds == 0) return;
+  built.untangle_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::vector<std::string>& warnings = built.warnings;
   char how[96];
   std::snprintf(how, sizeof how, "; set apart in %d rounds, by %.3g m at most", report.rounds,
                 report.farthest);
@@ -302,8 +306,8 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
     if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction);
     world.set_collision(a, b, rule.collide);
   }
-  scene.untangle&& scene.contact ? untangle(world, result.warnings)
-                                 : warn_about_start(world, result.warnings);
+  const bool is_repaired = scene.untangle && scene.contact;
+  is_repaired ? untangle(result) : warn_about_start(world, result.warnings);
   return result;
 }
 

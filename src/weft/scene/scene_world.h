@@ -12,6 +12,7 @@ namespace weft {
 
 struct SceneWorld {
   World world;
+  double untangle_seconds = 0;        // that setting apart what crossed at the start took [s]
   std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
   std::vector<std::string> notes;     // what was done to meshes as the scene asks, in sentences
 };
