@@ -44,7 +44,10 @@ bool add_row(const std::string& name, const std::filesystem::path& file, const G
                                           .check_passages = false})
                  .report;
   } catch (const InputError& error) {
-    fmt::print("| {} | refused: {} |\n", name, std::string(error.what()).substr(0, 200));
+    std::string why = error.what();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    fmt::print("| {} | refused: {} |\n", name, why);
+    std::fflush(stdout);
     return false;
   }
   const int crossings = report.intersections.value_or(0);

@@ -120,6 +120,12 @@ double ramp(double time, double begin, double end) {
   return t * t * (3 - 2 * t);
 }
 
+Pose rest_pose() {
+  Pose pose;
+  pose.fill(Vec3::Zero());
+  return pose;
+}
+
 /// Turns both arms down, by the same angle.
 void lower_arms(Pose& pose, double angle_deg) {
   pose[kLeftArm].z() = -angle_deg;
@@ -127,13 +133,13 @@ void lower_arms(Pose& pose, double angle_deg) {
 }
 
 Pose stand(double time) {
-  Pose pose{};
+  Pose pose = rest_pose();
   lower_arms(pose, 12 * ramp(time, 0, 0.5));
   return pose;
 }
 
 Pose walk(double time) {
-  Pose pose{};
+  Pose pose = rest_pose();
   const double swing = ramp(time, 0, 0.4) * std::sin(2 * 3.141592653589793 * time);
   lower_arms(pose, 40 * ramp(time, 0, 0.6));
   pose[kLeftThigh].x() = -28 * swing;
@@ -149,7 +155,7 @@ Pose walk(double time) {
 
 /// The leg goes back, the knee bends, then both snap.
 Pose kick(double time) {
-  Pose pose{};
+  Pose pose = rest_pose();
   const double back = ramp(time, 0, 0.3), snap = ramp(time, 0.33, 0.53), down = ramp(time, 0.65, 1.0);
   pose[kRightThigh].x() = 30 * back - 125 * snap + 95 * down;
   pose[kRightShin].x() = 70 * back - 65 * ramp(time, 0.38, 0.56) - 5 * down;
@@ -160,7 +166,7 @@ Pose kick(double time) {
 }
 
 Pose fold(double time) {
-  Pose pose{};
+  Pose pose = rest_pose();
   const double close = ramp(time, 0, 0.7);
   lower_arms(pose, 35 * close);
   pose[kLeftArm].y() = -38 * close;
@@ -173,7 +179,7 @@ Pose fold(double time) {
 }
 
 Pose sit(double time) {
-  Pose pose{};
+  Pose pose = rest_pose();
   const double down = ramp(time, 0, 0.9);
   lower_arms(pose, 30 * down);
   for (const Bone thigh : {kLeftThigh, kRightThigh}) pose[thigh].x() = -88 * down;
