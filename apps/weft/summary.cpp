@@ -51,6 +51,7 @@ std::string summarise(const RunReport& r) {
   if (r.passages) text += fmt::format("  passages     {}{}\n", *r.passages, first_passage_in_words(r));
   if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));
   text += fmt::format("  state hash   {}\n", r.state_hash);
+  for (const std::string& note : r.notes) text += "  note: " + note + "\n";
   for (const std::string& warning : r.warnings) text += "  warning: " + warning + "\n";
   if (!r.failure.empty()) text += "  failed at " + r.failure + "\n";
   return text;

@@ -79,6 +79,18 @@ TEST_F(App, CheckFindsAMovingBodyBesideASceneNamedWithoutAFolder) {
   EXPECT_TRUE(contains(done.out, "collider \"body\": 0.5 m wide")) << done.out << done.err;
 }
 
+TEST_F(App, CheckTellsOfOpenSeamsAndRunOfThoseThatItSewed) {
+  std::ofstream("strip.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\n"
+                                "v 0.101 0 0\nv 0.2 0 0\nv 0.101 0 0.1\nv 0.2 0 0.1\n"
+                                "f 1 3 4 2\nf 5 7 8 6\n";
+  std::ofstream("strip.toml") << "[scene]\nformat = 1\n[[cloth]]\nmesh = \"strip.obj\"\n";
+  const Finished open = shell("weft check strip.toml");
+  EXPECT_TRUE(contains(open.out, "2 borders run 1.0 mm apart: sew = 0.00")) << open.out << open.err;
+  const Finished sewn = shell("weft run strip.toml --frames 1 --set cloth[0].sew=0.002");
+  EXPECT_EQ(sewn.exit_code, 0) << sewn.err;
+  EXPECT_TRUE(contains(sewn.out, "note: cloth \"cloth\" (strip.obj): sewed 1 seam")) << sewn.out;
+}
+
 TEST_F(App, CheckIsStrictlyContentWithShippedGarments) {
   for (const char* scene :
        {"garment", "garment_hung", "contact/garment_body", "contact/self_crossing_body"}) {

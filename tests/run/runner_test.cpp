@@ -217,14 +217,36 @@ TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
   const RunResult result =
       run_scene(shipped("paper/fig3_horizontal"), {.frames = 3, .record_animation = false});
   const nlohmann::json json = nlohmann::json::parse(to_json(result.report));
-  for (const char* key : {"scene",           "integrator",      "particles",         "triangles",
-                          "springs",         "frames",          "seconds_simulated", "threads",
-                          "version",         "ms_per_frame",    "cpu_ms_per_frame",  "max_strain",
-                          "min_strain",      "mean_strain",     "kinetic_energy",    "potential_energy",
-                          "lowest_y",        "penetration_max", "intersections",     "infeasible",
-                          "guard_events",    "state_hash",      "warnings",          "work",
-                          "passages",        "first_passage",   "problems",          "divisions",
-                          "untangle_seconds"}) {
+  for (const char* key : {"scene",
+                          "integrator",
+                          "particles",
+                          "triangles",
+                          "springs",
+                          "frames",
+                          "seconds_simulated",
+                          "threads",
+                          "version",
+                          "ms_per_frame",
+                          "cpu_ms_per_frame",
+                          "max_strain",
+                          "min_strain",
+                          "mean_strain",
+                          "kinetic_energy",
+                          "potential_energy",
+                          "lowest_y",
+                          "penetration_max",
+                          "intersections",
+                          "infeasible",
+                          "guard_events",
+                          "state_hash",
+                          "warnings",
+                          "work",
+                          "passages",
+                          "first_passage",
+                          "problems",
+                          "divisions",
+                          "untangle_seconds",
+                          "notes"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_GT(json["ms_per_frame"]["median"], 0);

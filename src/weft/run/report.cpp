@@ -103,6 +103,7 @@ std::string to_json(const RunReport& r) {
       {"work", json_of(r.work, r.frames)},
       {"state_hash", r.state_hash},
       {"warnings", r.warnings},
+      {"notes", r.notes},
       {"problems", problems},
       {"kinetic_energy", r.kinetic_energy},
       {"potential_energy", r.potential_energy},

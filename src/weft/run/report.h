@@ -63,6 +63,7 @@ struct RunReport {
       penetration_max;     // deepest point of cloth inside a collider; empty without colliders [m]
   std::string state_hash;  // sixteen hexadecimal digits
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;    // what was done to meshes as the scene asks: seams that were sewn
   std::vector<RunProblem> problems;  // why the result should not be trusted; empty: nothing was found
 };
 

@@ -166,6 +166,7 @@ class Run {
         film_(scene, built_.world) {
     result_.report.threads = options.threads;
     result_.report.warnings = built_.warnings;
+    result_.report.notes = built_.notes;
     result_.report.untangle_seconds = built_.untangle_seconds;
     warn_about_paper(scene, built_.world, result_.report.warnings);
     recorder_.check_start(scene);
