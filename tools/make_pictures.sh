@@ -24,3 +24,14 @@ done
 
 # The moving picture at the top of the README.
 "$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22 --out "$images/weft.webp"
+
+# A garment on a figure, as people bring them: the start as it is, put on, and on its way.
+wardrobe=$(mktemp -d)
+trap 'rm -rf "$wardrobe"' EXIT
+"$(dirname "$weft")/../tools/make_wardrobe" "$wardrobe" > "$wardrobe/list"
+view=(--size 480x560 --camera 25,8,1.35)
+as_it_is=(--set solver.untangle=false --set solver.crossed_start=allow)
+"$weft" render "$wardrobe/shirt_walk.toml" --frame 0 "${view[@]}" "${as_it_is[@]}" --out "$wardrobe/start.png"
+"$weft" render "$wardrobe/shirt_walk.toml" --frames 0,30 "${view[@]}" --columns 2 --out "$wardrobe/walk.png"
+ffmpeg -v error -y -i "$wardrobe/start.png" -i "$wardrobe/walk.png" -filter_complex hstack -q:v 3 "$images/garment_start.jpg"
+"$weft" render "$wardrobe/dress_kick.toml" --frames 0,20,31,40 --columns 4 --size 400x520 --camera 30,8,1.3 --out "$images/dress_kick.jpg"

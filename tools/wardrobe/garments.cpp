@@ -51,7 +51,7 @@ std::vector<HalfSpace> cuffs(double x) { return {{Vec3::UnitX(), x}, {-Vec3::Uni
 
 HalfSpace neckline() {
   const Vec3 normal = Vec3(0, 1, 0.35).normalized();
-  return {normal, normal.dot(Vec3(0, 1.475, 0))};
+  return {normal, normal.dot(Vec3(0, 1.492, 0))};
 }
 
 /// With arms that are lifted.
