@@ -29,3 +29,6 @@ check contact/stack 0.000001 40
 
 "$weft" run garment --frames 30 --out "$out/garment"
 "$weft" verify "$out/garment" || echo "garment: told, not judged"
+
+# What people bring: garments that start through the figure, in pieces, in another unit.
+"$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 30 --cell 0.012 --out "$out/garments"

@@ -2,12 +2,13 @@
 /// Private to mesh/: triangles divided at points on their edges.
 ///
 ///            c                       c
-///           / \                     /|\          One point on an edge: two triangles; several: a fan. Points
-///           on
-///          /   \         →         / | \         two or three edges: the triangle is cut at one of them, and
-///          what
-///         /     \                 /  |  \        is left in the same way.
+///           / \                     /|\      with one point
+///          /   \         →         / | \     on one edge
+///         /     \                 /  |  \    …
 ///        a---p---b               a---p---b
+///
+/// One point on an edge: two triangles; several: a fan. Points on two or three edges: the triangle is cut at
+/// one of them, and what is left in the same way.
 
 #include <vector>
 

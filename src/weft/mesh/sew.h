@@ -1,14 +1,14 @@
 #pragma once
 /// Garment pieces joined along borders that do not coincide vertex by vertex.
 ///
-///         A  /\  /\  /            A  /\  /\  /         Border vertices within the distance of another border
-///         are
-///       ----o--o----o---        ----o--*-o--o---      joined to it: to a vertex there, or to a point that
-///       divides
-///                          →       /\ |\ /\ |         the edge and the triangle at it (*). What is joined
-///                          meets
-///       ---o-----o------          /  \| \  \|         halfway.
+///         A  /\  /\  /            A  /\  /\  /
+///       ----o--o----o---        ----o--*-o--o---
+///                          →       /\ |\ /\ |
+///       ---o-----o------          /  \| \  \|
 ///        B  \   / \   /
+///
+/// Border vertices within the distance of another border are joined to it: to a vertex there, or to a point
+/// that divides the edge and the triangle at it (*). What is joined meets halfway.
 ///
 /// A seam and not two layers, such as a lining below its shell: the angle between the pieces at the seam.
 /// Both have their borders near each other all along, but on the two sides of a seam cloth goes different

@@ -2,9 +2,8 @@
 ///
 /// 1. Solids that cloth is in become thinner, until cloth is outside (contact/shrink.h).
 /// 2. What still crosses, cloth with cloth or with plain shapes, is set apart (contact/untangle.h).
-/// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes meanwhile.
-/// After
-///    each step everything is at rest.
+/// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes
+///    meanwhile, and afterwards. After each step everything is at rest.
 ///
 /// Whichever of start and end crosses less is kept.
 
@@ -20,7 +19,7 @@ namespace {
 constexpr double kStep = 1.0 / 60;     // on the stage [s]
 constexpr double kGrowth = 1.5e-3;     // in a step, about [m]
 constexpr int kMaxSteps = 54;          // of growth …
-constexpr int kSettlingSteps = 6;      // … and after it
+constexpr int kSettlingSteps = 24;     // … and after it
 constexpr double kMoreThanDeep = 1.2;  // times as deep as cloth is inside, solids become thinner …
 constexpr double kRoom = 2e-3;         // … and by so much more [m]
 constexpr double kMoreNextTime = 1.6;  // where that was not enough
@@ -108,7 +107,7 @@ void World::thin_colliders(const Knots& crossed, World& stage) const {
 }
 
 /// Takes all motion from all cloth.
-void World::rest() {
+void World::halt() {
   for (Cloth& cloth : cloths_) {
     for (std::size_t i = 0; i < cloth.state.v.size(); ++i) cloth.state.v.set(i, Vec3::Zero());
     cloth.state.history.step = 0;
@@ -133,7 +132,7 @@ UntangleReport World::untangle() {
   }
   const int steps = static_cast<int>(std::lround(growth / kStep)) + kSettlingSteps;
   for (int s = 0; s < steps; ++s) {
-    stage.rest();
+    stage.halt();
     if (!stage.step(kStep).ok) break;
     ++report.rounds;
   }

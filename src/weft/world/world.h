@@ -113,8 +113,10 @@ class World {
   void set_division(const StepDivision& division);
   void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
 
-  /// Sets cloth apart that crosses itself, other cloth or colliders where it is now (contact/untangle.h), so
-  /// that from the next step on nothing crosses. Pinned particles stay. Velocities are kept.
+  /// Sets cloth apart that crosses itself, other cloth or colliders where it is now, so that from the next
+  /// step on nothing crosses: what cloth is in becomes thinner and grows back (untangle.cpp). Pinned particles
+  /// stay. Velocities are kept, and everything stays where it is if that does not help. Takes seconds for
+  /// thousands of particles, and nothing where nothing crosses.
   UntangleReport untangle();
 
   /// Advances everything by dt > 0 [s].
@@ -200,7 +202,7 @@ class World {
   Knots find_knots();
   World make_stage() const;
   void thin_colliders(const Knots& crossed, World& stage) const;
-  void rest();
+  void halt();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
   ContactRule& rule_for(const std::string& a, const std::string& b);
