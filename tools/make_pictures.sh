@@ -22,10 +22,10 @@ done
 "$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
-# A moving picture.
+# A cloth on a ball that turns, moving.
 "$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22 --out "$images/weft.webp"
 
-# Garments on a figure, as people bring them: a start as it is, put on, and on its way; the picture at the top of the README.
+# Garments on a figure, as people bring them: a start as it is, put on, and on its way; then the README's first picture.
 wardrobe=$(mktemp -d)
 trap 'rm -rf "$wardrobe"' EXIT
 "$(dirname "$weft")/../tools/make_wardrobe" "$wardrobe" > "$wardrobe/list"
