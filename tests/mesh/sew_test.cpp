@@ -273,7 +273,7 @@ TEST(Sew, LeavesALiningApart) {
     TriangleMesh mesh;
     add(mesh, sheet(0.2, 0.2, 10, 20), rolled(radius));
     add(mesh, build_random_mesh({.size_x = 0.2, .size_z = 0.2, .cells_x = 13, .cells_z = 17}, 5),
-        [=](const Vec3& p) { return rolled(radius)(p) * ((radius - 0.001) / radius); });
+        [=](const Vec3& p) -> Vec3 { return rolled(radius)(p) * ((radius - 0.001) / radius); });
     for (const double distance : {0.002, 0.005}) {
       EXPECT_EQ(sew_borders(mesh, distance).num_seams, 0) << radius;
       EXPECT_EQ(find_open_seams(mesh, distance).num_seams, 0) << radius;
