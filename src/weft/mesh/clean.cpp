@@ -8,6 +8,7 @@
 
 #include "weft/core/error.h"
 #include "weft/mesh/sew.h"
+#include "weft/mesh/slivers.h"
 
 namespace weft {
 namespace {
@@ -17,6 +18,9 @@ constexpr double kMinThinness = 1e-10;
 
 /// Borders of different pieces that run within this distance of each other look like an open seam [m].
 constexpr double kMaxOpenSeam = 0.005;
+
+/// Triangles lower than this, over their longest edge, are slivers [1].
+constexpr double kFlatness = 0.02;
 
 std::string number(long long n) { return std::to_string(n); }
 
@@ -113,13 +117,19 @@ std::string in_digits(double value, const char* format) {
 
 void sew(CleanMesh& clean, double distance) {
   SewnMesh sewn = sew_borders(clean.mesh, distance);
-  for (int& v : clean.vertex_of_source) v = v < 0 ? v : sewn.vertex_of_source[v];
-  for (int& t : sewn.source_triangle) t = clean.source_triangle[t];
-  clean.source_triangle = std::move(sewn.source_triangle);
-  clean.corner_weights = std::move(sewn.corner_weights);
-  clean.mesh = std::move(sewn.mesh);
+  static_cast<DerivedMesh&>(clean) = compose(clean, std::move(sewn));
   clean.notes.push_back("sewed " + counted(sewn.num_seams, "seam") + ": " + number(sewn.num_joined) +
                         " vertices, " + counted(sewn.num_divided, "edge") + " divided");
+}
+
+void remove_slivers(CleanMesh& clean) {
+  MeshWithoutSlivers without = remove_slivers(clean.mesh, kFlatness);
+  const int count = without.num_collapsed + without.num_divided;
+  if (count == 0) return;
+  clean.warnings.push_back(counted(count, "sliver") + " lower than 2 % of the longest edge removed: " +
+                           counted(without.num_collapsed, "short edge") + " collapsed, " +
+                           counted(without.num_divided, "long edge") + " divided");
+  static_cast<DerivedMesh&>(clean) = compose(clean, std::move(without));
 }
 
 /// A distance rounded up to one digit that is not 0 [m].
@@ -221,6 +231,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.corner_weights.assign(mesh.triangles.size(), make_whole_weights());
   if (options.sew_distance > 0) sew(result, options.sew_distance);
   if (!options.is_cloth) return result;
+  remove_slivers(result);
   warn_about_topology(mesh, warnings);
   warn_about_open_seams(mesh, warnings);
   return result;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/derived_mesh.h"
 
 namespace weft {
 
@@ -14,22 +14,20 @@ struct CleanOptions {
   /// Borders of pieces within this distance are sewn, vertex on vertex or not (see sew.h) [m]; 0 sews
   /// nothing.
   double sew_distance = 0;
-  bool is_cloth = true;  // whether to warn of unsewn seams and of edges without bending springs
+  bool is_cloth = true;  // whether to remove slivers, and to warn of unsewn seams and of edges without
+                         // bending springs
 };
 
-struct CleanMesh {
-  TriangleMesh mesh;
-  std::vector<int> vertex_of_source;  // (vertices of the input) index in `mesh`, -1 where dropped
-  std::vector<int> source_triangle;   // (triangles of `mesh`) which of the input's it was, or was a part of
-  std::vector<CornerWeights> corner_weights;  // (triangles of `mesh`) where in that one its corners lie
+struct CleanMesh : DerivedMesh {
   std::vector<std::string> warnings;  // one sentence per kind of flaw, with counts and the first place
   std::vector<std::string> notes;     // what was done as asked, in sentences
 };
 
 /// Sews seams if asked, and drops what cannot be cloth: triangles without area, repeated triangles, vertices
-/// without triangles. Coincident vertices and non-manifold edges are kept; everything is told in `warnings`.
-/// Throws InputError where nothing sensible is left: coordinates that are not finite, indices out of range,
-/// no triangles. Deterministic: welded vertices become the one with the lowest index; sewn ones meet halfway.
+/// without triangles; and removes slivers (see slivers.h). Coincident vertices and non-manifold edges are
+/// kept; everything is told in `warnings`. Throws InputError where nothing sensible is left: coordinates that
+/// are not finite, indices out of range, no triangles. Deterministic: welded vertices become the one with the
+/// lowest index; sewn ones meet halfway.
 CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options = {});
 
 }  // namespace weft

@@ -26,15 +26,11 @@
 /// another border of the same piece or a far part of the same border, as in a tube of one panel: ten times
 /// farther along the border than across. Edges inside the pieces and vertices there stay as they are.
 
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/derived_mesh.h"
 
 namespace weft {
 
-struct SewnMesh {
-  TriangleMesh mesh;
-  std::vector<int> vertex_of_source;          // (vertices of the input) index in `mesh`, -1 where it has none
-  std::vector<int> source_triangle;           // (triangles of `mesh`) which of the input's each is a part of
-  std::vector<CornerWeights> corner_weights;  // (triangles of `mesh`) where in that one its corners lie
+struct SewnMesh : DerivedMesh {
   int num_seams = 0;
   int num_joined = 0;   // vertices of the input that have become one with others
   int num_divided = 0;  // edges of the input that were divided

@@ -3,7 +3,7 @@
 /// 1. Solids that cloth is in become thinner, until cloth is outside (contact/shrink.h).
 /// 2. What still crosses, cloth with cloth or with plain shapes, is set apart (contact/untangle.h).
 /// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes
-///    meanwhile, and afterwards. After each step everything is at rest.
+///    meanwhile, and afterwards until it is small. After each step everything is at rest.
 ///
 /// Whichever of start and end crosses less is kept.
 
@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "weft/contact/shrink.h"
+#include "weft/world/measures.h"
 #include "weft/world/world.h"
 
 namespace weft {
@@ -19,7 +20,8 @@ namespace {
 constexpr double kStep = 1.0 / 60;     // on the stage [s]
 constexpr double kGrowth = 1.5e-3;     // in a step, about [m]
 constexpr int kMaxSteps = 54;          // of growth …
-constexpr int kSettlingSteps = 24;     // … and after it
+constexpr int kMaxSettling = 24;       // … and after it, …
+constexpr double kRelaxed = 0.05;      // … until strain is no larger [1]
 constexpr double kMoreThanDeep = 1.2;  // times as deep as cloth is inside, solids become thinner …
 constexpr double kRoom = 2e-3;         // … and by so much more [m]
 constexpr double kMoreNextTime = 1.6;  // where that was not enough
@@ -52,6 +54,12 @@ std::vector<double> compute_depths(const Knots& knots, std::size_t num_colliders
   for (const Inside& inside : knots.inside)
     depths[inside.collider] = std::max(depths[inside.collider], inside.depth);
   return depths;
+}
+
+/// The largest strain of a cloth, in any direction where it has membranes [1].
+double compute_largest_strain(const ClothModel& model, const ClothState& state) {
+  const std::optional<Stretches> stretches = compute_principal_stretches(model, state);
+  return stretches ? stretches->max - 1 : compute_yarn_strain(model, state).max;
 }
 
 }  // namespace
@@ -130,8 +138,12 @@ UntangleReport World::untangle() {
     const MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
     if (shape && shape->sequence) growth = std::max(growth, shape->sequence->keys().back().time);
   }
-  const int steps = static_cast<int>(std::lround(growth / kStep)) + kSettlingSteps;
-  for (int s = 0; s < steps; ++s) {
+  const auto is_relaxed = [](const Cloth& cloth) {
+    return compute_largest_strain(*cloth.model, cloth.state) <= kRelaxed;
+  };
+  const int growing = static_cast<int>(std::lround(growth / kStep));
+  for (int s = 0; s < growing + kMaxSettling; ++s) {
+    if (s > growing && std::ranges::all_of(stage.cloths_, is_relaxed)) break;
     stage.halt();
     if (!stage.step(kStep).ok) break;
     ++report.rounds;
