@@ -121,8 +121,8 @@ struct LayerCost {
 double speed_of(const World& world) {
   double kinetic = 0, mass = 0;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothModel& model = world.model({c});
-    kinetic += compute_kinetic_energy(model, world.state({c}));
+    const ClothModel& model = world.model(world.cloth(c));
+    kinetic += compute_kinetic_energy(model, world.state(world.cloth(c)));
     mass += std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
   }
   return std::sqrt(2 * kinetic / mass);

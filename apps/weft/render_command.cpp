@@ -83,7 +83,7 @@ class Source {
     if (!request_.springs) return springs;
     const SceneWorld built = build_world(*scene_, make_jobs(1));
     for (int c = 0; c < built.world.num_cloths(); ++c)
-      springs.push_back({c, built.world.model({c}).topology});
+      springs.push_back({c, built.world.model(built.world.cloth(c)).topology});
     return springs;
   }
 

@@ -120,7 +120,7 @@ TEST_P(ContactPoints, OfClothOnClothNameBothAndCarryTheUpperOne) {
     for (const ContactPoint& p : world.contact_points()) {
       EXPECT_EQ(p.collider, -1);
       EXPECT_EQ(p.cloth + p.other_cloth, 1);
-      force += (p.cloth == above.index ? 1.0 : -1.0) / last * p.force;
+      force += (world.cloth(p.cloth) == above ? 1.0 : -1.0) / last * p.force;
     }
   }
   const double weight = mass_of(world, above) * kGravity;

@@ -217,8 +217,8 @@ struct Totals {
 Totals measure(const World& world) {
   Totals totals;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothModel& model = world.model(ClothId{c});
-    const ClothState& state = world.state(ClothId{c});
+    const ClothModel& model = world.model(world.cloth(c));
+    const ClothState& state = world.state(world.cloth(c));
     totals.momentum += compute_momentum(model, state);
     totals.energy += compute_kinetic_energy(model, state) + compute_elastic_energy(model, state);
   }
@@ -241,7 +241,7 @@ TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
   const Totals before = measure(world);
   double size = 0;  // of the momenta [kg m/s]
   for (int c = 0; c < 2; ++c)
-    size += compute_momentum(world.model(ClothId{c}), world.state(ClothId{c})).norm();
+    size += compute_momentum(world.model(world.cloth(c)), world.state(world.cloth(c))).norm();
   double highest = before.energy;
   for (int s = 0; s < 300; ++s) {
     ASSERT_TRUE(world.step(1.0 / 1000).ok);

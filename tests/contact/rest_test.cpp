@@ -41,7 +41,7 @@ struct Rest {
 Rest watch(World& world, double settling, double watching, int steps_per_second) {
   const double step = 1.0 / steps_per_second;
   const auto middle = [&](int c) {
-    return compute_center_of_mass(world.model(ClothId{c}), world.state(ClothId{c}));
+    return compute_center_of_mass(world.model(world.cloth(c)), world.state(world.cloth(c)));
   };
   const Vec3 first = middle(0);
   const auto run = [&](double seconds, const auto& after_step) {
@@ -59,8 +59,8 @@ Rest watch(World& world, double settling, double watching, int steps_per_second)
   Rest rest;
   run(watching, [&] {
     for (int c = 0; c < n; ++c) {
-      const ClothModel& model = world.model(ClothId{c});
-      const ClothState& state = world.state(ClothId{c});
+      const ClothModel& model = world.model(world.cloth(c));
+      const ClothState& state = world.state(world.cloth(c));
       const double kinetic = compute_kinetic_energy(model, state);
       const double energy = kinetic + compute_elastic_energy(model, state) +
                             compute_gravity_energy(model, state, world.gravity());
@@ -129,7 +129,8 @@ TEST(LayersOnAFloor, DoNotBuzz) {
     constexpr int kSteps = 20;
     for (int s = 0; s < kSteps; ++s) {
       world.step(1.0 / 60);
-      kinetic += compute_kinetic_energy(world.model({cloth}), world.state({cloth})) / kSteps;
+      kinetic +=
+          compute_kinetic_energy(world.model(world.cloth(cloth)), world.state(world.cloth(cloth))) / kSteps;
     }
     const double speed = std::sqrt(2 * kinetic / (0.2 * 0.75 * 0.75));
     std::printf("layer %d: %.2e m/s\n", cloth, speed);

@@ -104,10 +104,10 @@ TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {
       << "nothing happens while they are 1 mm thick";
   ClothMaterial thick = kSilk;
   thick.thickness = 0.008;
-  for (int c = 0; c < 2; ++c) world.set_material(ClothId{c}, thick);
+  for (int c = 0; c < 2; ++c) world.set_material(world.cloth(c), thick);
   for (int s = 0; s < 30; ++s) ASSERT_TRUE(world.step(0.01).ok);
   const double gap = compute_center_of_mass(world.model(upper), world.state(upper)).y() -
-                     compute_center_of_mass(world.model({0}), world.state({0})).y();
+                     compute_center_of_mass(world.model(world.cloth(0)), world.state(world.cloth(0))).y();
   EXPECT_GT(gap, 0.007);  // recovered by a share per step, most of it in 0.3 s
 }
 
@@ -127,9 +127,9 @@ StepReport run(World& world, double dt, int most) {
 
 void expect_finite(const World& world) {
   for (int c = 0; c < world.num_cloths(); ++c) {
-    for (int i = 0; i < world.model(ClothId{c}).num_particles(); ++i) {
-      ASSERT_TRUE(world.state(ClothId{c}).position(i).allFinite());
-      ASSERT_TRUE(world.state(ClothId{c}).v.get(i).allFinite());
+    for (int i = 0; i < world.model(world.cloth(c)).num_particles(); ++i) {
+      ASSERT_TRUE(world.state(world.cloth(c)).position(i).allFinite());
+      ASSERT_TRUE(world.state(world.cloth(c)).v.get(i).allFinite());
     }
   }
 }
@@ -205,12 +205,12 @@ TEST(ContactSystem, StandsCoincidentCloths) {
       for (int c = 0; c < 2; ++c) world.add_cloth(desc);
       EXPECT_TRUE(run(world, 1.0 / 120, 60).ok) << integrator;
       for (int c = 0; c < 2; ++c) {
-        const ClothModel& model = world.model(ClothId{c});
+        const ClothModel& model = world.model(world.cloth(c));
         double mass = 0;
         for (const double m : model.mass) mass += m;
         // They fell 5 cm; more speed than 1 m/s came out of nowhere.
-        EXPECT_LT(compute_kinetic_energy(model, world.state(ClothId{c})), 0.5 * mass) << integrator;
-        EXPECT_GT(compute_lowest_y(world.state(ClothId{c})), -0.051) << integrator;
+        EXPECT_LT(compute_kinetic_energy(model, world.state(world.cloth(c))), 0.5 * mass) << integrator;
+        EXPECT_GT(compute_lowest_y(world.state(world.cloth(c))), -0.051) << integrator;
       }
     }
   }
@@ -249,7 +249,7 @@ TEST(ContactSystem, StandsOneTriangleAndClothThatHasNone) {
                      .topology = test::chain({{0, 0.3, 0}, {0.05, 0.3, 0}, {0.1, 0.3, 0}}, 0.01, 0.05),
                      .material = {.density = 1, .structural = 20}});
     EXPECT_TRUE(run(world, 1.0 / 120, 120).ok) << integrator;
-    for (int c = 0; c < 2; ++c) EXPECT_GT(compute_lowest_y(world.state(ClothId{c})), 0) << integrator;
+    for (int c = 0; c < 2; ++c) EXPECT_GT(compute_lowest_y(world.state(world.cloth(c))), 0) << integrator;
     World chain_alone;
     chain_alone.set_integrator(settings(std::string(integrator)));
     chain_alone.add_collider({"mesh", mesh_shape(make_sphere_mesh({0.5, 0.1, 0}, 0.1, 6)), 0.3, {}});

@@ -125,8 +125,9 @@ TEST(ContactGroups, ClothThatTouchesNoOtherHasTheBitsItHasAlone) {
     for (int s = 0; s < 40; ++s) {
       alone.step(1.0 / 60);
       among_others.step(1.0 / 60);
-      for (std::size_t i = 0; i < alone.state({0}).x.size(); ++i) {
-        ASSERT_EQ(alone.state({0}).position(i), among_others.state({0}).position(i))
+      for (std::size_t i = 0; i < alone.state(alone.cloth(0)).x.size(); ++i) {
+        ASSERT_EQ(alone.state(alone.cloth(0)).position(i),
+                  among_others.state(among_others.cloth(0)).position(i))
             << integrator << ", step " << s << ", particle " << i;
       }
     }

@@ -21,7 +21,7 @@ TEST(Thickness, MayBeMoreThanTheShortestEdge) {
   const SceneWorld built = build_world(
       parse_scene(sheet_with("[64, 16]", "{ spring_structural = 10, thickness = 0.02 }"), "scene.toml"),
       make_serial_jobs());
-  EXPECT_EQ(built.world.model({0}).material.thickness, 0.02);
+  EXPECT_EQ(built.world.model(built.world.cloth(0)).material.thickness, 0.02);
   EXPECT_TRUE(built.warnings.empty());
 }
 
@@ -29,7 +29,7 @@ TEST(Thickness, NotGivenFollowsFromTheMesh) {
   const auto thickness = [](const std::string& cells) {
     const SceneWorld built = build_world(
         parse_scene(sheet_with(cells, "{ spring_structural = 10 }"), "scene.toml"), make_serial_jobs());
-    return built.world.model({0}).material.thickness;
+    return built.world.model(built.world.cloth(0)).material.thickness;
   };
   EXPECT_EQ(thickness("[50, 10]"), 1e-3);
   EXPECT_NEAR(thickness("[1000, 1000]"), 0.57e-3, 0.01e-3) << "half of (2 + √2)/3 mm";

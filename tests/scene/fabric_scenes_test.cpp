@@ -35,7 +35,7 @@ SceneWorld built(const std::string& keys, const Overrides& overrides = {}) {
 TEST(FabricScenes, TakeAFabricByName) {
   const Fabric& denim = find_fabric("denim").fabric;
   const SceneWorld scene = built("fabric = \"denim\"\n");
-  const ClothModel& model = scene.world.model({0});
+  const ClothModel& model = scene.world.model(scene.world.cloth(0));
   ASSERT_NE(model.elements, nullptr);
   EXPECT_EQ(model.elements->stiffness, membrane_stiffness(denim));
   EXPECT_EQ(model.elements->damping, denim.damping);
@@ -49,9 +49,9 @@ TEST(FabricScenes, TakeAFabricByName) {
 
 TEST(FabricScenes, ChangeTheirFabricByAnOverride) {
   const SceneWorld scene = built("fabric = \"denim\"\n", {"cloth[0].fabric=silk"});
-  EXPECT_EQ(scene.world.model({0}).material.density, find_fabric("silk").fabric.density);
+  EXPECT_EQ(scene.world.model(scene.world.cloth(0)).material.density, find_fabric("silk").fabric.density);
   const SceneWorld other = built("", {"cloth[0].fabric=silk", "cloth[0].membrane=springs"});
-  EXPECT_TRUE(other.world.model({0}).material.structural_z.has_value());
+  EXPECT_TRUE(other.world.model(other.world.cloth(0)).material.structural_z.has_value());
 }
 
 TEST(FabricScenes, TakeAFabricFileFromTheSceneFolder) {
@@ -73,13 +73,14 @@ TEST(FabricScenes, TakeSiValuesWithTheDefaultsOfCottonShirting) {
 
 TEST(FabricScenes, HaveWarpAlongEitherAxisOfTheGridOrAcross) {
   const auto warp = [](const std::string& direction) {
-    return built("fabric = \"denim\"\nwarp = " + direction + "\n").world.model({0}).elements->grid_warp;
+    const SceneWorld scene = built("fabric = \"denim\"\nwarp = " + direction + "\n");
+    return scene.world.model(scene.world.cloth(0)).elements->grid_warp;
   };
   EXPECT_EQ(warp("[2, 0, 0]"), GridWarp::first_axis);
   EXPECT_EQ(warp("[0, 0, -1]"), GridWarp::second_axis);
   EXPECT_EQ(warp("[1, 0, 1]"), std::nullopt) << "then it is a mesh, whose particles are the grid's";
   const SceneWorld skew = built("fabric = \"denim\"\nwarp = [1, 0, 1]\npins = [\"corner:1,1\"]\n");
-  EXPECT_EQ(skew.world.pins({0}).at(0).particles, std::vector<int>{98});
+  EXPECT_EQ(skew.world.pins(skew.world.cloth(0)).at(0).particles, std::vector<int>{98});
 }
 
 TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
@@ -89,7 +90,7 @@ TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
   for (const char* spring_model : {"basic", "alternating"}) {
     const SceneWorld scene =
         built("fabric = \"denim\"\nmembrane = \"springs\"\nmodel = \"" + std::string(spring_model) + "\"\n");
-    const ClothModel& model = scene.world.model({0});
+    const ClothModel& model = scene.world.model(scene.world.cloth(0));
     const auto is_told = [](const std::string& w) { return w.find("c12 = g") != std::string::npos; };
     EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
     for (const bool along_x : {true, false}) {
@@ -158,7 +159,7 @@ SceneWorld built_with_uv(double c, double s, double shear, const std::string& ke
 
 /// Where warp goes in the plane of the square: the direction along which ∂x/∂(axis 1) points.
 Vec3 warp_of(const SceneWorld& scene, int triangle) {
-  const ClothModel& model = scene.world.model({0});
+  const ClothModel& model = scene.world.model(scene.world.cloth(0));
   const auto& [v, rest] = model.elements->membranes[triangle];
   Vec3 warp = Vec3::Zero();
   for (int c = 0; c < 3; ++c) warp += rest.gradient[c].x() * model.topology->mesh.positions[v[c]];
@@ -180,7 +181,7 @@ TEST(FabricScenes, LayWarpAlongUOnAMeshTurnedOrSheared) {
 
 TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
   const SceneWorld scene = built_with_uv(1, 0, 0, "membrane = \"springs\"\n");
-  const ClothModel& model = scene.world.model({0});
+  const ClothModel& model = scene.world.model(scene.world.cloth(0));
   EXPECT_TRUE(model.elements->membranes.empty());
   EXPECT_EQ(model.material.damping_time, find_fabric("denim").fabric.damping);
   for (std::size_t s = 0; s < model.topology->springs.size(); ++s) {
@@ -194,7 +195,7 @@ TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
   const SceneWorld stiffer = built_with_uv(1, 0, 0,
                                            "membrane = \"springs\"\nstiffen = [{ select = { sphere = { "
                                            "center = [0, 0, 0], radius = 9 } }, factor = 3 }]\n");
-  EXPECT_NEAR(stiffer.world.model({0}).stiffness_sum[0], 3 * model.stiffness_sum[0], 1e-6);
+  EXPECT_NEAR(stiffer.world.model(stiffer.world.cloth(0)).stiffness_sum[0], 3 * model.stiffness_sum[0], 1e-6);
 }
 
 TEST(FabricScenes, SayWhereWarpGoesIfAMeshHasNoTextureCoordinates) {

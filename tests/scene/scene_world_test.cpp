@@ -29,7 +29,7 @@ select = { index = [0, 1] }
 factor = 2
 )";
   const SceneWorld scene = build_world(parse_scene(text, "scene.toml"), make_serial_jobs());
-  const ClothModel& model = scene.world.model({0});
+  const ClothModel& model = scene.world.model(scene.world.cloth(0));
   const auto column = [](int particle) { return particle % 5; };
   for (int s = 0; s < static_cast<int>(model.topology->springs.size()); ++s) {
     const Spring& spring = model.topology->springs[s];
@@ -60,8 +60,8 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
   std::filesystem::remove_all(folder);
   EXPECT_EQ(scene.notes, std::vector<std::string>{
                              "cloth \"cloth\" (pieces.obj): sewed 1 seam: 5 vertices, 1 edge divided"});
-  EXPECT_EQ(scene.world.model({0}).num_particles(), 6);
-  EXPECT_EQ(scene.world.model({0}).topology->mesh.num_triangles(), 5);
+  EXPECT_EQ(scene.world.model(scene.world.cloth(0)).num_particles(), 6);
+  EXPECT_EQ(scene.world.model(scene.world.cloth(0)).topology->mesh.num_triangles(), 5);
 }
 
 /// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a folder of its own.

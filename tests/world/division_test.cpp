@@ -29,8 +29,8 @@ World make_landing(const StepDivision& division = {}) {
 }
 
 double energy_of(const World& world) {
-  const ClothModel& model = world.model({0});
-  const ClothState& state = world.state({0});
+  const ClothModel& model = world.model(world.cloth(0));
+  const ClothState& state = world.state(world.cloth(0));
   return compute_kinetic_energy(model, state) + compute_elastic_energy(model, state) +
          compute_gravity_energy(model, state, world.gravity());
 }
@@ -54,7 +54,8 @@ Landing land(const StepDivision& division) {
     const double now = energy_of(world);
     most = std::max(most, now - before);
     before = now;
-    landing.strain = std::max(landing.strain, compute_strain(world.model({0}), world.state({0})).max);
+    landing.strain = std::max(landing.strain,
+                              compute_strain(world.model(world.cloth(0)), world.state(world.cloth(0))).max);
   }
   landing.rise = most / (start - before);
   return landing;
@@ -101,9 +102,9 @@ TEST(StepDivision, ADividedStepIsThatOfShorterSteps) {
   ASSERT_GT(report.retries, 0);
   ASSERT_EQ(report.divisions, 2);
   for (int part = 0; part < report.divisions; ++part) by_hand.step(kFrame / report.divisions);
-  for (std::size_t i = 0; i < world.state({0}).x.size(); ++i) {
-    ASSERT_EQ(world.state({0}).x.get(i), by_hand.state({0}).x.get(i)) << i;
-    ASSERT_EQ(world.state({0}).v.get(i), by_hand.state({0}).v.get(i)) << i;
+  for (std::size_t i = 0; i < world.state(world.cloth(0)).x.size(); ++i) {
+    ASSERT_EQ(world.state(world.cloth(0)).x.get(i), by_hand.state(by_hand.cloth(0)).x.get(i)) << i;
+    ASSERT_EQ(world.state(world.cloth(0)).v.get(i), by_hand.state(by_hand.cloth(0)).v.get(i)) << i;
   }
 }
 

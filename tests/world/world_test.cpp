@@ -171,7 +171,7 @@ TEST(World, TellsByNameWhenMotionBecomesInfiniteAndKeepsTheLastGoodState) {
   ASSERT_FALSE(report.ok);
   EXPECT_EQ(world.state_hash(), before);
   EXPECT_EQ(report.warnings.at(0).code, WarningCode::non_finite);
-  EXPECT_EQ(report.warnings.at(0).cloth, cloth.index);
+  EXPECT_EQ(world.cloth(report.warnings.at(0).cloth), cloth);
   EXPECT_GE(report.warnings.at(0).particle, 0);
 }
 

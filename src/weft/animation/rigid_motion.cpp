@@ -1,5 +1,7 @@
 #include "weft/animation/rigid_motion.h"
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 
 #include "weft/core/angle.h"
@@ -18,6 +20,11 @@ Mat3 rotation_from_angles_deg(const Vec3& angles_deg) {
 }
 
 RigidMotion::RigidMotion(std::vector<KeyFrame> keys) : keys_(std::move(keys)) {
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    if (!std::isfinite(keys_[k].time) || !keys_[k].translation.allFinite() ||
+        !keys_[k].angles_deg.allFinite())
+      throw InputError("key frame " + std::to_string(k) + " has a number that is not finite");
+  }
   for (std::size_t k = 1; k < keys_.size(); ++k) {
     if (!(keys_[k].time > keys_[k - 1].time)) {
       throw InputError("key frame " + std::to_string(k) + " is not later than the one before it");
@@ -25,7 +32,29 @@ RigidMotion::RigidMotion(std::vector<KeyFrame> keys) : keys_(std::move(keys)) {
   }
 }
 
+RigidMotion::RigidMotion(double start, const Pose& from, double end, const Pose& to)
+    : passage_({start, end, from, to}) {}
+
+bool RigidMotion::is_still() const {
+  if (!passage_) return keys_.empty();
+  return passage_->from.translation == passage_->to.translation &&
+         passage_->from.rotation == passage_->to.rotation;
+}
+
+/// Rotations by a straight line between unit quaternions.
+Pose RigidMotion::Passage::at(double time) const {
+  if (time <= start || time >= end) return time < end ? from : to;
+  const double s = (time - start) / (end - start);
+  Pose pose{from.translation + s * (to.translation - from.translation), from.rotation};
+  if (from.rotation == to.rotation) return pose;
+  const Eigen::Quaterniond a(from.rotation), b(to.rotation);
+  const double way = a.dot(b) < 0 ? -s : s;
+  pose.rotation = Eigen::Quaterniond((1 - s) * a.coeffs() + way * b.coeffs()).normalized().toRotationMatrix();
+  return pose;
+}
+
 Pose RigidMotion::at(double time) const {
+  if (passage_) return passage_->at(time);
   if (keys_.empty()) return {};
   std::size_t next = 0;
   while (next < keys_.size() && keys_[next].time <= time) ++next;

@@ -1,6 +1,7 @@
 #pragma once
 /// Motion by key frames: how pins and colliders move by prescription.
 
+#include <optional>
 #include <vector>
 
 #include "weft/core/vec.h"
@@ -31,11 +32,24 @@ class RigidMotion {
   /// Throws InputError if the times do not increase strictly.
   explicit RigidMotion(std::vector<KeyFrame> keys);
 
-  bool is_still() const { return keys_.empty(); }
+  /// At a pose, for good.
+  explicit RigidMotion(const Pose& pose) : RigidMotion(0, pose, 0, pose) {}
+
+  /// From one pose to another, at rest before and after: the translation evenly, the rotation the shorter way
+  /// about one axis, evenly to 1 % up to a sixth of a turn.
+  RigidMotion(double start, const Pose& from, double end, const Pose& to);
+
+  bool is_still() const;  // nothing moves, at any time
   Pose at(double time) const;
 
  private:
+  struct Passage {
+    double start = 0, end = 0;  // [s]
+    Pose from, to;
+    Pose at(double time) const;
+  };
   std::vector<KeyFrame> keys_;
+  std::optional<Passage> passage_;  // in place of key frames
 };
 
 /// Where the pose takes p when it turns about `pivot`.

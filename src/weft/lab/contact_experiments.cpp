@@ -75,7 +75,8 @@ RigidMotion accelerate(const ContactExperiment& setup, double start, double seco
 
 /// Of what a contact is with, where it is [m/s].
 Vec3 other_velocity(const World& world, const ContactPoint& contact, double step) {
-  if (contact.other_cloth >= 0) return world.state({contact.other_cloth}).v.get(contact.other_vertex);
+  if (contact.other_cloth >= 0)
+    return world.state(world.cloth(contact.other_cloth)).v.get(contact.other_vertex);
   const Collider& collider = world.colliders()[contact.collider];
   const Vec3 center = pivot(collider.shape);
   const Pose before = collider.motion.at(world.time() - step), now = collider.motion.at(world.time());
@@ -106,7 +107,7 @@ FrictionAudit audit_friction(const World& world, double step, double friction, c
   FrictionAudit audit;
   for (const ContactPoint& contact : world.contact_points()) {
     const auto tangent = [&](const Vec3& v) -> Vec3 { return v - v.dot(contact.normal) * contact.normal; };
-    const Vec3 velocity = world.state({contact.cloth}).v.get(contact.particle);
+    const Vec3 velocity = world.state(world.cloth(contact.cloth)).v.get(contact.particle);
     if (tangent(velocity - other_velocity(world, contact, step)).norm() < kSliding) continue;
     const Vec3 force = tangent(contact.force), lever = contact.position - axis.point;
     const double most = friction * contact.force.dot(contact.normal);

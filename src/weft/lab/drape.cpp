@@ -90,7 +90,7 @@ double largest_speed(const ClothState& state) {
 bool settle(World& world) {
   for (int step = 0; step < kFps * kMostSeconds; ++step) {
     world.step(1 / kFps);
-    if (step > kFps && largest_speed(world.state({0})) < kRestSpeed) return true;
+    if (step > kFps && largest_speed(world.state(world.cloth(0))) < kRestSpeed) return true;
   }
   return false;
 }
@@ -163,8 +163,8 @@ Drape simulate_drape(const Fabric& fabric, const SpecimenSettings& settings, std
   World world = make_world(fabric, disc, seed, threads);
   Drape drape;
   drape.is_at_rest = settle(world);
-  const ClothModel& model = world.model({0});
-  const ClothState& state = world.state({0});
+  const ClothModel& model = world.model(world.cloth(0));
+  const ClothState& state = world.state(world.cloth(0));
   const double plates = kPi * kPlateRadius * kPlateRadius;
   const double flat = kPi * kSpecimenRadius * kSpecimenRadius;
   drape.coefficient = (compute_shadow(model.topology->mesh.triangles, state) - plates) / (flat - plates);

@@ -421,7 +421,7 @@ Claim figures_remade(const ChapterOptions& options) {
     Film film(scene, built.world);
     film.add_frame();
     const std::string file = "paper_" + model + ".jpg";
-    options.paint(file, film.animation(), {0}, built.world.model({0}).topology);
+    options.paint(file, film.animation(), {0}, built.world.model(built.world.cloth(0)).topology);
     claim.pictures.push_back({file, "The " + model + " model.", ""});
   }
   for (const std::string name : {"fig3_horizontal", "fig4_vertical", "fig5_falling", "fig6_ball"}) {

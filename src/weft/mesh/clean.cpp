@@ -24,23 +24,6 @@ constexpr double kFlatness = 0.02;
 
 std::string number(long long n) { return std::to_string(n); }
 
-void require_usable(const TriangleMesh& mesh) {
-  for (int v = 0; v < mesh.num_vertices(); ++v) {
-    if (!mesh.positions[v].allFinite()) {
-      throw InputError("vertex " + number(v) + " has a coordinate that is not a finite number");
-    }
-  }
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    for (const int v : mesh.triangles[t]) {
-      if (v < 0 || v >= mesh.num_vertices()) {
-        throw InputError("triangle " + number(t) + " uses vertex " + number(v) + ", but the mesh has " +
-                         number(mesh.num_vertices()) + " vertices");
-      }
-    }
-  }
-  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles");
-}
-
 /// For each vertex the lowest-numbered vertex that it is sewn to: closer than `distance`, directly or through
 /// others. Found by a sweep along a direction that real meshes are not aligned with, so that few vertices
 /// tie.
@@ -170,7 +153,7 @@ void warn_about_topology(const TriangleMesh& mesh, std::vector<std::string>& war
 }  // namespace
 
 CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
-  require_usable(source);
+  require_valid(source);
   CleanMesh result;
   result.mesh = source;
   TriangleMesh& mesh = result.mesh;

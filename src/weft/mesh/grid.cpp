@@ -1,6 +1,18 @@
 #include "weft/mesh/grid.h"
 
+#include <cmath>
+
+#include "weft/core/error.h"
+
 namespace weft {
+
+void require_valid(const Grid& grid) {
+  for (const double size : {grid.size_x, grid.size_z}) {
+    if (!std::isfinite(size) || size <= 0) throw InputError("a grid's size must be more than 0 m");
+  }
+  if (grid.cells_x < 1 || grid.cells_z < 1)
+    throw InputError("a grid needs one cell at least along each side");
+}
 
 TriangleMesh build_grid_mesh(const Grid& grid, GridDiagonals diagonals) {
   TriangleMesh mesh;

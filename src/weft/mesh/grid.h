@@ -26,6 +26,9 @@ struct Grid {
   double spacing_z() const { return size_z / cells_z; }
 };
 
+/// Throws InputError for sizes that are not above 0 and finite, and for less than one cell.
+void require_valid(const Grid& grid);
+
 /// How each cell is cut into two triangles: all along (i,j)–(i+1,j+1), or the other way in every second cell.
 enum class GridDiagonals { parallel, alternating };
 

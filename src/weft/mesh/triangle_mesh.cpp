@@ -1,8 +1,10 @@
 #include "weft/mesh/triangle_mesh.h"
 
 #include <algorithm>
+#include <string>
 
 #include "weft/core/angle.h"
+#include "weft/core/error.h"
 
 namespace weft {
 
@@ -15,6 +17,23 @@ CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights) {
     }
   }
   return result;
+}
+
+void require_valid(const TriangleMesh& mesh) {
+  for (int v = 0; v < mesh.num_vertices(); ++v) {
+    if (!mesh.positions[v].allFinite()) {
+      throw InputError("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
+    }
+  }
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    for (const int v : mesh.triangles[t]) {
+      if (v < 0 || v >= mesh.num_vertices()) {
+        throw InputError("triangle " + std::to_string(t) + " uses vertex " + std::to_string(v) +
+                         ", but the mesh has " + std::to_string(mesh.num_vertices()) + " vertices");
+      }
+    }
+  }
+  if (mesh.triangles.empty()) throw InputError("the mesh has no triangles");
 }
 
 double triangle_area(const TriangleMesh& mesh, int t) {

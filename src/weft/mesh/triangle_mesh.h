@@ -30,6 +30,9 @@ struct TriangleMesh {
   int num_triangles() const { return static_cast<int>(triangles.size()); }
 };
 
+/// Throws InputError for coordinates that are not finite, indices out of range, and a mesh without triangles.
+void require_valid(const TriangleMesh& mesh);
+
 /// Area of triangle t [m²].
 double triangle_area(const TriangleMesh& mesh, int t);
 

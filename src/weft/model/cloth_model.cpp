@@ -42,6 +42,7 @@ double ClothModel::stiffness(int spring) const {
 }
 
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model) {
+  require_valid(grid);
   auto topology = std::make_shared<ClothTopology>();
   topology->mesh = build_grid_mesh(grid, diagonals_of(model));
   topology->springs = build_grid_springs(grid, model);
@@ -52,6 +53,7 @@ std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, Sprin
 }
 
 std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh) {
+  require_valid(mesh);
   auto topology = std::make_shared<ClothTopology>();
   topology->mesh = std::move(mesh);
   topology->springs = build_mesh_springs(topology->mesh);

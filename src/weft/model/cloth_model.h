@@ -55,9 +55,11 @@ struct ClothTopology {
   int num_particles() const { return mesh.num_vertices(); }
 };
 
+/// Throws InputError for a grid that cannot be.
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model);
 
-/// The mesh must be clean (see clean_mesh). Its positions are the rest shape.
+/// The mesh must be clean (see clean_mesh). Its positions are the rest shape. Throws InputError for a mesh
+/// that cannot be.
 std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh);
 
 struct ClothModel {

@@ -78,9 +78,9 @@ Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
   animation_.frames_per_second = scene.fps;
   animation_.passing = world.passing_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothTopology& topology = *world.model({c}).topology;
+    const ClothTopology& topology = *world.model(world.cloth(c)).topology;
     AnimatedMesh mesh;
-    mesh.name = world.name({c});
+    mesh.name = world.name(world.cloth(c));
     mesh.triangles = topology.mesh.triangles;
     mesh.color = scene.cloths[c].color;
     mesh.fabric_coordinates = make_fabric_coordinates(topology);
@@ -91,7 +91,7 @@ Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
 
 void Film::add_frame() {
   for (int c = 0; c < world_.num_cloths(); ++c)
-    animation_.cloths[c].frames.push_back(positions(world_.state({c})));
+    animation_.cloths[c].frames.push_back(positions(world_.state(world_.cloth(c))));
   for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
     const Collider& collider = world_.colliders()[b];
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);

@@ -134,8 +134,8 @@ WorldFrames::WorldFrames(const World& world) : world_(world) {
 FrameToCheck WorldFrames::at(double time) const {
   FrameToCheck result;
   for (int c = 0; c < world_.num_cloths(); ++c) {
-    add_cloth(world_.name({c}), world_.model({c}).topology->mesh.triangles, positions_of(world_.state({c})),
-              result);
+    add_cloth(world_.name(world_.cloth(c)), world_.model(world_.cloth(c)).topology->mesh.triangles,
+              positions_of(world_.state(world_.cloth(c))), result);
   }
   for (std::size_t k = 0; k < world_.colliders().size(); ++k) {
     const Collider& collider = world_.colliders()[k];

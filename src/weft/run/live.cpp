@@ -137,7 +137,7 @@ void LiveSimulation::grab(const ClothPoint& point) {
 
 void LiveSimulation::move_grab(const Vec3& target) {
   post([this, target] {
-    if (held_) built_.world.set_grab_target({held_->cloth}, 0, target);
+    if (held_) built_.world.set_grab_target(built_.world.cloth(held_->cloth), 0, target);
   });
 }
 
@@ -297,9 +297,9 @@ void LiveSimulation::judge_solver() {
 /// Takes hold of what is to be held, where it is, and of nothing else.
 void LiveSimulation::hold() {
   World& world = built_.world;
-  for (int c = 0; c < world.num_cloths(); ++c) world.set_grabs({c}, {});
+  for (int c = 0; c < world.num_cloths(); ++c) world.set_grabs(world.cloth(c), {});
   if (!held_) return;
-  const ClothId cloth{held_->cloth};
+  const ClothId cloth = built_.world.cloth(held_->cloth);
   world.set_grabs(cloth,
                   {make_grab(world.model(cloth), world.state(cloth), held_->triangle, held_->weights)});
 }
@@ -319,7 +319,7 @@ LiveStatus LiveSimulation::measure() const {
     status.too_heavy = status.playing && wall > kWindow / 2 && status.simulated_per_second < kSlow;
   }
   if (held_) {
-    const ClothId cloth{held_->cloth};
+    const ClothId cloth = built_.world.cloth(held_->cloth);
     const Triangle& t = world.model(cloth).topology->mesh.triangles[held_->triangle];
     Vec3 point = Vec3::Zero();
     for (int corner = 0; corner < 3; ++corner)
@@ -338,7 +338,7 @@ void LiveSimulation::publish() {
   next_.topologies.resize(now.cloths.size());
   for (std::size_t c = 0; c < now.cloths.size(); ++c) {
     next_.cloths[c] = now.cloths[c].frames[0];
-    next_.topologies[c] = built_.world.model({static_cast<int>(c)}).topology;
+    next_.topologies[c] = built_.world.model(built_.world.cloth(static_cast<int>(c))).topology;
   }
   next_.bodies.clear();
   next_.body_frames.clear();

@@ -49,8 +49,8 @@ void ProblemFinder::add_frame(double energy, int crossings) {
 }
 
 void ProblemFinder::look_at_cloth(int c) {
-  const ClothModel& model = world_.model({c});
-  const ClothState& state = world_.state({c});
+  const ClothModel& model = world_.model(world_.cloth(c));
+  const ClothState& state = world_.state(world_.cloth(c));
   const YarnStrain strain = compute_yarn_strain(model, state);
   const AreaShare area = compute_least_area(model, state);
   const StepWarning strained{WarningCode::yarn_strain, c, strain.particle, strain.max},
@@ -73,7 +73,7 @@ void ProblemFinder::look_at_energy(double energy) {
   const double rise = num_frames_ == 0 ? 0 : energy - energy_;
   double lift = 0;  // of all cloth by its thickness [J]
   for (int c = 0; c < world_.num_cloths(); ++c) {
-    const ClothModel& model = world_.model({c});
+    const ClothModel& model = world_.model(world_.cloth(c));
     lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *
             model.material.thickness;
   }

@@ -67,7 +67,7 @@ std::vector<Vec3> find_reach(const World& world) {
   for (const Collider& collider : world.colliders())
     bodies.extend(box_around(shape_at(collider, world.time())));
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothState& state = world.state({c});
+    const ClothState& state = world.state(world.cloth(c));
     for (std::size_t i = 0; i < state.x.size(); ++i) cloth.extend(state.position(i));
   }
   const double size = cloth.isEmpty() ? 1 : cloth.diagonal().norm();
@@ -78,11 +78,11 @@ std::vector<Vec3> find_reach(const World& world) {
 
   std::vector<Vec3> points;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothState& state = world.state({c});
+    const ClothState& state = world.state(world.cloth(c));
     const std::size_t first = points.size();
     for (std::size_t i = 0; i < state.x.size(); ++i) points.push_back(state.position(i));
-    if (!world.pins({c}).empty()) {
-      add_hanging(world.model({c}), state, world.pins({c}), points);
+    if (!world.pins(world.cloth(c)).empty()) {
+      add_hanging(world.model(world.cloth(c)), state, world.pins(world.cloth(c)), points);
       continue;
     }
     const std::size_t end = points.size();

@@ -36,7 +36,7 @@ class Recorder {
     report.integrator = scene.solver.integrator;
     report.version = kVersion;
     for (int c = 0; c < world.num_cloths(); ++c) {
-      const ClothTopology& topology = *world.model({c}).topology;
+      const ClothTopology& topology = *world.model(world.cloth(c)).topology;
       report.particles += topology.num_particles();
       report.triangles += topology.mesh.num_triangles();
       report.springs += static_cast<int>(topology.springs.size());
@@ -57,8 +57,8 @@ class Recorder {
   void add_frame() {
     double lowest = std::numeric_limits<double>::infinity(), mean_strain = 0;
     for (int c = 0; c < world_.num_cloths(); ++c) {
-      const ClothModel& model = world_.model({c});
-      const ClothState& state = world_.state({c});
+      const ClothModel& model = world_.model(world_.cloth(c));
+      const ClothState& state = world_.state(world_.cloth(c));
       lowest = std::min(lowest, compute_lowest_y(state));
       mean_strain += add_strain(compute_strain(model, state)) / world_.num_cloths();
     }
@@ -107,7 +107,8 @@ class Recorder {
   void add_stretches() {
     std::optional<Stretches> all;
     for (int c = 0; c < world_.num_cloths(); ++c) {
-      const auto own = compute_principal_stretches(world_.model({c}), world_.state({c}));
+      const auto own =
+          compute_principal_stretches(world_.model(world_.cloth(c)), world_.state(world_.cloth(c)));
       if (!own) continue;
       all = all ? Stretches{std::min(all->min, own->min), std::max(all->max, own->max)} : *own;
     }
@@ -291,14 +292,14 @@ void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<st
   if (scene.solver.integrator != "paper") return;
   const double step = 1 / (scene.fps * scene.steps_per_frame);
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const double a = compute_stiffness_number(world.model({c}), step);
+    const double a = compute_stiffness_number(world.model(world.cloth(c)), step);
     if (a <= 1) continue;
     char text[256];
     std::snprintf(
         text, sizeof text,
         "cloth \"%s\" is too stiff for the paper's Eq. 16 at this step: a = h²Σk/m reaches %.3g, and from "
         "rest it falls with %.2g of gravity; use paper_fixed, or raise solver.steps_per_frame",
-        world.name({c}).c_str(), a, gravity_factor(a));
+        world.name(world.cloth(c)).c_str(), a, gravity_factor(a));
     warnings.emplace_back(text);
   }
 }

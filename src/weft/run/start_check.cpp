@@ -46,10 +46,10 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
   std::vector<MeshBody> bodies;
   for (int c = 0; c < world.num_cloths(); ++c) {
     std::vector<Vec3> positions;
-    for (int i = 0; i < world.model({c}).num_particles(); ++i)
-      positions.push_back(world.state({c}).position(i));
-    bodies.push_back({"cloth \"" + world.name({c}) + '"', size_of(positions),
-                      world.model({c}).topology->mesh.num_triangles(),
+    for (int i = 0; i < world.model(world.cloth(c)).num_particles(); ++i)
+      positions.push_back(world.state(world.cloth(c)).position(i));
+    bodies.push_back({"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions),
+                      world.model(world.cloth(c)).topology->mesh.num_triangles(),
                       std::get_if<MeshFile>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
   }
   for (std::size_t c = 0; c < world.colliders().size(); ++c) {

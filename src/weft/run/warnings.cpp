@@ -118,13 +118,13 @@ std::string to_string(StepFault fault) {
 
 std::string describe(const World& world, const StepWarning& warning) {
   const std::string what = describe_what(warning, shorter_steps(world.integrator().integrator));
-  return warning.cloth < 0 ? what : "cloth \"" + world.name({warning.cloth}) + "\": " + what;
+  return warning.cloth < 0 ? what : "cloth \"" + world.name(world.cloth(warning.cloth)) + "\": " + what;
 }
 
 std::string describe(const World& world, const InfeasiblePair& pair) {
   const auto collider = [&] { return "collider \"" + world.colliders()[pair.collider].name + '"'; };
   const auto particle = [&](int cloth, int index) {
-    return "cloth \"" + world.name({cloth}) + "\" particle " + std::to_string(index);
+    return "cloth \"" + world.name(world.cloth(cloth)) + "\" particle " + std::to_string(index);
   };
   const std::string first = pair.cloth < 0 ? collider() : particle(pair.cloth, pair.particle);
   return first + " and " +

@@ -241,10 +241,10 @@ std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   const auto passing = world.passing_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const std::string& cloth = world.name({c});
+    const std::string& cloth = world.name(world.cloth(c));
     std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < world.state({c}).x.size(); ++i)
-      positions.push_back(world.state({c}).position(i));
+    for (std::size_t i = 0; i < world.state(world.cloth(c)).x.size(); ++i)
+      positions.push_back(world.state(world.cloth(c)).position(i));
     for (const Collider& collider : world.colliders()) {
       const std::array<std::string, 2> pair{cloth, collider.name};
       if (std::find(passing.begin(), passing.end(), pair) != passing.end()) continue;

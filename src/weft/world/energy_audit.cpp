@@ -142,8 +142,8 @@ EnergyAudit& EnergyAudit::operator+=(const EnergyAudit& next) {
 WorldEnergy compute_energy(const World& world) {
   WorldEnergy energy;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothModel& model = world.model({c});
-    const ClothState& state = world.state({c});
+    const ClothModel& model = world.model(world.cloth(c));
+    const ClothState& state = world.state(world.cloth(c));
     const ElasticParts elastic = compute_elastic_parts(model, state);
     energy.kinetic += compute_kinetic_energy(model, state);
     energy.elastic += elastic.stretch;
@@ -162,13 +162,14 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
   const std::vector<ContactPoint> contacts = world.contact_points();
   audit.work_shapes = compute_shape_work(world.colliders(), contacts, start.state.time, world.time());
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothStep cloth{world.model({c}), start.state.states.at(c), world.state({c}), step};
+    const ClothStep cloth{world.model(world.cloth(c)), start.state.states.at(c), world.state(world.cloth(c)),
+                          step};
     Forces outside = compute_wind_forces(world.wind(), world.time(), cloth);
     audit.work_wind += compute_work(outside, cloth);
     add_contact_forces(c, contacts, outside);
-    const std::vector<Pin>& pins = world.pins({c});
+    const std::vector<Pin>& pins = world.pins(world.cloth(c));
     audit.work_pins += compute_pin_work(find_moved_pins(pins, cloth), world.gravity(), outside, cloth);
-    audit.work_hands += compute_hand_work(world.grabs({c}), pins, cloth);
+    audit.work_hands += compute_hand_work(world.grabs(world.cloth(c)), pins, cloth);
   }
   audit.left_over = audit.energy.total() - start.energy.total() - audit.work();
   return audit;

@@ -1,50 +1,15 @@
 #include "weft/world/world.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
-#include "weft/core/error.h"
 #include "weft/core/hash.h"
+#include "weft/world/world_input.h"
 
 namespace weft {
 namespace {
-
-void require(bool condition, const std::string& sentence) {
-  if (!condition) throw InputError(sentence);
-}
-
-void validate(const ClothMaterial& m, const std::string& cloth) {
-  const auto at_least_zero = [&](double value, const char* name) {
-    require(std::isfinite(value) && value >= 0, "cloth \"" + cloth + "\": " + name + " must be 0 or more");
-  };
-  require(std::isfinite(m.density) && m.density > 0,
-          "cloth \"" + cloth + "\": density must be more than 0 kg/m²");
-  at_least_zero(m.structural, "structural stiffness");
-  at_least_zero(m.shear, "shear stiffness");
-  at_least_zero(m.bend, "bending stiffness");
-  at_least_zero(m.damping, "damping");
-  at_least_zero(m.damping_time, "damping time");
-  at_least_zero(m.thickness, "thickness");
-  at_least_zero(m.friction, "friction");
-}
-
-void require_elements_move(const std::string& integrator, const std::string& cloth) {
-  require(moves_elements(integrator),
-          "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
-              " cannot move, for it knows springs alone; use newton, "
-              "implicit_euler or xpbd, or give spring_structural, spring_shear and "
-              "spring_bend instead of the fabric");
-}
-
-void require_air(const Wind& wind, const std::string& integrator) {
-  if (wind.air.density == 0) return;
-  require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
-          "the air's density and drag must be above 0, and its lift from 0 to its drag");
-  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts need a length and a time above 0");
-  require(feels_air(integrator), integrator + " does not feel the air's drag and lift; use newton or " +
-                                     "implicit_euler, or the wind's drag alone");
-}
 
 /// A sum of products with zero: 0 if all values are finite, else not a number.
 float finite_check(const float* values, std::size_t count) {
@@ -73,6 +38,48 @@ int find_non_finite(const ClothState& state) {
   return -1;
 }
 
+std::uint32_t next_world_id() {
+  static std::atomic<std::uint32_t> last{0};
+  return ++last;
+}
+
+/// By ascending number; -1 if there is none.
+template <class Things>
+int find_number(const Things& things, std::uint32_t number) {
+  const auto found = std::ranges::lower_bound(things, number, {}, [](const auto& t) { return t.number; });
+  return found != things.end() && found->number == number ? static_cast<int>(found - things.begin()) : -1;
+}
+
+template <class Things, class Id>
+std::size_t index_of_id(const Things& things, Id id, std::uint32_t world, std::string_view kind) {
+  if (id.number == 0) throw InputError("this " + std::string(kind) + " is empty: it is of nothing");
+  if (id.world != world) throw InputError("this " + std::string(kind) + " is of another world");
+  const int index = find_number(things, id.number);
+  if (index >= 0) return static_cast<std::size_t>(index);
+  throw InputError("what this " + std::string(kind) + " (number " + std::to_string(id.number) + ") was of is removed");
+}
+
+std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key> keys) {
+  return std::make_shared<const MeshSequence>(std::move(keys));
+}
+
+/// A mesh collider's, in its own coordinates [m].
+std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
+  if (!shape.sequence) return shape.mesh->positions;
+  const MeshSequence::Blend blend = shape.sequence->at(time);
+  std::vector<Vec3> vertices;
+  for (int v = 0; v < shape.mesh->num_vertices(); ++v) vertices.push_back(shape.sequence->position(blend, v));
+  return vertices;
+}
+
+void require_for_each_particle(const std::vector<Vec3>& values, const ClothState& state,
+                               const std::string& what) {
+  require(values.size() == state.x.size(),
+          what + " are " + std::to_string(values.size()) + ", particles " + std::to_string(state.x.size()));
+  require(std::ranges::all_of(values, [](const Vec3& p) { return p.allFinite(); }),
+          what + " must be finite numbers");
+}
+
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kMaxParts = 1 << 12;  // of one step [1]
 constexpr int kCalmParts = 4;       // in a row, before parts become longer
@@ -81,14 +88,47 @@ constexpr double kCalm = 0.5;       // severity of a part that could have been l
 
 }  // namespace
 
-World::World() : integrator_(make_integrator({})), jobs_(make_serial_jobs()) {}
+World::World() : id_(next_world_id()), integrator_(make_integrator({})), jobs_(make_serial_jobs()) {}
 
-World::Cloth& World::at(ClothId id) { return cloths_.at(static_cast<std::size_t>(id.index)); }
-const World::Cloth& World::at(ClothId id) const { return cloths_.at(static_cast<std::size_t>(id.index)); }
+ClothId World::cloth(int n) const {
+  require(n >= 0 && n < num_cloths(),
+          "there is no cloth " + std::to_string(n) + "; the world has " + std::to_string(num_cloths()));
+  return {id_, cloths_[n].number};
+}
 
-ClothId World::add_cloth(const ClothDesc& desc) {
+ColliderId World::collider(int n) const {
+  require(n >= 0 && n < num_colliders(),
+          "there is no collider " + std::to_string(n) + "; the world has " + std::to_string(num_colliders()));
+  return {id_, guides_[n].number};
+}
+
+bool World::contains(ClothId id) const { return id.world == id_ && find_number(cloths_, id.number) >= 0; }
+bool World::contains(ColliderId id) const { return id.world == id_ && find_number(guides_, id.number) >= 0; }
+
+std::size_t World::index_of(ClothId id) const { return index_of_id(cloths_, id, id_, "ClothId"); }
+std::size_t World::index_of(ColliderId id) const { return index_of_id(guides_, id, id_, "ColliderId"); }
+
+World::Cloth& World::at(ClothId id) { return cloths_[index_of(id)]; }
+const World::Cloth& World::at(ClothId id) const { return cloths_[index_of(id)]; }
+
+bool World::has_name(const std::string& name) const {
+  const auto is_its = [&](const auto& thing) { return thing.name == name; };
+  return std::ranges::any_of(cloths_, is_its) || std::ranges::any_of(colliders_, is_its);
+}
+
+/// The wanted one; if it is empty, a free one by the kind of thing.
+std::string World::find_name(const std::string& wanted, const std::string& kind) const {
+  std::string name = wanted.empty() ? kind : wanted;
+  for (int n = 2; wanted.empty() && has_name(name); ++n) name = kind + ' ' + std::to_string(n);
+  return name;
+}
+
+ClothId World::add_cloth(const ClothDesc& given) {
+  ClothDesc desc = given;
+  desc.name = find_name(given.name, "cloth");
   require(desc.topology != nullptr, "cloth \"" + desc.name + "\" has no topology");
-  validate(desc.material, desc.name);
+  require_valid(*desc.topology, desc.name);
+  require_valid(desc.material, desc.name);
   const std::vector<Vec3>& positions =
       desc.positions.empty() ? desc.topology->mesh.positions : desc.positions;
   require(static_cast<int>(positions.size()) == desc.topology->num_particles(),
@@ -101,10 +141,146 @@ ClothId World::add_cloth(const ClothDesc& desc) {
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
   require(find_non_finite(cloth.state) < 0,
-          "cloth \"" + desc.name + "\" has a position that is not a finite number");
+          "cloth \"" + desc.name + "\" has a position or a velocity that is not a finite number");
   cloth.is_pinned.assign(positions.size(), 0);
+  cloth.number = ++last_number_;
   cloths_.push_back(std::move(cloth));
-  return {num_cloths() - 1};
+  return {id_, last_number_};
+}
+
+ColliderId World::add_collider(Collider collider) {
+  collider.name = find_name(collider.name, "collider");
+  require_valid(collider);
+  colliders_.push_back(std::move(collider));
+  guides_.push_back({.number = ++last_number_});
+  return {id_, last_number_};
+}
+
+void World::remove(ClothId id) {
+  const int index = static_cast<int>(index_of(id));
+  std::erase_if(rules_, [&](const ContactRule& r) { return r.cloth == index || r.other_cloth == index; });
+  for (ContactRule& r : rules_) {
+    r.cloth -= r.cloth > index;
+    r.other_cloth -= r.other_cloth > index;
+  }
+  cloths_.erase(cloths_.begin() + index);
+  contact_system_ = {};
+}
+
+void World::remove(ColliderId id) {
+  const int index = static_cast<int>(index_of(id));
+  std::erase_if(rules_, [&](const ContactRule& r) { return r.collider == index; });
+  for (ContactRule& r : rules_) r.collider -= r.collider > index;
+  colliders_.erase(colliders_.begin() + index);
+  guides_.erase(guides_.begin() + index);
+  contact_system_ = {};
+}
+
+Pose World::pose(ColliderId id) const { return colliders_[index_of(id)].motion.at(time_); }
+
+void World::move_collider(ColliderId id, const Pose& at_end) {
+  require_valid(at_end, "collider \"" + collider(id).name + "\"");
+  Guide& guide = guides_[index_of(id)];
+  guide.moves_by_hand = true;
+  guide.pose = at_end;
+}
+
+void World::place_collider(ColliderId id, const Pose& pose) {
+  const std::size_t index = index_of(id);
+  require_valid(pose, "collider \"" + colliders_[index].name + "\"");
+  colliders_[index].motion = RigidMotion(pose);
+  guides_[index].moves_by_hand = true;
+  guides_[index].pose.reset();
+  contact_system_ = {};
+}
+
+MeshShape& World::mesh_of(ColliderId id, const std::vector<Vec3>& positions) {
+  Collider& collider = colliders_[index_of(id)];
+  const std::string who = "collider \"" + collider.name + "\": ";
+  MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
+  require(shape != nullptr, who + "it is no mesh, and has no vertices");
+  require(static_cast<int>(positions.size()) == shape->mesh->num_vertices(),
+          who + "it has " + std::to_string(shape->mesh->num_vertices()) + " vertices, not " +
+              std::to_string(positions.size()));
+  require(std::ranges::all_of(positions, [](const Vec3& p) { return p.allFinite(); }),
+          who + "a vertex has a coordinate that is not a finite number");
+  return *shape;
+}
+
+void World::move_vertices(ColliderId id, std::vector<Vec3> at_end) {
+  mesh_of(id, at_end);
+  Guide& guide = guides_[index_of(id)];
+  guide.deforms_by_hand = true;
+  guide.vertices = std::move(at_end);
+}
+
+void World::place_vertices(ColliderId id, std::vector<Vec3> positions) {
+  MeshShape& shape = mesh_of(id, positions);
+  shape.sequence = make_sequence({{time_, std::move(positions)}});
+  guides_[index_of(id)].deforms_by_hand = true;
+  guides_[index_of(id)].vertices.reset();
+  contact_system_ = {};
+}
+
+void World::set_collider_friction(ColliderId id, double friction, double static_friction) {
+  Collider changed = collider(id);
+  changed.friction = friction;
+  changed.static_friction = static_friction;
+  require_valid(changed);
+  colliders_[index_of(id)] = std::move(changed);
+}
+
+/// What is moved by hand goes to where it is told in the step that begins, or stands still.
+void World::guide_colliders(double dt) {
+  const double end = time_ + dt;
+  for (std::size_t c = 0; c < colliders_.size(); ++c) {
+    Guide& guide = guides_[c];
+    if (guide.moves_by_hand) {
+      RigidMotion& motion = colliders_[c].motion;
+      const Pose now = motion.at(time_);
+      motion = guide.pose ? RigidMotion(time_, now, end, *guide.pose) : RigidMotion(now);
+      guide.pose.reset();
+    }
+    if (guide.deforms_by_hand) {
+      MeshShape& shape = std::get<MeshShape>(colliders_[c].shape);
+      if (!guide.vertices && shape.sequence->keys().size() == 1) continue;
+      std::vector<MeshSequence::Key> keys = {{time_, vertices_at(shape, time_)}};
+      if (guide.vertices) keys.push_back({end, std::move(*guide.vertices)});
+      shape.sequence = make_sequence(std::move(keys));
+      guide.vertices.reset();
+    }
+  }
+}
+
+void World::set_gravity(const Vec3& gravity) {
+  require(gravity.allFinite(), "gravity must be finite numbers");
+  gravity_ = gravity;
+}
+
+void World::set_jobs(std::shared_ptr<JobSystem> jobs) {
+  require(jobs != nullptr, "a world needs a job system; make_serial_jobs() makes one without threads");
+  jobs_ = std::move(jobs);
+}
+
+World World::clone() const {
+  World copy;
+  copy.id_ = id_;
+  copy.last_number_ = last_number_;
+  copy.time_ = time_;
+  copy.contact_ = contact_;
+  copy.tracks_contacts_ = tracks_contacts_;
+  copy.gravity_ = gravity_;
+  copy.wind_ = wind_;
+  copy.set_integrator(integrator_settings_);
+  copy.division_ = division_;
+  copy.part_ = part_;
+  copy.calm_ = calm_;
+  copy.jobs_ = jobs_;
+  copy.cloths_ = cloths_;
+  copy.colliders_ = colliders_;
+  copy.guides_ = guides_;
+  copy.rules_ = rules_;
+  return copy;
 }
 
 void World::set_pins(ClothId id, std::vector<Pin> pins) {
@@ -145,25 +321,60 @@ void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
   cloth.hands.set(std::move(grabs));
 }
 
+void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
+  Cloth& cloth = at(id);
+  require_for_each_particle(positions, cloth.state, "cloth \"" + cloth.name + "\": positions");
+  ClothState state = make_state(positions);  // with an origin near them
+  for (std::size_t i = 0; i < positions.size(); ++i) state.v.set(i, cloth.state.v.get(i));
+  cloth.state = std::move(state);
+  for (PinnedParticle& p : cloth.pinned) {
+    const Pin& pin = cloth.pins[p.pin];
+    p.anchor = apply_inverse(pin.motion.at(time_), pin.pivot, positions[p.particle]);
+  }
+}
+
+void World::set_velocities(ClothId id, const std::vector<Vec3>& velocities) {
+  Cloth& cloth = at(id);
+  require_for_each_particle(velocities, cloth.state, "cloth \"" + cloth.name + "\": velocities");
+  for (std::size_t i = 0; i < velocities.size(); ++i) cloth.state.v.set(i, velocities[i]);
+  cloth.state.history.step = 0;
+}
+
+void World::teleport(ClothId id, const Pose& pose) {
+  const Cloth& cloth = at(id);
+  require_valid(pose, "cloth \"" + cloth.name + "\"");
+  std::vector<Vec3> positions, velocities;
+  for (std::size_t i = 0; i < cloth.state.x.size(); ++i) {
+    positions.push_back(apply(pose, Vec3::Zero(), cloth.state.position(i)));
+    velocities.push_back(pose.rotation * cloth.state.v.get(i));
+  }
+  set_positions(id, positions);
+  set_velocities(id, velocities);
+}
+
 void World::set_material(ClothId id, const ClothMaterial& material) {
   Cloth& cloth = at(id);
-  validate(material, cloth.name);
+  require_valid(material, cloth.name);
   cloth.model = build_cloth_model(cloth.model->topology, material, cloth.model->elements);
 }
 
 void World::set_wind(const Wind& wind) {
-  require_air(wind, integrator_settings_.integrator);
+  require_valid(wind, integrator_settings_.integrator);
   wind_ = wind;
 }
 
 ContactSystem::Place World::find_place(const std::string& name) const {
+  std::vector<ContactSystem::Place> found;
   for (int c = 0; c < num_cloths(); ++c) {
-    if (cloths_[c].name == name) return {c, -1, 0};
+    if (cloths_[c].name == name) found.push_back({c, -1, 0});
   }
-  for (int c = 0; c < static_cast<int>(colliders_.size()); ++c) {
-    if (colliders_[c].name == name) return {-1, c, 0};
+  for (int c = 0; c < num_colliders(); ++c) {
+    if (colliders_[c].name == name) found.push_back({-1, c, 0});
   }
-  throw InputError("there is neither a cloth nor a collider \"" + name + "\"");
+  require(!found.empty(), "there is neither a cloth nor a collider \"" + name + "\"");
+  require(found.size() == 1, "there are " + std::to_string(found.size()) + " things named \"" + name +
+                                 "\"; give them names that differ");
+  return found[0];
 }
 
 ContactRule& World::rule_for(const std::string& a, const std::string& b) {
@@ -210,7 +421,7 @@ void World::set_integrator(const IntegratorSettings& settings) {
   for (const Cloth& cloth : cloths_) {
     if (cloth.model->elements) require_elements_move(settings.integrator, cloth.name);
   }
-  require_air(wind_, settings.integrator);
+  require_valid(wind_, settings.integrator);
   integrator_settings_ = settings;
   integrator_ = std::move(integrator);
   for (Cloth& cloth : cloths_) cloth.state.history.step = 0;
@@ -373,7 +584,7 @@ bool World::is_driven() const {
   if (wind_.drag > 0 || wind_.air.density > 0) return true;
   const auto is_deforming = [](const Collider& c) {
     const auto* mesh = std::get_if<MeshShape>(&c.shape);
-    return mesh && mesh->sequence;
+    return mesh && mesh->sequence && mesh->sequence->keys().size() > 1;
   };
   return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
@@ -439,7 +650,10 @@ void World::accept(const StepReport& part, StepReport& report) {
 StepReport World::fail(const StepCheck& check, StepReport report) {
   report.ok = false;
   report.warnings.push_back({WarningCode::non_finite, check.cloth, check.particle});
-  restore(before_step_);
+  time_ = before_step_.time;
+  part_ = before_step_.part;
+  calm_ = before_step_.calm;
+  restore_motion(before_step_);
   report.work = clock_.stop();
   return report;
 }
@@ -450,6 +664,7 @@ StepReport World::step(double dt) {
   StepReport report;
   clock_.start();
   save(before_step_);
+  guide_colliders(dt);
   for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
   const int most = num_parts_at_most(dt);  // the step's units
   int parts = 1;                           // that it would have at the present length
@@ -516,6 +731,12 @@ void World::save(Snapshot& snapshot) const {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   save(snapshot);
+  snapshot.guides = guides_;
+  for (std::size_t c = 0; c < colliders_.size(); ++c) {
+    snapshot.guides[c].motion = colliders_[c].motion;
+    if (const MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
+      snapshot.guides[c].sequence = shape->sequence;
+  }
   return snapshot;
 }
 
@@ -526,10 +747,24 @@ void World::restore(const Snapshot& snapshot) {
     require(snapshot.states[c].x.size() == cloths_[c].state.x.size(),
             "the snapshot's cloth \"" + cloths_[c].name + "\" has another number of particles");
   }
+  require(snapshot.guides.empty() || snapshot.guides.size() == guides_.size(),
+          "the snapshot has another number of colliders than the world");
   time_ = snapshot.time;
   part_ = snapshot.part;
   calm_ = snapshot.calm;
   restore_motion(snapshot);
+  if (snapshot.guides.empty()) return;
+  const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
+  if (std::ranges::any_of(guides_, is_by_hand) || std::ranges::any_of(snapshot.guides, is_by_hand))
+    contact_system_ = {};
+  for (std::size_t c = 0; c < colliders_.size(); ++c) {
+    const std::uint32_t number = guides_[c].number;
+    guides_[c] = snapshot.guides[c];
+    guides_[c].number = number;
+    colliders_[c].motion = guides_[c].motion;
+    if (MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
+      shape->sequence = guides_[c].sequence;
+  }
 }
 
 void World::restore_motion(const Snapshot& snapshot) {

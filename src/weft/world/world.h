@@ -16,17 +16,13 @@
 #include "weft/core/work_times.h"
 #include "weft/integrators/integrator.h"
 #include "weft/world/grab.h"
+#include "weft/world/ids.h"
 #include "weft/world/step_warning.h"
 
 namespace weft {
 
-/// Handle of a cloth in a World.
-struct ClothId {
-  int index = 0;
-};
-
 struct ClothDesc {
-  std::string name = "cloth";                     // for reports
+  std::string name;                               // for people and rules; empty: "cloth", "cloth 2", …
   std::shared_ptr<const ClothTopology> topology;  // see build_grid_topology, build_mesh_topology
   ClothMaterial material;
   std::shared_ptr<const ClothElements> elements;  // a fabric's, on the topology's mesh; null: springs alone
@@ -79,11 +75,35 @@ struct UntangleReport {
 class World {
  public:
   World();
+  World(World&&) = default;
+  World& operator=(World&&) = default;  // not copyable: see clone()
+
+  /// Another world in the same state, which goes on with the same bits and shares nothing that changes but
+  /// the job system. Without the observer.
+  World clone() const;
 
   /// Throws InputError if the description does not fit together (sizes, numbers out of range, a fabric's
   /// elements and an integrator that knows springs alone).
   ClothId add_cloth(const ClothDesc& desc);
-  void add_collider(Collider collider) { colliders_.push_back(std::move(collider)); }
+  /// Throws InputError for shapes that cannot be. An empty name: "collider", "collider
+  /// 2", ….
+  ColliderId add_collider(Collider collider);
+  void remove(ClothId cloth);  // with what was said about it: pins, grabs, rules of friction and collision
+  void remove(ColliderId collider);
+  bool contains(ClothId cloth) const;
+  bool contains(ColliderId collider) const;
+
+  /// Colliders moved by hand, in place of their key frames. A pose is a displacement from where the collider
+  /// was when it was added, and turns about pivot(). `move` says where it is at the end of the next step:
+  /// until then it goes evenly, through substeps and parts too, and turns the shorter way about one axis; not
+  /// told again it stands still. `place` puts it there now, and does not sweep cloth on the way. Throws
+  /// InputError for poses that are none.
+  void move_collider(ColliderId collider, const Pose& at_end);
+  void place_collider(ColliderId collider, const Pose& pose);
+  /// The same for a mesh's vertices (num_vertices), in its own coordinates [m]; the pose stays.
+  void move_vertices(ColliderId collider, std::vector<Vec3> at_end);
+  void place_vertices(ColliderId collider, std::vector<Vec3> positions);
+  void set_collider_friction(ColliderId collider, double friction, double static_friction = 0);
 
   /// All of these may be called between any two steps; the next step uses the new values.
   void set_pins(ClothId cloth,
@@ -93,13 +113,19 @@ class World {
     at(cloth).hands.set_target(grab, target);
   }
   void set_material(ClothId cloth, const ClothMaterial& material);
-  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }  // [m/s²]
+  /// Motion from outside (num_particles): nothing is swept on the way. Pins hold where their particles are
+  /// put. Throws InputError for other numbers of values, and values that are not finite.
+  void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // velocities stay [m]
+  void set_velocities(ClothId cloth, const std::vector<Vec3>& velocities);  // [m/s]
+  void teleport(ClothId cloth, const Pose& pose);  // about the world's origin; velocities turn along
+  void set_gravity(const Vec3& gravity);           // throws InputError if it is not finite [m/s²]
   /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
   void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
   /// Coulomb's coefficient of two things by their names, of which one at least is a cloth (a cloth twice:
   /// with itself), in place of what they say themselves; and the one that holds while they do not slide
-  /// (slower than 1 cm/s), if that is more. Throws InputError for unknown names and below 0.
+  /// (slower than 1 cm/s), if that is more. Throws InputError for unknown names, for those of several things,
+  /// and below 0.
   void set_friction(const std::string& a, const std::string& b, double friction, double static_friction = 0);
   /// Whether two things, named as above, collide or go through each other.
   void set_collision(const std::string& a, const std::string& b, bool collide);
@@ -111,12 +137,12 @@ class World {
   /// Throws InputError for a shortest part that is not above 0, and for `enabled` with an integrator that
   /// cannot.
   void set_division(const StepDivision& division);
-  void set_jobs(std::shared_ptr<JobSystem> jobs) { jobs_ = std::move(jobs); }
+  void set_jobs(std::shared_ptr<JobSystem> jobs);  // throws InputError for null
 
   /// Sets cloth apart that crosses itself, other cloth or colliders where it is now, so that from the next
-  /// step on nothing crosses: what cloth is in becomes thinner and grows back (untangle.cpp). Pinned particles
-  /// stay. Velocities are kept, and everything stays where it is if that does not help. Takes seconds for
-  /// thousands of particles, and nothing where nothing crosses.
+  /// step on nothing crosses: what cloth is in becomes thinner and grows back (untangle.cpp). Pinned
+  /// particles stay. Velocities are kept, and everything stays where it is if that does not help. Takes
+  /// seconds for thousands of particles, and nothing where nothing crosses.
   UntangleReport untangle();
 
   /// Advances everything by dt > 0 [s].
@@ -128,13 +154,18 @@ class World {
 
   double time() const { return time_; }  // [s]
   int num_cloths() const { return static_cast<int>(cloths_.size()); }
+  int num_colliders() const { return static_cast<int>(colliders_.size()); }
+  ClothId cloth(int n) const;        // of the n-th, in the order in which they were added
+  ColliderId collider(int n) const;  // likewise
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
   const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
   const std::vector<Grab>& grabs(ClothId cloth) const { return at(cloth).hands.grabs(); }
   const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
+  const Collider& collider(ColliderId collider) const { return colliders_[index_of(collider)]; }
   const std::vector<Collider>& colliders() const { return colliders_; }
+  Pose pose(ColliderId collider) const;  // now
 
   /// What touched in the last step, where, and with what force; of a step cut into substeps, in the last one.
   /// Ordered by what touches; empty without contact, and where contacts are not tracked. Summed over time the
@@ -152,15 +183,27 @@ class World {
   const IntegratorSettings& integrator() const { return integrator_settings_; }
   const StepDivision& division() const { return division_; }
 
+  /// How a collider moves.
+  struct Guide {
+    std::uint32_t number = 0;                             // of its id
+    bool moves_by_hand = false, deforms_by_hand = false;  // else by key frames
+    std::optional<Pose> pose;                             // at the end of the next step, if told
+    std::optional<std::vector<Vec3>> vertices;            // likewise [m]
+    RigidMotion motion;                                   // in a snapshot
+    std::shared_ptr<const MeshSequence> sequence;         // likewise
+  };
+
   /// Everything that moves; restoring it and stepping again gives the same bits again.
   struct Snapshot {
     double time = 0;
     std::vector<ClothState> states;
-    double part = 0;  // the length that steps are divided into, 0: they are not [s]
-    int calm = 0;     // parts in a row that could have been longer
+    std::vector<Guide> guides;  // (colliders)
+    double part = 0;            // the length that steps are divided into, 0: they are not [s]
+    int calm = 0;               // parts in a row that could have been longer
   };
   Snapshot snapshot() const;
-  void restore(const Snapshot& snapshot);  // of this world: throws InputError if the cloths do not match
+  /// Of this world, or one that was built alike: throws InputError if cloths or colliders do not match.
+  void restore(const Snapshot& snapshot);
 
   /// Of time, positions and velocities, bit by bit.
   std::uint64_t state_hash() const;
@@ -172,6 +215,7 @@ class World {
   };
 
   struct Cloth {
+    std::uint32_t number = 0;  // of its id
     std::string name;
     std::shared_ptr<const ClothModel> model;
     ClothState state;
@@ -184,6 +228,12 @@ class World {
     Vec3 grab_impulse = Vec3::Zero();        // of all hands in the last step [N·s]
   };
 
+  std::size_t index_of(ClothId id) const;
+  std::size_t index_of(ColliderId id) const;
+  bool has_name(const std::string& name) const;
+  std::string find_name(const std::string& wanted, const std::string& kind) const;
+  MeshShape& mesh_of(ColliderId id, const std::vector<Vec3>& positions);
+  void guide_colliders(double dt);
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;
@@ -210,6 +260,8 @@ class World {
   void set_environment(Cloth& cloth, double time);
   void solve(double dt, StepReport& report);
 
+  std::uint32_t id_ = 0;           // of ids
+  std::uint32_t last_number_ = 0;  // given to a cloth or collider
   double time_ = 0;
   bool contact_ = true, tracks_contacts_ = false;
   Vec3 gravity_ = {0, -9.81, 0};  // [m/s²]
@@ -222,6 +274,7 @@ class World {
   std::shared_ptr<JobSystem> jobs_;
   std::vector<Cloth> cloths_;
   std::vector<Collider> colliders_;
+  std::vector<Guide> guides_;       // (colliders)
   std::vector<ContactRule> rules_;  // one per pair
   std::function<void(double)> observer_;
 

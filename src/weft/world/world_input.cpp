@@ -1,0 +1,150 @@
+#include "weft/world/world_input.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "weft/integrators/integrator.h"
+
+namespace weft {
+namespace {
+
+constexpr double kRounding = 1e-6;  // that unit vectors and rotations may be off by [1]
+
+std::string in_words(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+std::string in_words(const Vec3& v) {
+  return '(' + in_words(v.x()) + ", " + in_words(v.y()) + ", " + in_words(v.z()) + ')';
+}
+
+bool is_rotation(const Mat3& r) {
+  return r.allFinite() && (r.transpose() * r - Mat3::Identity()).cwiseAbs().maxCoeff() < kRounding &&
+         r.determinant() > 0;
+}
+
+/// Everything about a collider's shape that can be wrong.
+struct ShapeJudge {
+  std::string who;
+
+  void finite(const Vec3& p, const char* what) const {
+    require(p.allFinite(), who + what + " must be finite numbers, not " + in_words(p));
+  }
+  void positive(double value, const char* what) const {
+    require(std::isfinite(value) && value > 0, who + what + " must be more than 0 m, not " + in_words(value));
+  }
+  void rotation(const Mat3& r) const {
+    require(is_rotation(r), who +
+                                "its rotation is no rotation: columns must be perpendicular unit vectors, "
+                                "right-handed");
+  }
+
+  void operator()(const Sphere& s) const {
+    finite(s.center, "its centre");
+    positive(s.radius, "its radius");
+  }
+  void operator()(const Plane& p) const {
+    finite(p.point, "its point");
+    require(std::abs(p.normal.norm() - 1) < kRounding,
+            who + "its normal must have length 1, and is " + in_words(p.normal));
+  }
+  void operator()(const Capsule& c) const {
+    finite(c.a, "its end a");
+    finite(c.b, "its end b");
+    positive(c.radius, "its radius");
+  }
+  void operator()(const OrientedBox& b) const {
+    finite(b.center, "its centre");
+    for (int axis = 0; axis < 3; ++axis) positive(b.half_size[axis], "its half size");
+    rotation(b.rotation);
+  }
+  void operator()(const MeshShape& m) const {
+    require(m.mesh != nullptr, who + "it has no mesh");
+    try {
+      require_valid(*m.mesh);
+    } catch (const InputError& error) {
+      throw InputError(who + error.what());
+    }
+    rotation(m.rotation);
+    finite(m.translation, "its translation");
+    require(!m.sequence || m.sequence->num_vertices() == m.mesh->num_vertices(),
+            who + "its sequence has another number of vertices than its mesh");
+  }
+};
+
+}  // namespace
+
+void require_valid(const ClothMaterial& m, const std::string& cloth) {
+  const auto at_least_zero = [&](double value, const char* name) {
+    require(std::isfinite(value) && value >= 0, "cloth \"" + cloth + "\": " + name + " must be 0 or more");
+  };
+  require(std::isfinite(m.density) && m.density > 0,
+          "cloth \"" + cloth + "\": density must be more than 0 kg/m²");
+  at_least_zero(m.structural, "structural stiffness");
+  at_least_zero(m.structural_z.value_or(0), "structural stiffness along z");
+  at_least_zero(m.shear, "shear stiffness");
+  at_least_zero(m.bend, "bending stiffness");
+  at_least_zero(m.damping, "damping");
+  at_least_zero(m.damping_time, "damping time");
+  at_least_zero(m.thickness, "thickness");
+  at_least_zero(m.friction, "friction");
+}
+
+void require_valid(const ClothTopology& topology, const std::string& cloth) {
+  const std::string who = "cloth \"" + cloth + "\": ";
+  try {
+    if (!topology.mesh.triangles.empty()) require_valid(topology.mesh);  // chains have none
+  } catch (const InputError& error) {
+    throw InputError(who + error.what());
+  }
+  const int n = topology.num_particles();
+  require(static_cast<int>(topology.area.size()) == n, who + "its topology has an area for " +
+                                                           std::to_string(topology.area.size()) + " of " +
+                                                           std::to_string(n) + " particles");
+  for (int i = 0; i < n; ++i) {
+    require(std::isfinite(topology.area[i]) && topology.area[i] > 0,
+            who + "particle " + std::to_string(i) +
+                " stands for no area: is it in no triangle? clean_mesh() drops such vertices");
+  }
+  for (const Spring& s : topology.springs) {
+    require(s.i >= 0 && s.i < n && s.j >= 0 && s.j < n && s.i != s.j,
+            who + "a spring joins particles " + std::to_string(s.i) + " and " + std::to_string(s.j) + " of " +
+                std::to_string(n));
+  }
+}
+
+void require_valid(const Collider& collider) {
+  const std::string who = "collider \"" + collider.name + "\": ";
+  std::visit(ShapeJudge{who}, collider.shape);
+  for (const double friction : {collider.friction, collider.static_friction})
+    require(std::isfinite(friction) && friction >= 0, who + "friction must be 0 or more");
+}
+
+void require_valid(const Pose& pose, const std::string& thing) {
+  const ShapeJudge judge{thing + ", moved: "};
+  judge.finite(pose.translation, "its translation");
+  judge.rotation(pose.rotation);
+}
+
+void require_valid(const Wind& wind, const std::string& integrator) {
+  require(wind.velocity.allFinite() && std::isfinite(wind.drag) && wind.drag >= 0,
+          "the wind's velocity must be finite numbers, and its drag 0 or more");
+  if (wind.air.density == 0) return;
+  require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
+          "the air's density and drag must be above 0, and its lift from 0 to its drag");
+  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts need a length and a time above 0");
+  require(feels_air(integrator), integrator + " does not feel the air's drag and lift; use newton or " +
+                                     "implicit_euler, or the wind's drag alone");
+}
+
+void require_elements_move(const std::string& integrator, const std::string& cloth) {
+  require(moves_elements(integrator),
+          "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
+              " cannot move, for it knows springs alone; use newton, "
+              "implicit_euler or xpbd, or give spring_structural, spring_shear and "
+              "spring_bend instead of the fabric");
+}
+
+}  // namespace weft

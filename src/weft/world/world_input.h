@@ -1,0 +1,29 @@
+#pragma once
+/// Private to world/: what a World refuses, in sentences. Each function throws InputError.
+
+#include <string>
+
+#include "weft/contact/collider.h"
+#include "weft/core/error.h"
+#include "weft/forces/wind.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft {
+
+inline void require(bool condition, const std::string& sentence) {
+  if (!condition) throw InputError(sentence);
+}
+
+/// `cloth` is its name.
+void require_valid(const ClothMaterial& material, const std::string& cloth);
+void require_valid(const ClothTopology& topology, const std::string& cloth);
+void require_valid(const Collider& collider);
+void require_valid(const Pose& pose, const std::string& thing);
+
+/// Wind that can be, and that the integrator feels.
+void require_valid(const Wind& wind, const std::string& integrator);
+
+/// An integrator that knows more than springs.
+void require_elements_move(const std::string& integrator, const std::string& cloth);
+
+}  // namespace weft
