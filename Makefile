@@ -14,7 +14,7 @@ help:
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
-	@echo "make fuzz    fuzz the readers of scenes, OBJ and .glb, FUZZ_SECONDS each (default 60)"
+	@echo "make fuzz    fuzz the readers of scenes, OBJ, .glb and saved worlds, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
 
 build:

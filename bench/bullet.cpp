@@ -10,7 +10,7 @@
 #include "weft/lab/reference.h"
 #endif
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 #if WEFT_WITH_BULLET
 namespace {
@@ -105,4 +105,4 @@ std::unique_ptr<Contestant> make_bullet_contestant(const ContestantSettings&, co
 }
 #endif
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -3,7 +3,7 @@
 
 #include "weft/lab/contestant.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 /// At several numbers of substeps; empty where Weft was built without Bullet.
 std::vector<ContestantSettings> list_bullet_entries();
@@ -13,4 +13,4 @@ std::vector<ContestantSettings> list_bullet_entries();
 /// collisions, no drag, no damping.
 std::unique_ptr<Contestant> make_bullet_contestant(const ContestantSettings& entry, const HungCloth& cloth);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

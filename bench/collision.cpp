@@ -15,7 +15,7 @@
 #include "weft/geometry/aabb_tree.h"
 #include "weft/mesh/grid.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr double kSpacing = 0.01;    // of particles: about an edge [m]
@@ -278,4 +278,4 @@ bool bench_collision(const CollisionBenchOptions& options) {
   return is_right;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

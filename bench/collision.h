@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct CollisionBenchOptions {
   std::vector<int> sizes = {1000, 8192, 32768, 131072, 1000000};  // triangles, about
@@ -16,4 +16,4 @@ struct CollisionBenchOptions {
 /// the number of threads: returns false, and says so, if they do not.
 bool bench_collision(const CollisionBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

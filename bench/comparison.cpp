@@ -6,7 +6,7 @@
 
 #include "weft/world/measures.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 Comparison::Comparison(const ChapterOptions& options, const HungCloth& cloth, const Reference& reference)
     : options_(options), cloth_(cloth), reference_(reference) {
@@ -82,4 +82,4 @@ void Comparison::tell(const std::vector<std::pair<std::string, std::string>>& fi
   claim.tables.push_back(table_);
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

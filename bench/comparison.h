@@ -10,7 +10,7 @@
 #include "weft/lab/chapters.h"
 #include "weft/lab/contest.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 inline constexpr int kComparedFrames = 60;
 
@@ -62,4 +62,4 @@ class Comparison {
   Table table_;
 };
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -17,7 +17,7 @@
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr int kQuickFrames = 20;
@@ -392,4 +392,4 @@ bool bench_contact(const ContactBenchOptions& options) {
   return is_clean;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct ContactBenchOptions {
   std::vector<std::string> scenes;  // empty: all that ship in contact/
@@ -16,4 +16,4 @@ struct ContactBenchOptions {
 /// Prints tables in Markdown to standard output. Returns false if cloth crossed anything in any frame.
 bool bench_contact(const ContactBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -9,12 +9,12 @@
 #include <optional>
 
 #include "bench/bullet.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/simd.h"
 #include "weft/lab/contest.h"
 #include "weft/lab/plot.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 /// Cloth may be where it should and yet show a spike: the largest strain that a spring may have had, as a
@@ -143,4 +143,4 @@ void bench_frontier(const FrontierOptions& options) {
   write_svg(plot, options.out / "frontier.svg");
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

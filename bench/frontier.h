@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct FrontierOptions {
   std::vector<std::string> methods;         // empty: all
@@ -20,4 +20,4 @@ struct FrontierOptions {
 /// is the same. Throws InputError for methods that do not exist and folders that cannot be written.
 void bench_frontier(const FrontierOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "tools/wardrobe/wardrobe.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/run/runner.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 bool is_wanted(const std::string& scene, const GarmentBenchOptions& options) {
@@ -78,4 +78,4 @@ bool bench_garments(const GarmentBenchOptions& options) {
   return is_clean;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct GarmentBenchOptions {
   std::vector<std::string> garments;  // beginnings of scenes' names; empty: all
@@ -20,4 +20,4 @@ struct GarmentBenchOptions {
 /// scene is refused.
 bool bench_garments(const GarmentBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

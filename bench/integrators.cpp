@@ -10,7 +10,7 @@
 #include "weft/integrators/integrator.h"
 #include "weft/lab/hung_cloth.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 /// Bytes that a step must move between memory and registers per particle if every array is touched once per
@@ -102,4 +102,4 @@ void bench_integrators(const IntegratorBenchOptions& options) {
   }
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct IntegratorBenchOptions {
   std::vector<std::string> integrators;              // empty: all
@@ -17,4 +17,4 @@ struct IntegratorBenchOptions {
 /// Prints a table to standard output. Throws InputError for names that do not exist.
 void bench_integrators(const IntegratorBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

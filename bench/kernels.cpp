@@ -12,7 +12,7 @@
 #include "weft/lab/hung_cloth.h"
 #include "weft/solvers/conjugate_gradients.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 /// Per particle. Bytes: every array that is read or written once; floats loaded: those of neighbours again;
@@ -161,4 +161,4 @@ void bench_kernels(const KernelBenchOptions& options) {
   }
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

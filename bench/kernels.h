@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct KernelBenchOptions {
   std::vector<int> sizes = {64, 128, 256};  // particles per side
@@ -16,4 +16,4 @@ struct KernelBenchOptions {
 /// run.
 void bench_kernels(const KernelBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

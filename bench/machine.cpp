@@ -12,7 +12,7 @@
 #include "weft/core/job_system.h"
 #include "weft/core/pack.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 WEFT_ALWAYS_INLINE void stream_body(float* x, int count) {
@@ -170,4 +170,4 @@ double measure_clock() {
 #endif
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 /// Bytes per second that `num_threads` threads read and write together when each array element of a working
 /// set of `bytes` is read, changed and written (x[i] = a x[i] + b): the best of a few tries.
@@ -27,4 +27,4 @@ double resident_bytes();
 /// A clock that never goes back [s].
 double seconds_now();
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

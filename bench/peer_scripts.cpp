@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ std::optional<PeerRun> run_peer(const PeerScript& script, int num_particles, int
   return PeerRun{told.at("engine"), told.at("cpu_ms_per_frame"), frames};
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 enum class Interpreter {
   python,   // $WEFT_PYTHON, else python3
@@ -27,4 +27,4 @@ struct PeerRun {
 /// On one thread. Empty if the script fails, as it does where its engine is not installed.
 std::optional<PeerRun> run_peer(const PeerScript& script, int num_particles, int num_frames);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -6,11 +6,11 @@
 
 #include "bench/bullet.h"
 #include "bench/comparison.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/lab/specimen.h"
 #include "weft/world/measures.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr int kQuickSide = 33;
@@ -264,4 +264,4 @@ Chapter study_peers(const ChapterOptions& options) {
   return chapter;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -10,7 +10,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/render/renderer.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 /// A sheet over a ball, without physics: it lies where it is over the ball, and hangs in waves around it.
@@ -98,4 +98,4 @@ void bench_pictures(const PictureBenchOptions& options) {
   }
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

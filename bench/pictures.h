@@ -5,7 +5,7 @@
 
 #include "weft/render/picture.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct PictureBenchOptions {
   std::vector<int> triangles = {8192, 32768, 131072};  // about
@@ -17,4 +17,4 @@ struct PictureBenchOptions {
 /// Throws GraphicsError where nothing can be drawn.
 void bench_pictures(const PictureBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

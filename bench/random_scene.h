@@ -9,7 +9,7 @@
 #include "weft/lab/hung_cloth.h"
 #include "weft/world/measures.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 /// Stiffness 1 to 10⁶ N/m, 0.01 to 10 kg/m², steps of 1/1000 to 1/15 s, all by their logarithms; 1 to 20
 /// cells each way as a grid of any model or a mesh; damping in half the scenes; noise of up to 0.3 cells in
@@ -79,4 +79,4 @@ inline RandomScene make_random_scene(std::uint64_t seed) {
   return scene;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -9,7 +9,7 @@
 #include "bench/random_scene.h"
 #include "weft/core/job_system.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr double kMostOfOneStep = 0.1, kMostOfTenSteps = 0.01;  // gain of energy, as a share of what moves
@@ -100,4 +100,4 @@ bool bench_random(const RandomBenchOptions& options) {
   return infinite == 0 && falling_wrong == 0;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct RandomBenchOptions {
   std::string integrator = "newton";
@@ -23,4 +23,4 @@ struct RandomBenchOptions {
 /// Returns whether all stayed finite and fell as they should. Throws InputError for an unknown integrator.
 bool bench_random(const RandomBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

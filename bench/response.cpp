@@ -10,7 +10,7 @@
 #include "weft/geometry/aabb_tree.h"
 #include "weft/geometry/distance.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr double kThickness = 1e-3;              // [m]
@@ -153,4 +153,4 @@ void bench_response(int cells, double seconds) {
   }
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

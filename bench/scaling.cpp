@@ -11,7 +11,7 @@
 #include "weft/lab/plot.h"
 #include "weft/lab/reference.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 constexpr int kStepsBefore = 3;  // which allocate, and hang the cloth up
@@ -139,4 +139,4 @@ void bench_scaling(const ScalingBenchOptions& options) {
   if (options.motion) print_motion(options);
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

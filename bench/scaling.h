@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 struct ScalingBenchOptions {
   std::vector<int> sizes = {32, 64, 128, 256, 512, 1024};  // particles per side
@@ -21,4 +21,4 @@ struct ScalingBenchOptions {
 /// over a second. Throws InputError for a model that does not exist.
 void bench_scaling(const ScalingBenchOptions& options);
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 std::uint32_t UniformGrid::bucket_of(const Cell& c) const {
   std::uint32_t h = static_cast<std::uint32_t>(c.x) * 0x9e3779b1u;
@@ -72,4 +72,4 @@ void UniformGrid::find_self_pairs(const std::vector<Aabb>& boxes, const std::vec
   }
 }
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

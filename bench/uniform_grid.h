@@ -7,7 +7,7 @@
 #include "weft/geometry/aabb.h"
 #include "weft/geometry/aabb_tree.h"
 
-namespace weft::bench {
+namespace weft::engine::bench {
 
 /// Every box is listed in each cell that it touches. The lists stand one after the other, sorted by a hash of
 /// the cell, and boxes are compared with the others of their cell. Filled anew whenever boxes have moved.
@@ -42,4 +42,4 @@ class UniformGrid {
   std::vector<Entry> entries_;
 };
 
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

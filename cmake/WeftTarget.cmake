@@ -1,8 +1,11 @@
-# What all of Weft's own targets share: C++20, warnings as errors, and arithmetic with the same bits everywhere.
+# What all of Weft's own targets share: C++20, the sources' own headers, warnings as errors, and arithmetic with the same
+# bits everywhere.
 
 function(weft_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
   if(MSVC)
     target_compile_options(${target} PRIVATE /W4 /WX /fp:precise)
   else()

@@ -11,7 +11,7 @@
 #include "weft/model/cloth_state.h"
 #include "weft/world/world.h"
 
-namespace weft::test {
+namespace weft::engine::test {
 
 inline Vec3 random_vector(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
@@ -87,4 +87,4 @@ inline double rms_distance(const ClothState& a, const ClothState& b) {
   return std::sqrt(sum / static_cast<double>(a.x.size()));
 }
 
-}  // namespace weft::test
+}  // namespace weft::engine::test

@@ -6,7 +6,7 @@ seconds=${1:?usage: tools/fuzz.sh SECONDS}
 cd "$(dirname "$0")/.."
 
 cmake --preset fuzz > /dev/null
-cmake --build --preset fuzz --target weft_scene_fuzzer weft_obj_fuzzer weft_glb_fuzzer -j "$(nproc)"
+cmake --build --preset fuzz --target weft_scene_fuzzer weft_obj_fuzzer weft_glb_fuzzer weft_world_fuzzer -j "$(nproc)"
 
 # fuzz NAME SEEDS…
 fuzz() {
@@ -19,3 +19,4 @@ fuzz() {
 fuzz scene scenes tests/scene/broken
 fuzz obj scenes/garments tests/fuzz/obj_seeds
 fuzz glb tests/fuzz/glb_seeds
+fuzz world

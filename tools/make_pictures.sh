@@ -35,3 +35,16 @@ as_it_is=(--set solver.untangle=false --set solver.crossed_start=allow)
 "$weft" render "$wardrobe/shirt_walk.toml" --frames 0,30 "${view[@]}" --columns 2 --out "$wardrobe/walk.png"
 ffmpeg -v error -y -i "$wardrobe/start.png" -i "$wardrobe/walk.png" -filter_complex hstack -q:v 3 "$images/garment_start.jpg"
 "$weft" render "$wardrobe/dress_kick.toml" --frames 0,20,31,40 --columns 4 --size 400x520 --camera 30,8,1.3 --out "$images/dress_kick.jpg"
+
+# The examples of docs/cpp.md.
+films=$(mktemp -d)
+trap 'rm -rf "$wardrobe" "$films"' EXIT
+"$(dirname "$weft")/../tools/film_examples" "$films" > /dev/null
+film() { "$weft" render "$films/$1.glb" --frames "$2" --columns 4 --size 320x260 "${@:3}" --out "$images/example_$1.jpg"; }
+film hello_cloth 15,40,70,119
+film gripper 15,75,130,239 --camera 30,18,1.4
+film cape 30,60,90,119 --camera 150,8
+film game_loop 20,60,90,118
+film contact_forces 5,20,60,239
+film batch_of_worlds 5,15,25,59 --camera 25,15,1.2
+film rollback 10,25,40,59

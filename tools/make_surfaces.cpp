@@ -9,7 +9,7 @@
 #include "weft/core/angle.h"
 #include "weft/io/obj_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Polyline = std::vector<Vec3>;  // in the plane z = 0
@@ -125,7 +125,7 @@ TriangleMesh make_legs(int k) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -134,11 +134,11 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argv[1];
   try {
-    weft::write_obj(folder / "folded_sheet.obj", weft::make_folded_sheet());
-    weft::write_obj(folder / "tube.obj", weft::make_tube());
-    weft::write_obj(folder / "funnel.obj", weft::make_funnel());
-    for (int k = 0; k < static_cast<int>(std::size(weft::kApart)); ++k)
-      weft::write_obj(folder / ("legs_" + std::to_string(k) + ".obj"), weft::make_legs(k));
+    weft::engine::write_obj(folder / "folded_sheet.obj", weft::engine::make_folded_sheet());
+    weft::engine::write_obj(folder / "tube.obj", weft::engine::make_tube());
+    weft::engine::write_obj(folder / "funnel.obj", weft::engine::make_funnel());
+    for (int k = 0; k < static_cast<int>(std::size(weft::engine::kApart)); ++k)
+      weft::engine::write_obj(folder / ("legs_" + std::to_string(k) + ".obj"), weft::engine::make_legs(k));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_surfaces: %s\n", error.what());
     return 1;

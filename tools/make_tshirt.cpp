@@ -38,7 +38,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/clean.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Curve = std::vector<Vec3>;  // a polyline in the plane z = 0
@@ -354,7 +354,7 @@ void make_tshirt(const char* file, double fineness) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine
 
 int main(int argc, char** argv) {
   const double fineness = argc == 3 ? std::atof(argv[2]) : 1;
@@ -363,7 +363,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    weft::make_tshirt(argv[1], fineness);
+    weft::engine::make_tshirt(argv[1], fineness);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_tshirt: %s\n", error.what());
     return 1;

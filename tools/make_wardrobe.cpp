@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    for (const std::string& scene : weft::wardrobe::write_wardrobe(argv[1], cell))
+    for (const std::string& scene : weft::engine::wardrobe::write_wardrobe(argv[1], cell))
       std::printf("%s/%s.toml\n", argv[1], scene.c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_wardrobe: %s\n", error.what());

@@ -12,10 +12,10 @@
 #include "bench/random_scenes.h"
 #include "bench/scaling.h"
 #include "commands.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/simd.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 void limit_simd(const std::string& name) {
@@ -233,4 +233,4 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   add_scaling(*command);
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

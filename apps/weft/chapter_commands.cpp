@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "common.h"
 #include "painter.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/simd.h"
 #include "weft/core/staged_file.h"
 #include "weft/core/version.h"
@@ -19,7 +19,7 @@
 #include "weft/render/device.h"
 #include "weft/run/stopwatch.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ void add_chapter_commands(CLI::App& studies) {
   all->callback([options] { run_all(*options); });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -4,13 +4,13 @@
 
 #include "commands.h"
 #include "common.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/run/start_check.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 /// Reads the scene and builds its world: meshes, pins, sizes and the start are judged too. Returns whether
@@ -58,4 +58,4 @@ void add_check_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

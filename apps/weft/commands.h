@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace weft::app {
+namespace weft::engine::app {
 
 /// What the program tells the shell.
 enum ExitCode { kDone = 0, kSimulationFailed = 1, kNotClean = 1, kBadInput = 2, kInterrupted = 130 };
@@ -20,4 +20,4 @@ void add_chapter_commands(CLI::App& studies);  // of `weft study`
 void add_verify_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <thread>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 namespace fs = std::filesystem;
 
@@ -50,4 +50,4 @@ PictureSize parse_size(const std::string& text) {
   return size;
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -8,7 +8,7 @@
 #include "weft/render/camera.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 /// The folder is there, or InputError.
 void make_folder(const std::filesystem::path& folder);
@@ -29,4 +29,4 @@ void add_set_option(CLI::App& command, Overrides& overrides);
 /// "1280x720" as a size, each from 1 to 16384; throws InputError for anything else.
 PictureSize parse_size(const std::string& text);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -10,7 +10,7 @@
 #include "view_command.h"
 #include "weft/render/video.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   command->callback([out, &exit_code] { exit_code = run_demo(*out); });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -6,7 +6,7 @@
 #include "commands.h"
 #include "weft/scene/fabric_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 /// One number of a fabric, as it is shown.
@@ -106,4 +106,4 @@ void add_fabrics_command(CLI::App& app, int&) {
   command->callback([name, json] { name->empty() ? list(*json) : show(*name, *json); });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -9,11 +9,11 @@
 #include "commands.h"
 #include "common.h"
 #include "progress.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/nearest_name.h"
 #include "weft/core/version.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 /// Files that are opened later must not take the place of a standard stream that the caller has closed. What
@@ -51,7 +51,7 @@ void require_commands(const CLI::App& app, int argc, char** argv) {
 int run(int argc, char** argv) {
   int exit_code = kDone;
   CLI::App app{"Weft simulates cloth. Start with: weft scenes, weft run paper/fig6_ball", "weft"};
-  app.set_version_flag("--version", weft::kVersion);
+  app.set_version_flag("--version", weft::engine::kVersion);
   app.require_subcommand(1);
   add_run_command(app, exit_code);
   add_demo_command(app, exit_code);
@@ -89,10 +89,10 @@ bool finish_standard_output() {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::engine::app
 
 int main(int argc, char** argv) {
-  using namespace weft::app;
+  using namespace weft::engine::app;
   fill_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large (ulimit -f) is an error of the write
   const int exit_code = run(argc, argv);

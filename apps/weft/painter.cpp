@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "progress.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/render/video.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ void Painter::write_video(const fs::path& file, int every) {
   video.finish();
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -7,7 +7,7 @@
 #include "weft/lab/scene_picture.h"
 #include "weft/render/renderer.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 /// Whether files of this kind can be painted: .png, .jpg, or a video. Throws InputError, naming the kinds, if
 /// not.
@@ -46,4 +46,4 @@ class Painter {
   Camera camera_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

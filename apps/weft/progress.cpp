@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <ctime>
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 constexpr int kBarWidth = 28;
@@ -92,4 +92,4 @@ std::string format_seconds(double seconds) {
   return fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

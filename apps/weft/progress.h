@@ -6,7 +6,7 @@
 
 #include "weft/run/runner.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 /// Lines of text for a log: one each ten seconds, the first after ten.
 class ProgressLog {
@@ -52,4 +52,4 @@ bool interrupted();
 /// "1 min 20 s", "0.8 s".
 std::string format_seconds(double seconds);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -9,7 +9,7 @@
 #include "painter.h"
 #include "progress.h"
 #include "run_command.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/staged_file.h"
 #include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
@@ -18,7 +18,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,4 +184,4 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->callback([request, &exit_code] { exit_code = exit_code_of(render(*request)); });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

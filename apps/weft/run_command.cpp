@@ -11,7 +11,7 @@
 #include "weft/core/staged_file.h"
 #include "weft/scene/scene_library.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ void add_run_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -8,7 +8,7 @@
 #include "weft/run/runner.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 struct RunRequest {
   std::string scene;             // a file, or the name of a shipped scene
@@ -35,4 +35,4 @@ FinishedRun run_to_files(const RunRequest& request);
 /// The exit code that an outcome deserves.
 int exit_code_of(RunOutcome outcome);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

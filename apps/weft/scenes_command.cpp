@@ -4,7 +4,7 @@
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 void add_scenes_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("scenes", "List the scenes that ship with Weft");
@@ -15,4 +15,4 @@ void add_scenes_command(CLI::App& app, int&) {
   });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

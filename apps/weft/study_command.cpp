@@ -6,14 +6,14 @@
 #include "commands.h"
 #include "common.h"
 #include "painter.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/staged_file.h"
 #include "weft/io/obj_reader.h"
 #include "weft/lab/studies.h"
 #include "weft/render/device.h"
 #include "weft/scene/fabric_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ void add_study_command(CLI::App& app, int&) {
   add_threads_option(*drape, *disc);
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 std::string format_depth(const RunReport& r) {
@@ -79,4 +79,4 @@ std::string table_line(const RunReport& r) {
                      format_depth(r));
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

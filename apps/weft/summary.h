@@ -5,7 +5,7 @@
 
 #include "weft/run/report.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 /// Several lines for one run.
 std::string summarise(const RunReport& report);
@@ -17,4 +17,4 @@ std::string describe_problems(const RunReport& report);
 std::string table_head();
 std::string table_line(const RunReport& report);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

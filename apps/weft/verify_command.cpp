@@ -8,7 +8,7 @@
 #include "weft/io/glb_reader.h"
 #include "weft/run/frame_checks.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->callback([request, &exit_code] { exit_code = verify(*request); });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -17,7 +17,7 @@
 #include <sys/resource.h>
 #endif
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 /// From now on this thread, and those that it makes, give way to the simulation's: where OpenGL is computed
@@ -95,4 +95,4 @@ void add_view_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -8,7 +8,7 @@
 
 #include "weft/scene/scene_reader.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 struct ViewRequest {
   std::string scene;
@@ -26,4 +26,4 @@ void view(const ViewRequest& request);
 /// Whether somebody is there to see a window: a display, and a terminal as standard input.
 bool has_spectator();
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

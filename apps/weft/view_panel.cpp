@@ -7,7 +7,7 @@
 
 #include "viewer.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 constexpr float kMargin = 14, kWidth = 292, kStrongestWind = 15;  // [pixels], [pixels], [m/s]
@@ -240,4 +240,4 @@ void draw_panel(Viewer& viewer) {
   if (viewer.shows_help()) draw_help();
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -1,7 +1,7 @@
 #pragma once
 /// The controls over the picture.
 
-namespace weft::app {
+namespace weft::engine::app {
 
 class Viewer;
 
@@ -11,4 +11,4 @@ void set_panel_style(double scale);
 /// Within a frame of the viewer's window.
 void draw_panel(Viewer& viewer);
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

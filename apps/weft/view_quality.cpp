@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 struct Level {
@@ -54,4 +54,4 @@ void ViewQuality::add(double ms) {
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -3,7 +3,7 @@
 
 #include "weft/render/renderer.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 class ViewQuality {
  public:
@@ -25,4 +25,4 @@ class ViewQuality {
   double mean_ms_ = 0;  // of the last few pictures [ms]
 };
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -5,7 +5,7 @@
 #include "viewer.h"
 #include "weft/core/staged_file.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -69,4 +69,4 @@ std::filesystem::path name_of_next_picture() {
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace weft::app {
+namespace weft::engine::app {
 
 class Viewer;
 
@@ -13,4 +13,4 @@ void write_view_report(const std::filesystem::path& file, const Viewer& viewer);
 /// weft-view-1.png, or the first number that is not taken.
 std::filesystem::path name_of_next_picture();
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 constexpr double kGroundBelow = 0.1;  // under all that is expected, as a share of its size [1]
@@ -64,4 +64,4 @@ Vec3 ViewSide::center() const {
   return points.cast<double>().rowwise().mean();
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -5,7 +5,7 @@
 #include "weft/render/pick.h"
 #include "weft/run/live.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 class ViewSide {
  public:
@@ -36,4 +36,4 @@ class ViewSide {
   double ground_;        // its height where the scene has no floor [m]
 };
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -6,9 +6,9 @@
 #include "progress.h"
 #include "view_panel.h"
 #include "view_report.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 constexpr double kOrbitDegrees = 0.35;          // per pixel of a drag
@@ -315,4 +315,4 @@ void Viewer::say(const std::string& message) {
   has_news_ = true;
 }
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

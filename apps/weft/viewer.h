@@ -14,7 +14,7 @@
 #include "weft/render/renderer.h"
 #include "weft/render/window.h"
 
-namespace weft::app {
+namespace weft::engine::app {
 
 struct ViewOptions {
   PictureSize size;
@@ -115,4 +115,4 @@ class Viewer {
   std::string message_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::engine::app

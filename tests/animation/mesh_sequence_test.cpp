@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Key = MeshSequence::Key;
@@ -34,4 +34,4 @@ TEST(MeshSequence, OfKeysThatDoNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(RigidMotion, InterpolatesBetweenKeysAndStaysOutside) {
@@ -31,4 +31,4 @@ TEST(RigidMotion, RefusesKeysThatDoNotGoForward) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "tests/app/program.h"
 #include "weft/io/glb_writer.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const fs::path kShippedScenes = WEFT_SOURCE_DIR "/scenes";
@@ -381,13 +381,13 @@ TEST_F(App, VerifyAgreesWithTheReport) {
 }
 
 TEST_F(App, VerifyFindsPlantedCrossings) {
-  weft::Animation animation;
-  weft::AnimatedMesh sheet{.name = "sheet", .triangles = {{0, 1, 2}}, .frames = {}};
+  weft::engine::Animation animation;
+  weft::engine::AnimatedMesh sheet{.name = "sheet", .triangles = {{0, 1, 2}}, .frames = {}};
   sheet.frames.assign(3, {-1, 0, -1, 1, 0, -1, 0, 0, 2});
-  weft::AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  weft::engine::AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
   for (const float tip : {0.1f, 0.1f, -0.1f}) blade.frames.push_back({0, 1, 0, 0.1f, 1, 0, 0, tip, 0.1f});
   animation.cloths = {sheet, blade};
-  weft::write_glb("planted.glb", animation);
+  weft::engine::write_glb("planted.glb", animation);
   const Finished done = shell("weft verify planted.glb");
   EXPECT_EQ(done.exit_code, 1) << done.err;
   EXPECT_TRUE(contains(done.out, "3 frames; 1 frame with crossings, at worst 1 pair of triangles in frame 2"))
@@ -467,4 +467,4 @@ TEST_F(App, BenchComparesWaysToFindPairs) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 /// Its standard output and error go to background.txt.
 class Background {
@@ -78,4 +78,4 @@ class Background {
   pid_t process_ = -1;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

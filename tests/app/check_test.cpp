@@ -4,7 +4,7 @@
 
 #include "tests/app/program.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A closed box with a corner at `low`, as an OBJ file.
@@ -107,4 +107,4 @@ TEST_F(App, AFabricNeedsNoTextureCoordinates) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

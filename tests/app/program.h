@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace weft {
+namespace weft::engine {
 
 namespace fs = std::filesystem;
 
@@ -60,4 +60,4 @@ class App : public testing::Test {
   }
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weft::app {
+namespace weft::engine::app {
 namespace {
 
 /// The lines of a run whose frames take so long [s].
@@ -41,4 +41,4 @@ TEST(ProgressLog, TellsHowLongASlowFrameTook) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::engine::app

@@ -5,7 +5,7 @@
 #include "weft/render/device.h"
 #include "weft/render/image.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::string kQuick = " --set cloth[0].grid.cells=[8,8] --set solver.steps_per_frame=20";
@@ -117,4 +117,4 @@ TEST_F(App, RenderWithoutOpenGlSaysWhatToInstall) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

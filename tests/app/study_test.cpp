@@ -7,7 +7,7 @@
 
 #include "tests/app/program.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The values of rows "| `name` | 0.1235 m | … |" of a report.
@@ -60,4 +60,4 @@ TEST_F(App, StudyOfOneChapterPrintsItsReport) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace weft::bench {
+namespace weft::engine::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ TEST(PeerScripts, AreEmptyWhereSomethingIsMissing) {
 }
 
 }  // namespace
-}  // namespace weft::bench
+}  // namespace weft::engine::bench

@@ -11,13 +11,13 @@
 #include "tools/wardrobe/garments.h"
 #include "weft/core/job_system.h"
 #include "weft/fabric/elements.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/mesh/solid.h"
 #include "weft/model/cloth_model.h"
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 namespace {
 
 constexpr double kCoarse = 0.02;  // [m]
@@ -57,7 +57,7 @@ TEST(Wardrobe, EveryMotionStartsAtRestAndTheKickReachesFifteenMetresPerSecond) {
 TEST(Wardrobe, AShirtThatStartsThroughTheArmsIsPutOn) {
   const Figure figure = make_figure(kCoarse);
   const TriangleMesh shirt = make_shirt(kCoarse, 4);
-  const Fabric fabric = find_fabric("cotton_shirting").fabric;
+  const Fabric fabric = find_fabric("cotton_shirting");
   World world;
   world.add_collider(
       {"figure", MeshShape{.mesh = std::make_shared<const TriangleMesh>(figure.mesh)}, 0.3, {}});
@@ -81,4 +81,4 @@ TEST(Wardrobe, AShirtThatStartsThroughTheArmsIsPutOn) {
 }
 
 }  // namespace
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

@@ -7,7 +7,7 @@
 #include "tests/support.h"
 #include "weft/contact/contact_system.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(SignedDistance, OfASphereAndAPlane) {
@@ -173,4 +173,4 @@ TEST(ContactSystem, FastParticleDoesNotPassThroughASmallBall) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, ContactPoints,
                          [](const auto& test) { return std::string(test.param.integrator); });
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

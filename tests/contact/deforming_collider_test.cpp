@@ -9,7 +9,7 @@
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kCotton{.structural = 200, .shear = 60, .bend = 0.5, .damping = 2e-3};
@@ -91,4 +91,4 @@ TEST(DeformingCollider, ThatSnapsOpenInOneStepTakesClothAlong) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

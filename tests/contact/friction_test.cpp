@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -222,4 +222,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, FrictionOnCloth,
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/mesh/solid.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kCotton{.structural = 60, .shear = 20, .bend = 0.3, .damping = 2e-3, .friction = 0.3};
@@ -257,4 +257,4 @@ TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
 INSTANTIATE_TEST_SUITE_P(Frictions, Collision, testing::Values(0.0, 0.5));
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

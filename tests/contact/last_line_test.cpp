@@ -8,7 +8,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/verify/crossings.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Patches of cloth, each at its place, and what LastLine has to know of them.
@@ -43,7 +43,7 @@ struct Patches {
     rest = motion.start;
     motion.end = end;
     is_solid.assign(end.size(), 0);
-    weft::Patches groups;
+    weft::engine::Patches groups;
     groups.add_mesh(surface, rest, 0, static_cast<int>(surface.triangles.size()));
     Proximity proximity;
     proximity.reset(surface, groups, rest, surface.num_vertices, static_cast<int>(surface.triangles.size()),
@@ -149,4 +149,4 @@ TEST(LastLine, ASheetIsTakenAlongByWhatMovesThroughItsPlace) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 5e-3};
@@ -59,4 +59,4 @@ TEST(ContactMomentum, OfClothThatSomethingElseHoldsIsNotTheirs) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

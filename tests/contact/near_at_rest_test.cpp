@@ -10,7 +10,7 @@
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kThickness = 2e-3, kApart = 0.5e-3;  // [m]
@@ -124,4 +124,4 @@ TEST_P(NearAtRest, TwoClothsAreSetApartByTheirThickness) {
 INSTANTIATE_TEST_SUITE_P(Integrators, NearAtRest, testing::Values("newton", "implicit_euler", "xpbd"));
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -14,7 +14,7 @@
 #include "weft/animation/rigid_motion.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kCell = 0.05;           // of the sheets [m]
@@ -448,4 +448,4 @@ TEST(Proximity, ListsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kCotton{.structural = 60, .shear = 20, .bend = 0.3, .damping = 2e-3, .friction = 0.4};
@@ -139,4 +139,4 @@ TEST(LayersOnAFloor, DoNotBuzz) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

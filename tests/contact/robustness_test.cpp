@@ -9,7 +9,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 IntegratorSettings settings(const std::string& integrator) {
@@ -18,7 +18,7 @@ IntegratorSettings settings(const std::string& integrator) {
 
 const ClothMaterial kSilk{.structural = 40, .shear = 10, .bend = 0.05, .damping = 1e-3, .friction = 0.3};
 
-ClothDesc sheet(int cells, double size, const Vec3& middle, const Mat3& turn = Mat3::Identity()) {
+ClothParts sheet(int cells, double size, const Vec3& middle, const Mat3& turn = Mat3::Identity()) {
   const auto topology = build_grid_topology(test::square(cells, size), SpringModel::alternating);
   std::vector<Vec3> positions;
   for (const Vec3& p : topology->mesh.positions)
@@ -145,7 +145,7 @@ TEST(World, ExplodingNextToCollidersEndsWithAReportThatNamesTheCloth) {
   world.add_collider({"box", OrientedBox{{0.3, -0.2, 0}, Vec3::Constant(0.1), Mat3::Identity()}, 0.3, {}});
   world.add_collider({"capsule", Capsule{{-0.3, -0.2, 0}, {-0.3, 0.2, 0}, 0.1}, 0.3, {}});
   world.add_collider({"mesh", mesh_shape(make_sphere_mesh({0, -0.2, 0.3}, 0.1, 5)), 0.3, {}});
-  ClothDesc desc = sheet(12, 1, Vec3::Zero());
+  ClothParts desc = sheet(12, 1, Vec3::Zero());
   desc.material.structural = 2e5;
   desc.material.damping = 1e3;
   const ClothId cloth = world.add_cloth(desc);
@@ -200,7 +200,7 @@ TEST(ContactSystem, StandsCoincidentCloths) {
       World world;
       world.set_integrator(settings(integrator));
       world.add_collider({"floor", Plane{{0, -0.05, 0}, Vec3::UnitY()}, 0.3, {}});
-      ClothDesc desc = sheet(8, 0.3, Vec3::Zero());
+      ClothParts desc = sheet(8, 0.3, Vec3::Zero());
       desc.material.thickness = thickness;
       for (int c = 0; c < 2; ++c) world.add_cloth(desc);
       EXPECT_TRUE(run(world, 1.0 / 120, 60).ok) << integrator;
@@ -288,4 +288,4 @@ TEST(ContactSystem, StandsHugeAndTinyColliders) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

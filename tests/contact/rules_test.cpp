@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 2e-3, .friction = 0.5};
@@ -122,4 +122,4 @@ TEST(ContactRules, NameWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

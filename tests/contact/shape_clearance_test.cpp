@@ -10,7 +10,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kPoints = 60;
@@ -111,4 +111,4 @@ TEST(ShapeClearance, MeasuresAgainWhatWasNoNumber) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 #include "weft/mesh/clean.h"
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TriangleMesh join(TriangleMesh mesh, const TriangleMesh& other) {
@@ -61,4 +61,4 @@ TEST(Shrink, ABarBecomesThinnerByTheDepthAndNeverTurnsInsideOut) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

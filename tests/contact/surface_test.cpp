@@ -8,7 +8,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 bool has(const Triangle& t, int v) { return std::find(t.begin(), t.end(), v) != t.end(); }
@@ -113,4 +113,4 @@ TEST(Surface, CountsSharedVertices) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

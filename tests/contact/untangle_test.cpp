@@ -12,7 +12,7 @@
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const ClothMaterial kCotton{.structural = 200, .shear = 60, .bend = 0.5, .damping = 2e-3, .thickness = 2e-3};
@@ -188,4 +188,4 @@ TEST(Untangle, WhatPinsHoldThroughEachOtherIsNamed) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

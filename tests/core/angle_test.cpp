@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(SinCosDeg, IsExactAtRightAngles) {
@@ -26,4 +26,4 @@ TEST(SinCosDeg, AgreesWithTheCLibraryToRounding) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(ParallelFor, VisitsEveryIndexOnceForAnyNumberOfThreads) {
@@ -24,7 +24,7 @@ TEST(ParallelFor, UsesTheCallersJobSystem) {
   struct Backwards : JobSystem {
     int calls = 0;
     int num_threads() const override { return 4; }
-    void run(int num_jobs, const std::function<void(int)>& job) override {
+    void run(int num_jobs, const Job& job) override {
       ++calls;
       for (int i = num_jobs - 1; i >= 0; --i) job(i);
     }
@@ -36,4 +36,4 @@ TEST(ParallelFor, UsesTheCallersJobSystem) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,9 +7,9 @@
 #include <iterator>
 #include <string>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST_F(StagedFiles, AreTestedForWritabilityWithoutATrace) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

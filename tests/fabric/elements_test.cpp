@@ -8,7 +8,7 @@
 
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const TriangleMesh kSheet =
@@ -87,4 +87,4 @@ TEST(Hinges, BendWarpAcrossEdgesAlongWeft) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,15 +1,15 @@
 /// What a fabric may be, and what is refused by name.
 
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The one mistake of a fabric, as "field reason"; "" if none.
@@ -99,4 +99,4 @@ TEST(Fabric, AllMistakesStandInOneSentence) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

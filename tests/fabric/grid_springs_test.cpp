@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/core/error.h"
-#include "weft/fabric/presets.h"
+#include "weft/error.h"
+#include "weft/fabric.h"
 #include "weft/forces/spring.h"
 #include "weft/model/springs.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const Fabric kFabric{.c11 = 400, .c22 = 900, .c12 = 50, .g = 50};
@@ -92,7 +92,7 @@ TEST(GridSprings, OnSquaresAreTheTextbooksOnes) {
 }
 
 TEST(GridSprings, ChangesAreNamed) {
-  const Fabric& denim = find_fabric("11oz_black_denim").fabric;
+  const Fabric& denim = find_fabric("11oz_black_denim");
   const GridSprings springs =
       make_grid_springs({1, 1, 10, 10}, CellDiagonals::parallel, GridWarp::first_axis, denim, "denim");
   ASSERT_EQ(springs.warnings.size(), 2u);
@@ -112,7 +112,7 @@ TEST(GridSprings, FabricsThatSpringsCannotBeAreRefusedWithWhatToDo) {
     return "";
   };
   EXPECT_EQ(
-      complaint({1, 1, 10, 10}, find_fabric("gray_interlock").fabric),
+      complaint({1, 1, 10, 10}, find_fabric("gray_interlock")),
       "fabric \"jersey\": springs cannot be it: c11 = 33.2 N/m must be above g = 36.9 N/m; use membrane = "
       "\"triangle\", a smaller g, or a larger c11");
   EXPECT_NE(complaint({4, 1, 10, 10}, kFabric).find("times the cells' (length/width)², 800 N/m"),
@@ -120,4 +120,4 @@ TEST(GridSprings, FabricsThatSpringsCannotBeAreRefusedWithWhatToDo) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

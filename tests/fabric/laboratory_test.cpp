@@ -1,14 +1,14 @@
 /// Laboratory sheets, with examples worked out by hand.
 
-#include "weft/fabric/laboratory.h"
+#include "weft/laboratory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const KesSheet kKes{.weight = 20,
@@ -133,4 +133,4 @@ TEST(CloProperties, GramMillimetreAndSecondBecomeSi) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "weft/core/random.h"
-#include "weft/fabric/laboratory.h"
+#include "weft/laboratory.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::vector<StretchPoint> kCurve = {{0.01, 10}, {0.02, 30}, {0.05, 210}};
@@ -68,4 +68,4 @@ TEST(MembraneLaw, OfAKesSheetRisesAsTheLaboratoryMeasuredIt) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

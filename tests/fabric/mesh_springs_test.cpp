@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/mesh/grid.h"
 #include "weft/mesh/sample_meshes.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// C of a mesh's springs from the energy of homogeneous strains, by definition.
@@ -86,7 +86,7 @@ TEST(MeshSprings, TurnWithTheWarp) {
 
 TEST(MeshSprings, TellWhatTheyCannotBe) {
   const TriangleMesh mesh = build_random_mesh({1, 1, 8, 8}, 1);
-  const MeshSprings springs = make_mesh_springs(mesh, along_x(mesh), find_fabric("denim").fabric, "denim");
+  const MeshSprings springs = make_mesh_springs(mesh, along_x(mesh), find_fabric("denim"), "denim");
   ASSERT_EQ(springs.warnings.size(), 3U);
   EXPECT_NE(springs.warnings[0].find("stretch curves"), std::string::npos) << springs.warnings[0];
   EXPECT_NE(springs.warnings[1].find("c12 = g"), std::string::npos) << springs.warnings[1];
@@ -94,4 +94,4 @@ TEST(MeshSprings, TellWhatTheyCannotBe) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

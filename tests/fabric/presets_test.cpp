@@ -1,19 +1,19 @@
 /// The fabrics that have names.
 
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string complaint(std::string_view name) {
   try {
-    find_fabric(name);
+    find_fabric_preset(name);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -46,7 +46,7 @@ TEST(Presets, AreWithinWhatRealFabricsAre) {
 }
 
 TEST(Presets, HoldTheMeasuredNumbers) {
-  const Fabric& denim = find_fabric("11oz_black_denim").fabric;
+  const Fabric& denim = find_fabric("11oz_black_denim");
   EXPECT_EQ(denim.density, 0.324);
   EXPECT_EQ(denim.c11, 410.7);
   EXPECT_EQ(denim.c22, 2027.8);
@@ -55,18 +55,18 @@ TEST(Presets, HoldTheMeasuredNumbers) {
   EXPECT_EQ(denim.bend_warp, 1e-6 * 16.05);
   EXPECT_EQ(denim.bend_bias, 1e-6 * 18.35);
   EXPECT_EQ(denim.bend_weft, 1e-6 * 24.24);
-  EXPECT_EQ(find_fabric("gray_interlock").fabric.c12, -29.4);
+  EXPECT_EQ(find_fabric("gray_interlock").c12, -29.4);
 }
 
 TEST(Presets, NavySweaterIsMadePositiveDefiniteAndSaysSo) {
-  const FabricPreset& navy = find_fabric("navy_sparkle_sweat");
+  const FabricPreset& navy = find_fabric_preset("navy_sparkle_sweat");
   EXPECT_EQ(navy.fabric.c12, 0);
   EXPECT_NE(navy.sources.stretch.find("-39.8"), std::string::npos);
 }
 
 TEST(Presets, NamesMayBeWrittenWithHyphensSpacesAndCapitals) {
-  EXPECT_EQ(find_fabric("Cotton Shirting").name, "cotton_shirting");
-  EXPECT_EQ(find_fabric("gray-interlock").name, "gray_interlock");
+  EXPECT_EQ(find_fabric_preset("Cotton Shirting").name, "cotton_shirting");
+  EXPECT_EQ(find_fabric_preset("gray-interlock").name, "gray_interlock");
 }
 
 TEST(Presets, UnknownNameIsAnsweredWithTheNearestOne) {
@@ -76,4 +76,4 @@ TEST(Presets, UnknownNameIsAnsweredWithTheNearestOne) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

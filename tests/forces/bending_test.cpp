@@ -9,7 +9,7 @@
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -227,4 +227,4 @@ TEST(BendingRows, FollowTheWarpOfEachTriangleAndNotTheMesh) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

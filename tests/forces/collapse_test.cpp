@@ -12,7 +12,7 @@
 #include "weft/core/simd.h"
 #include "weft/forces/narrow_triangles.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -216,4 +216,4 @@ TEST(NarrowTriangles, AreThoseWhoseSmallerStretchIsBelowTheBound) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

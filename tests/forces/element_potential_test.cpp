@@ -4,12 +4,12 @@
 
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/simd.h"
 #include "weft/forces/bending.h"
 #include "weft/forces/potential.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -275,4 +275,4 @@ TEST(ElementPotential, RefusesHinges) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -158,4 +158,4 @@ TEST(Hinges, OnDiagonalsAreTooStiffAt45Degrees) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

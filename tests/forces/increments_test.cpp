@@ -12,7 +12,7 @@
 #include "weft/forces/damping.h"
 #include "weft/forces/spring.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -187,4 +187,4 @@ TEST(Increments, HaveTheSameBitsForAnyThreadsAndAnyVectorWidth) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 #include "weft/forces/spring.h"
 #include "weft/forces/wind.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kDelta = 1e-6;
@@ -116,4 +116,4 @@ TEST(Gravity, IsTheGradientOfItsEnergy) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -220,4 +220,4 @@ TEST(Membrane, LimitOnlyPullsAndIsConvex) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

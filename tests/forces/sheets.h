@@ -10,7 +10,7 @@
 #include "weft/forces/membrane.h"
 #include "weft/mesh/sample_meshes.h"
 
-namespace weft::test {
+namespace weft::engine::test {
 
 /// A sheet in the x–z plane, cut into cells² squares of two triangles.
 enum class SheetKind {
@@ -58,4 +58,4 @@ inline std::vector<Vec3> rolled(const TriangleMesh& mesh, double curvature, doub
   });
 }
 
-}  // namespace weft::test
+}  // namespace weft::engine::test

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/glb_reader.h"
 
 namespace {
@@ -36,7 +36,7 @@ std::vector<unsigned char> make_glb(const std::uint8_t* data, std::size_t size) 
 
 void parse(const std::vector<unsigned char>& bytes) {
   try {
-    weft::parse_glb(bytes, "fuzz.glb");
+    weft::engine::parse_glb(bytes, "fuzz.glb");
   } catch (const weft::InputError&) {
   }
 }

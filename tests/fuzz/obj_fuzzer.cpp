@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <string>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/clean.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   try {
-    const weft::ObjMesh obj = weft::parse_obj(text, "fuzz.obj");
-    weft::clean_mesh(obj.mesh);
-    weft::clean_mesh(obj.mesh, {.weld_distance = 1e-3});
+    const weft::engine::ObjMesh obj = weft::engine::parse_obj(text, "fuzz.obj");
+    weft::engine::clean_mesh(obj.mesh);
+    weft::engine::clean_mesh(obj.mesh, {.weld_distance = 1e-3});
   } catch (const weft::InputError&) {
   }
   return 0;

@@ -9,9 +9,9 @@
 
 namespace {
 
-weft::Overrides find_overrides(std::string_view text) {
+weft::engine::Overrides find_overrides(std::string_view text) {
   constexpr std::string_view kMark = "# set: ";
-  weft::Overrides overrides;
+  weft::engine::Overrides overrides;
   for (std::size_t at = text.find(kMark); at != text.npos; at = text.find(kMark, at + 1)) {
     const std::string_view line = text.substr(at, text.find('\n', at) - at);
     overrides.emplace_back(line.substr(kMark.size()));
@@ -24,8 +24,8 @@ weft::Overrides find_overrides(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    weft::parse_scene(text, "fuzz.toml", find_overrides(text));
-  } catch (const weft::SceneError&) {
+    weft::engine::parse_scene(text, "fuzz.toml", find_overrides(text));
+  } catch (const weft::engine::SceneError&) {
   }
   return 0;
 }

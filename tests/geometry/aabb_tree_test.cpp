@@ -7,7 +7,7 @@
 #include "tests/support.h"
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Boxes = std::vector<Aabb>;
@@ -379,4 +379,4 @@ TEST(Aabb, InFloatsHoldsTheDoublesItWasMadeOf) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

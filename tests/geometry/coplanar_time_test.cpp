@@ -4,7 +4,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Points = std::array<Vec3, 4>;
@@ -70,4 +70,4 @@ TEST(CoplanarTime, IsTheFirstChangeOfSign) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

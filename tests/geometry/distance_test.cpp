@@ -4,7 +4,7 @@
 
 #include "tests/geometry/slow_distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::Quad;
@@ -428,4 +428,4 @@ TEST(Distances, AreTheSameAfterARigidMotion) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include "tests/geometry/slow_distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Corners = std::vector<Vec3>;  // three corners
@@ -514,4 +514,4 @@ TEST(TriangleSignedDistance, WithinReachIsTheSameAndBeyondItIsBeyond) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "tests/support.h"
 #include "weft/core/vec.h"
 
-namespace weft::test {
+namespace weft::engine::test {
 
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ using Quad = __float128;  // 34 digits, slow
@@ -165,4 +165,4 @@ inline std::vector<Vec3> random_points(Random& random, int count) {
   return x;
 }
 
-}  // namespace weft::test
+}  // namespace weft::engine::test

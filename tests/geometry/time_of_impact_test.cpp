@@ -9,7 +9,7 @@
 #include "tests/support.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Points = std::array<Vec3, 4>;
@@ -126,4 +126,4 @@ TEST(TimeOfImpact, OfEdgesIsNeverLateAndNeverInvented) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -34,11 +34,20 @@ run(output ${prefix}/bin/weft run only_here --frames 2 --out ${WORK}/run)
 file(READ ${WORK}/run/report.json program_report)
 
 # The library.
+run(output ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/core_only -B ${WORK}/core_only -G ${GENERATOR}
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
+    -DCMAKE_DISABLE_FIND_PACKAGE_TinyGLTF=ON -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON)
 run(output ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/consumer -G ${GENERATOR}
-    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_PREFIX_PATH=${prefix})
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_PREFIX_PATH=${prefix} -DEXAMPLES=${TREE}/examples)
 run(output ${CMAKE_COMMAND} --build ${WORK}/consumer --config ${CONFIG} --parallel 2)
 run(output ${WORK}/consumer/bin/hello)
-expect("${output}" "^lowest point: -[01]\\.[0-9]+ m\n$" "the program printed in weft.h does not do what it says")
+expect("${output}" "^center of mass: -[01]\\.[0-9]+ m\n$" "the program printed in weft.h does not do what it says")
+file(GLOB examples ${TREE}/examples/*.cpp)
+foreach(example IN LISTS examples)
+  get_filename_component(name ${example} NAME_WE)
+  run(output ${WORK}/consumer/bin/${name})
+  message(STATUS "${name}: ${output}")
+endforeach()
 run(consumer_report ${WORK}/consumer/bin/run_scene)
 foreach(report IN ITEMS program_report consumer_report)
   string(JSON ${report}_hash GET "${${report}}" state_hash)

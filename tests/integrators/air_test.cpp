@@ -7,10 +7,10 @@
 
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kCells = 8;
@@ -18,7 +18,7 @@ constexpr const char* kIntegrators[] = {"newton", "implicit_euler"};
 
 /// Silk of another weight, or a board.
 std::shared_ptr<const ClothModel> sheet_of(double density, bool is_board = false) {
-  Fabric fabric = find_fabric("silk").fabric;
+  Fabric fabric = find_fabric("silk");
   fabric.density = density;
   if (is_board) fabric.bend_warp = fabric.bend_weft = fabric.bend_bias = 0.01;
   const Grid grid = test::square(kCells);
@@ -142,4 +142,4 @@ TEST(Gusts, AreTheSameForTheSameSeedSmoothAndAsStrongAsAsked) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "tests/support.h"
 #include "weft/core/angle.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -151,4 +151,4 @@ TEST(Cantilever, OfHingesIsTooSoftOnGrids) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,11 +6,11 @@
 
 #include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/forces/collapse.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::on_grid;
@@ -55,7 +55,7 @@ ClothState crushed(const ClothModel& model, const Crush& crush) {
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const ClothModel>>> sheets(int cells, double size) {
-  const Fabric silk = find_fabric("silk").fabric;
+  const Fabric silk = find_fabric("silk");
   const auto springs =
       build_cloth_model(build_grid_topology(square(cells, size), SpringModel::simplified),
                         {.density = 0.2, .structural = 2000, .shear = 500, .bend = 1, .damping = 0.002});
@@ -119,4 +119,4 @@ TEST(Collapse, OpensTheSameWithNewtonAndImplicitEuler) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -194,4 +194,4 @@ TEST(Integrators, AgreeAsTheStepGoesToZero) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

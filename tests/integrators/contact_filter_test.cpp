@@ -7,7 +7,7 @@
 #include "tests/support.h"
 #include "weft/forces/potential.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 double dot(const Vec3Array& a, const Vec3Array& b) {
@@ -96,4 +96,4 @@ TEST_F(ContactFilterTest, ForgetsContacts) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::vector<int> to_vector(std::span<const int> items) { return {items.begin(), items.end()}; }
@@ -135,4 +135,4 @@ TEST(ContactGroups, ClothThatTouchesNoOtherHasTheBitsItHasAlone) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

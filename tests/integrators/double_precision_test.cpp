@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/hash.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::Hung;
@@ -119,4 +119,4 @@ TEST(DoublePrecision, IsRefusedWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,10 +4,10 @@
 
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/integrators/element_terms.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::SheetKind;
@@ -25,7 +25,7 @@ constexpr double kStep = 0.01;
 
 TEST(Elements, FallFreelyAndStayFlat) {
   for (const BendingModel bending : kBendings) {
-    const auto model = sheet_of(find_fabric("denim").fabric, SheetKind::random, bending);
+    const auto model = sheet_of(find_fabric("denim"), SheetKind::random, bending);
     ClothState state = make_state(model->topology->mesh.positions);
     const auto integrator = make_implicit_euler({.tolerance = 1e-6});
     test::advance(*integrator, *model, {}, kStep, 20, state);
@@ -44,7 +44,7 @@ Vec3 momentum(const ClothModel& model, const ClothState& state) {
 
 TEST(Elements, ShakenKeepTheirMomentumAndSettle) {
   for (const BendingModel bending : kBendings) {
-    const auto model = sheet_of(find_fabric("silk").fabric, SheetKind::random, bending);
+    const auto model = sheet_of(find_fabric("silk"), SheetKind::random, bending);
     ClothState state = make_state(model->topology->mesh.positions);
     test::shake(state, 0.01, 1);
     const Vec3 before = momentum(*model, state);
@@ -61,7 +61,7 @@ TEST(Elements, ShakenKeepTheirMomentumAndSettle) {
 
 /// Kinetic energy, in J, that a curled and spinning sheet has left after a second.
 double spin_left(double damping, BendingModel bending) {
-  Fabric fabric = find_fabric("cotton_shirting").fabric;
+  Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = damping;
   const auto model = sheet_of(fabric, SheetKind::random, bending);
   ClothState state = make_state(test::rolled(model->topology->mesh, 0.5, 0.3));
@@ -88,7 +88,7 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
   // In one step from strain e₀ to e the potential gains τ/(2h) C (e − e₀)²: τ/h times the elastic energy of
   // the difference. Hinges and stencils alike, stretching and bending alike.
   constexpr double kTau = 0.03;
-  Fabric fabric = find_fabric("denim").fabric;
+  Fabric fabric = find_fabric("denim");
   for (const BendingModel bending : kBendings) {
     const auto energy = [&](double damping, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
       fabric.damping = damping;
@@ -110,9 +110,9 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
     const auto some = test::rolled(mesh, 0.2, 0), more = test::rolled(mesh, 0.3, 0);
     const double elastic = energy(0, some, more), viscous = energy(kTau, some, more) - elastic;
     EXPECT_NEAR(viscous / (elastic / 9), kTau / kStep, 0.05) << "directions turn by a few hundredths";
-    fabric = find_fabric("denim").fabric;
+    fabric = find_fabric("denim");
   }
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

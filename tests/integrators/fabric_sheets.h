@@ -8,7 +8,7 @@
 #include "weft/integrators/integrator.h"
 #include "weft/model/fabric_springs.h"
 
-namespace weft::test {
+namespace weft::engine::test {
 
 inline std::shared_ptr<const ClothModel> on_grid(const Grid& grid, const Fabric& fabric) {
   const auto topology = build_grid_topology(grid, SpringModel::alternating);
@@ -55,4 +55,4 @@ inline Environment hung_by(const ClothModel& model, const std::vector<int>& pins
   return environment;
 }
 
-}  // namespace weft::test
+}  // namespace weft::engine::test

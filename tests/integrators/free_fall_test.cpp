@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -117,4 +117,4 @@ TEST(Paper, BendsAStiffFreeSheetWhileItFalls) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

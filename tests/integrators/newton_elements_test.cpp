@@ -8,11 +8,11 @@
 #include "tests/support.h"
 #include "weft/core/hash.h"
 #include "weft/core/simd.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/integrators/element_terms.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::hung_by;
@@ -64,7 +64,7 @@ class Explicit {
 
 TEST(NewtonElements, FollowTheHangingSheetOfRealFabric) {
   constexpr int kCells = 16, kFrames = 60, kSubsteps = 200;
-  Fabric denim = find_fabric("denim").fabric;
+  Fabric denim = find_fabric("denim");
   denim.damping = 0;
   for (const auto& model : {on_grid(square(kCells), denim), on_mesh(square(kCells), denim)}) {
     const Environment environment = hung_by(*model, {0, kCells});
@@ -83,7 +83,7 @@ TEST(NewtonElements, FollowTheHangingSheetOfRealFabric) {
 }
 
 TEST(NewtonElements, StayTameAtEveryIterationCount) {
-  const auto model = on_grid(square(31), find_fabric("cotton_shirting").fabric);
+  const auto model = on_grid(square(31), find_fabric("cotton_shirting"));
   for (const int iterations : {5, 10, 20, 40, 100}) {
     ClothState state = make_state(model->topology->mesh.positions);
     const auto integrator = make_newton({.iterations = iterations});
@@ -95,7 +95,7 @@ TEST(NewtonElements, StayTameAtEveryIterationCount) {
 }
 
 TEST(NewtonElements, ComeToTheRestOfImplicitEuler) {
-  Fabric fabric = find_fabric("cotton_shirting").fabric;
+  Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = 0.05;  // to be at rest soon
   for (const auto& model : {on_grid(square(10), fabric), on_mesh(square(10), fabric)}) {
     std::vector<int> row;
@@ -113,7 +113,7 @@ TEST(NewtonElements, ComeToTheRestOfImplicitEuler) {
 
 TEST(NewtonElements, FallFreelyAndKeepTheirMomentum) {
   for (const auto& model :
-       {on_grid(square(9), find_fabric("silk").fabric), on_mesh(square(9), find_fabric("silk").fabric)}) {
+       {on_grid(square(9), find_fabric("silk")), on_mesh(square(9), find_fabric("silk"))}) {
     ClothState state = make_state(model->topology->mesh.positions);
     test::advance(*make_newton({}), *model, {}, 0.01, 20, state);
     for (int i = 0; i < model->num_particles(); ++i) {
@@ -160,8 +160,8 @@ TEST(NewtonElements, VibrateWithTheFrequencyOfTheirStiffnessAndTheDampingOfTheir
 
 TEST(NewtonElements, HaveTheSameBitsForAnyNumberOfThreadsAndEveryVectorWidth) {
   constexpr int kCells = 96;  // several chunks of work
-  for (const auto& model : {on_grid(square(kCells), find_fabric("denim").fabric),
-                            on_mesh(square(kCells), find_fabric("denim").fabric)}) {
+  for (const auto& model : {on_grid(square(kCells), find_fabric("denim")),
+                            on_mesh(square(kCells), find_fabric("denim"))}) {
     std::vector<std::uint64_t> hashes;
     for (const SimdLevel level : {SimdLevel::baseline, best_simd_level()}) {
       for (const int threads : {1, 4}) {
@@ -182,4 +182,4 @@ TEST(NewtonElements, HaveTheSameBitsForAnyNumberOfThreadsAndEveryVectorWidth) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

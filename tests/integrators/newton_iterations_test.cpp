@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Kinetic energy of what differs between a particle and the mean of its four neighbours [J]: ripples as
@@ -53,4 +53,4 @@ TEST(NewtonIterations, MakeNoErrorAndNoRipplesHoweverMany) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

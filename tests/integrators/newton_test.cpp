@@ -10,7 +10,7 @@
 #include "weft/core/simd.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::Hung;
@@ -309,4 +309,4 @@ TEST(Newton, SwingsAHangingStripAtItsFrequencies) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

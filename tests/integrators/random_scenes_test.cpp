@@ -7,7 +7,7 @@
 #include "bench/random_scene.h"
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(Newton, StaysFiniteAndGainsNoEnergyInRandomScenes) {
@@ -43,4 +43,4 @@ TEST(Newton, StaysFiniteAndGainsNoEnergyInRandomScenes) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

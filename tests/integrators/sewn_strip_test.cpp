@@ -6,7 +6,7 @@
 #include "tests/support.h"
 #include "weft/mesh/sew.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kLength = 0.4, kWidth = 0.1;  // of the strip, its length along x [m]
@@ -75,4 +75,4 @@ TEST(SewnStrip, StretchesAsOneThatWasNeverCut) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

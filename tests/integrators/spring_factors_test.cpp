@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::Hung;
@@ -121,4 +121,4 @@ TEST(SpringFactors, ThatAreNoneAreRefused) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

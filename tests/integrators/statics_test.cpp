@@ -7,7 +7,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The largest error of a link's extension, relative to the largest extension, of a chain hung by its upper
@@ -133,4 +133,4 @@ TEST(SpringModels, SimplifiedHangsAskewAndAlternatingDoesNot) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

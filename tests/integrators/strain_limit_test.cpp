@@ -7,11 +7,11 @@
 
 #include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/forces/membrane.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::hung_by;
@@ -22,7 +22,7 @@ using test::square;
 
 /// A soft jersey: without a limit it stretches by a third under its own weight.
 Fabric soft(double strain_limit) {
-  Fabric fabric = find_fabric("gray_interlock").fabric;
+  Fabric fabric = find_fabric("gray_interlock");
   fabric.strain_limit = strain_limit;
   return fabric;
 }
@@ -161,4 +161,4 @@ TEST(StrainLimit, MovesAsStiffClothAndNoRougher) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

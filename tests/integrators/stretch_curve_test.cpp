@@ -5,7 +5,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Jersey-like: soft at first, ten times as stiff beyond 4 %.
@@ -98,4 +98,4 @@ TEST(StretchCurve, MovesAlikeInFloatsAndInDoubles) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

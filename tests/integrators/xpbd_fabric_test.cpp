@@ -5,10 +5,10 @@
 
 #include "tests/integrators/fabric_sheets.h"
 #include "tests/support.h"
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -37,7 +37,7 @@ std::vector<std::shared_ptr<const ClothModel>> all_kinds(const Fabric& fabric) {
 TEST(XpbdFabric, SwingsAsWithImplicitEulerAtTheSameSteps) {
   // A fifth of a second after it is let go from the horizontal, stiff enough to bend that no wrinkle decides
   // by itself which way to go. What is left between them falls with the step.
-  Fabric fabric = find_fabric("cotton_shirting").fabric;
+  Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = 0.01;
   for (double* b : {&fabric.bend_warp, &fabric.bend_weft, &fabric.bend_bias}) *b *= 30;
   for (const auto& model : all_kinds(fabric)) {
@@ -58,7 +58,7 @@ TEST(XpbdFabric, SwingsAsWithImplicitEulerAtTheSameSteps) {
 }
 
 TEST(XpbdFabric, FallsFreelyAndStaysFlat) {
-  for (const auto& model : all_kinds(find_fabric("denim").fabric)) {
+  for (const auto& model : all_kinds(find_fabric("denim"))) {
     ClothState state = make_state(model->topology->mesh.positions);
     const auto xpbd = make_xpbd({});
     run(*xpbd, *model, {}, 20, state);
@@ -68,7 +68,7 @@ TEST(XpbdFabric, FallsFreelyAndStaysFlat) {
 }
 
 TEST(XpbdFabric, ShakenKeepsItsMomentum) {
-  Fabric fabric = find_fabric("silk").fabric;
+  Fabric fabric = find_fabric("silk");
   fabric.damping = 0.01;
   for (const auto& model : all_kinds(fabric)) {
     ClothState state = make_state(model->topology->mesh.positions);
@@ -82,7 +82,7 @@ TEST(XpbdFabric, ShakenKeepsItsMomentum) {
 
 TEST(XpbdFabric, HasTheSameBitsForAnyNumberOfThreads) {
   const Grid grid{.size_x = 1, .size_z = 1, .cells_x = 60, .cells_z = 60};  // several chunks a colour
-  Fabric fabric = find_fabric("denim").fabric;
+  Fabric fabric = find_fabric("denim");
   fabric.damping = 0.01;
   for (const auto& model : {test::on_mesh(grid, fabric), with_hinges(grid, fabric)}) {
     const Environment environment = test::hung_by(*model, {0, 60});
@@ -123,4 +123,4 @@ TEST(XpbdFabric, KeepsAStrainLimitWithSubstepsEnough) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

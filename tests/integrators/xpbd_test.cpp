@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/hash.h"
 #include "weft/core/simd.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::Hung;
@@ -176,4 +176,4 @@ TEST(Xpbd, CutsAStepOfTheWorldIntoItsSubsteps) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

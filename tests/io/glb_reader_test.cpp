@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 AnimatedMesh make_cloth(int num_frames) {
@@ -200,4 +200,4 @@ TEST(GlbReader, NamesWhatIsWrongWithFilesThatNobodyWouldWrite) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

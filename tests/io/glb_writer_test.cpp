@@ -10,10 +10,10 @@
 #include <cstring>
 #include <limits>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr Grid kGrid{.size_x = 1, .size_z = 2, .cells_x = 6, .cells_z = 8};
@@ -226,4 +226,4 @@ TEST(GlbWriter, RefusesAnimationsThatNoViewerCouldShow) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

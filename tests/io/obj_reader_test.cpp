@@ -7,9 +7,9 @@
 #include <string>
 
 #include "weft/core/angle.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::string kFourVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -249,4 +249,4 @@ TEST(ObjWriter, RefusesAFolderThatDoesNotExist) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/clean.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 ObjMesh read_tshirt() { return read_obj(WEFT_SOURCE_DIR "/scenes/garments/tshirt.obj"); }
@@ -111,4 +111,4 @@ TEST(TShirt, HasNoSliverTriangles) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

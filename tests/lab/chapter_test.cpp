@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/lab/plot.h"
 #include "weft/lab/study.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Chapter example() {
@@ -109,4 +109,4 @@ TEST(Plot, PutsNumbersAtRoundPlacesOfLinearAxes) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

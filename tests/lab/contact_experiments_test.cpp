@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(ContactExperiments, OnAnInclineNewtonSlidesAsCoulombSays) {
@@ -110,4 +110,4 @@ TEST(ContactExperiments, ASheetComesToRestOnAFloorAndIsBorneByIt) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

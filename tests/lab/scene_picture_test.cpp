@@ -7,7 +7,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Animation simulate(const char* scene, int frames) {
@@ -66,4 +66,4 @@ TEST(FrameScene, HoldsTheWholeMotion) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/lab/drape.h"
 #include "weft/lab/hung_strip.h"
 #include "weft/mesh/sample_meshes.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr SpecimenMesh kMeshes[] = {SpecimenMesh::grid, SpecimenMesh::random};
@@ -28,7 +28,7 @@ double figure(const StudyResult& result, const std::string& name) {
 
 TEST(Studies, RecoverStretchAndShearStiffness) {
   for (const char* name : {"silk", "denim", "11oz_black_denim", "gray_interlock", "pink_ribbon_brown"}) {
-    const Fabric& fabric = find_fabric(name).fabric;
+    const Fabric& fabric = find_fabric(name);
     for (const SpecimenMesh mesh : kMeshes) {
       const StudyResult tensile = study_tensile(fabric, {.mesh = mesh});
       const double share = mesh == SpecimenMesh::grid ? 0.01 : 0.02;
@@ -42,7 +42,7 @@ TEST(Studies, RecoverStretchAndShearStiffness) {
 }
 
 TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
-  const Fabric& fabric = find_fabric("denim").fabric;
+  const Fabric& fabric = find_fabric("denim");
   SpecimenSettings settings{.membrane = SpecimenMembrane::springs};
   EXPECT_NEAR(figure(study_tensile(fabric, settings), "c11") / fabric.c11, 1, 0.01);
   EXPECT_NEAR(figure(study_tensile(fabric, settings), "c22") / fabric.c22, 1, 0.01);
@@ -57,7 +57,7 @@ TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
 TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
   constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
   for (const char* name : {"silk", "leather", "11oz_black_denim"}) {
-    const Fabric& fabric = find_fabric(name).fabric;
+    const Fabric& fabric = find_fabric(name);
     for (const SpecimenMesh mesh : kMeshes) {
       for (const StripDirection direction : {StripDirection::warp, StripDirection::weft}) {
         const StudyResult result = study_cantilever(fabric, {.mesh = mesh}, direction);
@@ -74,7 +74,7 @@ TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
 TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
   const SpecimenSettings settings{.mesh = SpecimenMesh::random, .resolution = 10};
   for (const StripDirection direction : {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
-    const StudyResult result = study_cantilever(find_fabric("denim").fabric, settings, direction);
+    const StudyResult result = study_cantilever(find_fabric("denim"), settings, direction);
     EXPECT_NEAR(figure(result, "h_over_w") / 0.88473, 1, 0.04);
   }
 }
@@ -82,7 +82,7 @@ TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
 TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
   // 12.85 (1 − ν) √(2 (1 + ν)) for a strip of no width; the stencils of a grid have ν = 0. A clamped strip of
   // two cells across is a little stiffer, less so the more cells along: +16, +9 and +6 % with 15, 25 and 40.
-  const Fabric& denim = find_fabric("denim").fabric;  // whose rigidity is the same in all directions
+  const Fabric& denim = find_fabric("denim");  // whose rigidity is the same in all directions
   const double theory = 12.85 * std::sqrt(2);
   const auto error = [&](int cells) {
     return figure(study_buckling(denim, {.resolution = cells}), "critical_load") / theory - 1;
@@ -94,7 +94,7 @@ TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
 
 TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
   // Length over span 1.25: sag over span 0.331797. Bending and stretching are small beside.
-  const Fabric& cotton = find_fabric("cotton_shirting").fabric;
+  const Fabric& cotton = find_fabric("cotton_shirting");
   for (const int cells : {12, 24, 48}) {
     for (const SpecimenMesh mesh : kMeshes) {
       if (mesh == SpecimenMesh::random && cells == 48) continue;
@@ -106,7 +106,7 @@ TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
 }
 
 TEST(OneFabric, RestsInTheSameShapeAtAnyNumberOfStepsPerSecond) {
-  const Fabric& denim = find_fabric("denim").fabric;
+  const Fabric& denim = find_fabric("denim");
   double sags[3];
   int k = 0;
   for (const int steps_per_second : {60, 120, 240}) {
@@ -125,7 +125,7 @@ TEST(OneFabric, RestsInTheSameShapeAtAnyNumberOfStepsPerSecond) {
 
 TEST(OneFabric, SwingsInTheSameTimeOnEveryMesh) {
   // f₁ = (j₀₁/4π) √(g/L) = 0.5994 Hz; the cloth stretches by a few ten-thousandths.
-  Fabric silk = find_fabric("silk").fabric;
+  Fabric silk = find_fabric("silk");
   silk.damping = 0;
   for (const int cells : {16, 32, 48}) {
     for (const SpecimenMesh mesh : kMeshes) {
@@ -145,7 +145,7 @@ TEST(Drape, ShadowOfADiscIsItsArea) {
 
 TEST(Drape, OfOneFabricIsTheSameOnEveryMesh) {
   // Overhangs that began a ring too far inside, and crooked edges of the plates, once made it 10 points.
-  const Fabric& cotton = find_fabric("cotton_shirting").fabric;
+  const Fabric& cotton = find_fabric("cotton_shirting");
   double least = 1, most = 0;
   for (const SpecimenSettings& settings :
        {SpecimenSettings{SpecimenMesh::grid, 13}, SpecimenSettings{SpecimenMesh::random, 18}}) {
@@ -163,7 +163,7 @@ TEST(Drape, OfOneFabricIsTheSameOnEveryMesh) {
 
 TEST(Drape, OfStifferFabricIsLarger) {
   // Between that of cloth that hangs straight down and that of a board.
-  Fabric fabric = find_fabric("denim").fabric;
+  Fabric fabric = find_fabric("denim");
   double before = 0;
   for (const double times : {0.3, 3.0, 30.0}) {
     Fabric other = fabric;
@@ -176,4 +176,4 @@ TEST(Drape, OfStifferFabricIsLarger) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const TriangleMesh kSquare{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {2, 1, 3}}};
@@ -95,4 +95,4 @@ TEST(CleanMesh, NamesNonManifoldEdges) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -14,7 +14,7 @@
 #include "weft/mesh/divide.h"
 #include "weft/mesh/sample_meshes.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 int root(std::vector<int>& parent, int v) {
@@ -432,4 +432,4 @@ TEST(CleanMesh, TellsWhatWasSewnAndWhatStaysOpen) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

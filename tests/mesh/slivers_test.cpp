@@ -11,7 +11,7 @@
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kFlatness = 0.02;
@@ -154,4 +154,4 @@ TEST(Slivers, AreRemovedWhereverTheyAre) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

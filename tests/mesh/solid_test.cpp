@@ -7,7 +7,7 @@
 #include "weft/core/random.h"
 #include "weft/mesh/clean.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TriangleMesh box(const Vec3& center, double half_size) {
@@ -148,4 +148,4 @@ TEST(Shells, ThatFaceInwardsAreTurnedButHollowsAreNot) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

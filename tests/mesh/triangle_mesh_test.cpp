@@ -10,7 +10,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(SphereMesh, IsClosedOutwardAndAlmostTheSphere) {
@@ -111,4 +111,4 @@ TEST(Edges, AreFoundOnceWithBothSides) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

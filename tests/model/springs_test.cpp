@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 int count(const std::vector<Spring>& springs, SpringKind kind) {
@@ -86,4 +86,4 @@ TEST(ClothState, FollowsACloth) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Where a point is in the picture [pixels].
@@ -78,4 +78,4 @@ TEST(FramePoints, OfOnePointOrNoneIsACamera) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::filesystem::path kFolder = WEFT_OUTPUT_DIR;
@@ -56,4 +56,4 @@ TEST(ContactSheet, PutsPicturesRowByRowWithWhiteBetween) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

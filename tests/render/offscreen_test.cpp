@@ -8,7 +8,7 @@
 #include "tests/render/pictures.h"
 #include "weft/render/renderer.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class Offscreen : public testing::Test {
@@ -206,4 +206,4 @@ TEST_F(Offscreen, TheStillLifeLooksAsItDid) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 DrawnMesh drawn(const TriangleMesh& mesh) {
@@ -64,4 +64,4 @@ TEST(Pick, ARayThatMissesMeetsNothing) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/render/picture.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline std::vector<float> to_floats(const std::vector<Vec3>& points) {
   std::vector<float> floats;
@@ -53,4 +53,4 @@ inline Picture make_still_life() {
   return picture;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

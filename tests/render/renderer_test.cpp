@@ -10,7 +10,7 @@
 #include "weft/mesh/vertex_normals.h"
 #include "weft/render/mock_device.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 struct Drawn {
@@ -117,4 +117,4 @@ TEST(MockDevice, RefusesWhatOpenGlWouldGetWrong) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

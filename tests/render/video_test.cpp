@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ TEST(VideoTrouble, WithoutFfmpegSaysWhatToInstall) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/run/runner.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Cells of 15 mm on a ball of 10 cm; one step per frame, so that min_stretch is that of every step.
@@ -36,4 +36,4 @@ TEST(Collapse, SilkOnABallKeepsItsTrianglesWide) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

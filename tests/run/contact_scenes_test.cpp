@@ -5,7 +5,7 @@
 #include "weft/run/runner.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Nothing crosses at any frame, nothing passes through anything within any step, nothing is inside a
@@ -43,4 +43,4 @@ TEST(ContactScenes, ABodyThatCrossesItselfCarriesTheSheet) {
 TEST(ContactScenes, FoldedLayersLandOnEachOther) { expect_held("folded_fall", 40, {}); }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kQuarterTurn = 90;  // [degrees]
@@ -114,4 +114,4 @@ TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,11 +4,11 @@
 
 #include <functional>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/run/runner.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 SceneDesc shipped(const std::string& name, Overrides overrides = {}) {
@@ -206,4 +206,4 @@ TEST(Live, EndsInTheMiddleOfPlay) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

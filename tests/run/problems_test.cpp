@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A sheet of a metre whose particles the tests put where they like.
@@ -126,4 +126,4 @@ TEST(Problems, EachInfeasiblePairOnce) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

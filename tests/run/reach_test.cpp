@@ -8,7 +8,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points) {
@@ -47,4 +47,4 @@ TEST(Reach, WithoutAFloorEndsALittleBelowTheColliders) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,13 +8,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
@@ -468,4 +468,4 @@ TEST(Report, CannotBeWrittenIntoAMissingFolder) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -15,7 +15,7 @@
 
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -140,4 +140,4 @@ TEST(BrokenScenes, FileThatCannotBeReadIsNamed) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

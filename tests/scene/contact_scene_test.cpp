@@ -4,12 +4,12 @@
 
 #include <filesystem>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string sheet_with(const std::string& cells, const std::string& fabric) {
@@ -125,4 +125,4 @@ TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/core/error.h"
-#include "weft/fabric/presets.h"
+#include "weft/error.h"
+#include "weft/fabric.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 SceneDesc scene_with(const std::string& fabric) {
@@ -27,7 +27,7 @@ std::string error_of(const std::string& fabric) {
 
 TEST(FabricBase, GivesWhatATableLeavesOut) {
   const SceneDesc scene = scene_with("{ base = \"denim\", thickness = 0.0003 }");
-  const Fabric denim = find_fabric("denim").fabric;
+  const Fabric denim = find_fabric("denim");
   ASSERT_TRUE(scene.cloths[0].fabric);
   EXPECT_EQ(scene.cloths[0].fabric->name, "denim");
   EXPECT_EQ(scene.cloths[0].fabric->numbers.c11, denim.c11);
@@ -51,4 +51,4 @@ TEST(FabricBase, HasNoSprings) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

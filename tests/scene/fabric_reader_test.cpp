@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::string kDenim =
@@ -117,4 +117,4 @@ TEST(FabricFile, ThatIsNotTomlIsAMistakeAtItsPlace) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "weft/core/error.h"
-#include "weft/fabric/presets.h"
+#include "weft/error.h"
+#include "weft/fabric.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Of the test that runs: tests run side by side.
@@ -33,7 +33,7 @@ SceneWorld built(const std::string& keys, const Overrides& overrides = {}) {
 }
 
 TEST(FabricScenes, TakeAFabricByName) {
-  const Fabric& denim = find_fabric("denim").fabric;
+  const Fabric& denim = find_fabric("denim");
   const SceneWorld scene = built("fabric = \"denim\"\n");
   const ClothModel& model = scene.world.model(scene.world.cloth(0));
   ASSERT_NE(model.elements, nullptr);
@@ -49,7 +49,7 @@ TEST(FabricScenes, TakeAFabricByName) {
 
 TEST(FabricScenes, ChangeTheirFabricByAnOverride) {
   const SceneWorld scene = built("fabric = \"denim\"\n", {"cloth[0].fabric=silk"});
-  EXPECT_EQ(scene.world.model(scene.world.cloth(0)).material.density, find_fabric("silk").fabric.density);
+  EXPECT_EQ(scene.world.model(scene.world.cloth(0)).material.density, find_fabric("silk").density);
   const SceneWorld other = built("", {"cloth[0].fabric=silk", "cloth[0].membrane=springs"});
   EXPECT_TRUE(other.world.model(other.world.cloth(0)).material.structural_z.has_value());
 }
@@ -86,7 +86,7 @@ TEST(FabricScenes, HaveWarpAlongEitherAxisOfTheGridOrAcross) {
 TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
   // A homogeneous stretch of the grid stores ½ A C ε² along either axis, whatever the cells; 2 % apart, for
   // springs are not linear in Green's strain.
-  const Fabric& fabric = find_fabric("denim").fabric;
+  const Fabric& fabric = find_fabric("denim");
   for (const char* spring_model : {"basic", "alternating"}) {
     const SceneWorld scene =
         built("fabric = \"denim\"\nmembrane = \"springs\"\nmodel = \"" + std::string(spring_model) + "\"\n");
@@ -183,7 +183,7 @@ TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
   const SceneWorld scene = built_with_uv(1, 0, 0, "membrane = \"springs\"\n");
   const ClothModel& model = scene.world.model(scene.world.cloth(0));
   EXPECT_TRUE(model.elements->membranes.empty());
-  EXPECT_EQ(model.material.damping_time, find_fabric("denim").fabric.damping);
+  EXPECT_EQ(model.material.damping_time, find_fabric("denim").damping);
   for (std::size_t s = 0; s < model.topology->springs.size(); ++s) {
     if (model.topology->springs[s].kind == SpringKind::structural) continue;
     EXPECT_EQ(model.stiffness(static_cast<int>(s)), 0) << "bending is the fabric's own";
@@ -205,4 +205,4 @@ TEST(FabricScenes, SayWhereWarpGoesIfAMeshHasNoTextureCoordinates) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

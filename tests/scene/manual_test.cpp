@@ -8,7 +8,7 @@
 
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(Manual, ItsSceneFileIsGood) {
@@ -64,4 +64,4 @@ TEST(Manual, ExplainsEveryKeyThatItLists) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

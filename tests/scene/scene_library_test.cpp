@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/nearest_name.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::filesystem::path kScenes = WEFT_SOURCE_DIR "/scenes";
@@ -82,4 +82,4 @@ TEST(NearestName, KeepsSilentWhereNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const std::string kScene = "[scene]\nformat = 1\n";
@@ -416,4 +416,4 @@ TEST(SceneOverrides, CanMendABrokenScene) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

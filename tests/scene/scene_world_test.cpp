@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/solid.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(SceneWorld, StiffensTheSpringsOfARegion) {
@@ -210,4 +210,4 @@ TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

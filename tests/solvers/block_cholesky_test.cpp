@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Mat3 random_matrix(Random& random) {
@@ -83,4 +83,4 @@ TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -13,7 +13,7 @@
 #include "weft/solvers/conjugate_gradients.h"
 #include "weft/solvers/grid_multigrid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A scalar matrix, the same in double precision, and how to apply its multigrid.
@@ -263,4 +263,4 @@ TEST(ConjugateGradients, StopWhereNothingIsLeftToGain) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include "weft/mesh/grid.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 TriangleMesh sheet_at(double height) {
@@ -71,4 +71,4 @@ TEST(Checker, LeavesOutWhatMayGoThroughEachOther) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

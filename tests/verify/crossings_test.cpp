@@ -10,7 +10,7 @@
 #include "weft/core/random.h"
 #include "weft/mesh/grid.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 // ---- The slow exact version, in integers ----
@@ -379,4 +379,4 @@ TEST(FindCrossings, IgnoreTrianglesWithoutArea) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -11,7 +11,7 @@
 #include "weft/verify/inside.h"
 #include "weft/verify/predicates.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 using TriangleMotion = std::array<PointMotion, 3>;
@@ -231,4 +231,4 @@ TEST(PairMotion, OfTwoClosedLoopsIsOddWhereTheyAreLinkedOrFreed) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

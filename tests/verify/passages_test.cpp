@@ -9,7 +9,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/verify/pair_motion.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 using Kind = FeaturePair::Kind;
@@ -494,4 +494,4 @@ TEST(Passages, LeaveOutMomentsThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

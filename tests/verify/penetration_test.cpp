@@ -8,7 +8,7 @@
 #include "weft/core/random.h"
 #include "weft/mesh/grid.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr double kRounding = 1e-12;  // lengths here are about 1
@@ -211,4 +211,4 @@ TEST(FindDeepest, KnowsNoDepthWithoutAnInside) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -8,7 +8,7 @@
 
 #include "weft/core/random.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 __extension__ typedef __int128 Integer;
@@ -124,4 +124,4 @@ TEST(Orient2d, IsThatOfIntegersNearTheLine) {
 }
 
 }  // namespace
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -22,7 +22,7 @@
 #include "weft/render/camera.h"
 #include "weft/render/image.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -368,15 +368,15 @@ TEST_F(View, SaysWhatToDoWhereThereIsNoDisplay) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   for (const char* name : {"Xvfb", "xdotool"}) {
-    if (weft::is_program(name)) continue;
+    if (weft::engine::is_program(name)) continue;
     std::printf("skipped: there is no %s\n", name);
     return 77;
   }
-  testing::AddGlobalTestEnvironment(new weft::Screen);
+  testing::AddGlobalTestEnvironment(new weft::engine::Screen);
   return RUN_ALL_TESTS();
 }

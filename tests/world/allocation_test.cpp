@@ -26,7 +26,7 @@ std::atomic<long> g_allocations{0};
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
@@ -55,4 +55,4 @@ TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -12,7 +12,7 @@
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -275,4 +275,4 @@ TEST(Worlds, CloneSharesNoState) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kCells = 6;
@@ -142,4 +142,4 @@ TEST(Measures, CallACylinderBentAndNotStretched) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

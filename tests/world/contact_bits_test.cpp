@@ -5,7 +5,7 @@
 #include "tests/support.h"
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A sheet that slips off a ball, folds on itself and lands on a floor.
@@ -48,4 +48,4 @@ TEST(ContactBits, AreTheSameForAnyNumberOfThreadsAndEveryVectorWidth) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

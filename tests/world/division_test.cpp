@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -171,4 +171,4 @@ TEST(StepDivision, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "tests/support.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -279,4 +279,4 @@ TEST(EnergyAudit, OfASheetThatFallsOnAFloorNeverGainsEnergy) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kCells = 8;
@@ -172,4 +172,4 @@ TEST(Grab, RefusesParticlesThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "tests/support.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -24,8 +24,8 @@ void spend(double seconds) {
 }
 
 /// A level sheet of 12×12 cells at this height [m].
-ClothDesc make_sheet(double height) {
-  ClothDesc desc{.topology = build_grid_topology(square(12), SpringModel::alternating),
+ClothParts make_sheet(double height) {
+  ClothParts desc{.topology = build_grid_topology(square(12), SpringModel::alternating),
                  .material = {.structural = 2000, .shear = 1000, .bend = 20, .thickness = 2e-3}};
   desc.positions = desc.topology->mesh.positions;
   for (Vec3& p : desc.positions) p.y() += height;
@@ -112,7 +112,7 @@ TEST(WorkTimes, OfFreeFallHaveAtMostTwoSearchesPerSecond) {
 TEST(WorkTimes, OfPartsThatWereThrownAwayAreToldApart) {
   World world;
   world.add_collider({"ball", Sphere{{0.5, 0, 0.5}, 0.3}, 0.3, {}});
-  ClothDesc sheet = make_sheet(0.35);
+  ClothParts sheet = make_sheet(0.35);
   sheet.velocity = {0, -20, 0};
   world.add_cloth(sheet);
   int retries = 0;
@@ -127,4 +127,4 @@ TEST(WorkTimes, OfPartsThatWereThrownAwayAreToldApart) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

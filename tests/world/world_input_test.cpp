@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -141,4 +141,4 @@ TEST(WorldInput, IdsOfNothingOfOthersAndOfWhatIsGone) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

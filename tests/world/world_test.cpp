@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "tests/support.h"
-#include "weft/core/error.h"
-#include "weft/fabric/presets.h"
+#include "weft/error.h"
+#include "weft/fabric.h"
 #include "weft/mesh/clean.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using test::square;
@@ -211,7 +211,7 @@ TEST(World, ASliverChangesNothing) {
     int parts = 0;
   };
   const auto drop = [](const TriangleMesh& mesh) {
-    const Fabric fabric = find_fabric("cotton_shirting").fabric;
+    const Fabric fabric = find_fabric("cotton_shirting");
     World world;
     world.add_collider({"ball", Sphere{{0.25, -0.16, 0.25}, 0.15}, 0.3, {}});
     const ClothId id = world.add_cloth(
@@ -295,4 +295,4 @@ TEST(Measures, AgreeWithHandCalculation) {
 }
 
 }  // namespace
-}  // namespace weft
+}  // namespace weft::engine

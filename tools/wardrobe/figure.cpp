@@ -6,7 +6,7 @@
 
 #include "weft/core/angle.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 namespace {
 
 /// A ball that rolls from a to b and grows from radius ra to rb [m].
@@ -263,4 +263,4 @@ Pose pose_at(const std::string& motion, double time) {
   return stand(time);
 }
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

@@ -11,7 +11,7 @@
 
 #include "tools/wardrobe/isosurface.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 
 enum Bone {
   kHips,
@@ -58,4 +58,4 @@ std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose);
 /// arms fold before the chest) or "sit". `time` [s].
 Pose pose_at(const std::string& motion, double time);
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

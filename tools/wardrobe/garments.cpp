@@ -7,7 +7,7 @@
 #include "weft/mesh/clean.h"
 #include "weft/mesh/grid.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -199,4 +199,4 @@ TriangleMesh make_sheet(double side, int num_cells) {
   return mesh;
 }
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

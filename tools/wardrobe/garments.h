@@ -4,7 +4,7 @@
 
 #include "tools/wardrobe/figure.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 
 /// With cells of about `cell` [m]; 0.009 gives a T-shirt of 10,000 vertices.
 TriangleMesh make_tshirt(double cell);
@@ -22,4 +22,4 @@ TriangleMesh make_pleated_dress(double cell);
 /// Level, above the head.
 TriangleMesh make_sheet(double side, int num_cells);
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

@@ -6,7 +6,7 @@
 
 #include "weft/mesh/clean.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 namespace {
 
 /// Samples of a field at the corners of cells.
@@ -167,4 +167,4 @@ void append(TriangleMesh& mesh, const TriangleMesh& other) {
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
 }
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

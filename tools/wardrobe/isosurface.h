@@ -6,7 +6,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 
 /// Negative inside, positive outside; about a distance near its zeros [m].
 using Field = std::function<double(const Vec3&)>;
@@ -31,4 +31,4 @@ std::vector<Vec3> compute_normals(const TriangleMesh& mesh);
 /// Adds the triangles of another mesh, with vertices of their own.
 void append(TriangleMesh& mesh, const TriangleMesh& other);
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

@@ -6,10 +6,10 @@
 
 #include "tools/wardrobe/figure.h"
 #include "tools/wardrobe/garments.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/io/obj_reader.h"
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 namespace {
 
 constexpr double kFigureCell = 0.0115;  // [m]
@@ -103,4 +103,4 @@ std::vector<std::string> write_wardrobe(const std::filesystem::path& folder, dou
   return scenes;
 }
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::wardrobe {
+namespace weft::engine::wardrobe {
 
 /// "stand", "walk", "kick", "fold", "sit".
 std::vector<std::string> motion_names();
@@ -15,4 +15,4 @@ std::vector<std::string> motion_names();
 /// the scenes' names in order. Throws InputError if a file cannot be written.
 std::vector<std::string> write_wardrobe(const std::filesystem::path& folder, double cell);
 
-}  // namespace weft::wardrobe
+}  // namespace weft::engine::wardrobe

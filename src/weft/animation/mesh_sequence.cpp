@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 
 MeshSequence::MeshSequence(std::vector<Key> keys) : keys_(std::move(keys)) {
   if (keys_.empty()) throw InputError("a mesh sequence needs one key at least");
@@ -28,4 +28,4 @@ MeshSequence::Blend MeshSequence::at(double time) const {
   return {from, to, span > 0 ? (time - keys_[from].time) / span : 0.0};
 }
 
-}  // namespace weft
+}  // namespace weft::engine

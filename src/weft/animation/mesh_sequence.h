@@ -5,7 +5,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Between two keys vertices move in straight lines; before the first and after the last they stay.
 class MeshSequence {
@@ -39,4 +39,4 @@ class MeshSequence {
   std::vector<Key> keys_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "weft/core/angle.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 
 Mat3 rotation_from_angles_deg(const Vec3& angles_deg) {
   const SinCos a = sin_cos_deg(angles_deg.x()), b = sin_cos_deg(angles_deg.y()),
@@ -66,4 +66,4 @@ Pose RigidMotion::at(double time) const {
           rotation_from_angles_deg(a.angles_deg + s * (b.angles_deg - a.angles_deg))};
 }
 
-}  // namespace weft
+}  // namespace weft::engine

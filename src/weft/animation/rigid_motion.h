@@ -6,7 +6,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A rigid displacement from the initial place: p ↦ pivot + R (p − pivot) + translation.
 struct Pose {
@@ -42,14 +42,17 @@ class RigidMotion {
   bool is_still() const;  // nothing moves, at any time
   Pose at(double time) const;
 
- private:
   struct Passage {
     double start = 0, end = 0;  // [s]
     Pose from, to;
     Pose at(double time) const;
   };
+  const std::vector<KeyFrame>& keys() const { return keys_; }
+  const std::optional<Passage>& passage() const { return passage_; }  // in place of key frames
+
+ private:
   std::vector<KeyFrame> keys_;
-  std::optional<Passage> passage_;  // in place of key frames
+  std::optional<Passage> passage_;
 };
 
 /// Where the pose takes p when it turns about `pivot`.
@@ -62,4 +65,4 @@ inline Vec3 apply_inverse(const Pose& pose, const Vec3& pivot, const Vec3& p) {
   return pivot + pose.rotation.transpose() * (p - pivot - pose.translation);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/core/job_system.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Calls work(i, chunk) for i from 0 to before `count`, side by side in chunks of `grain`, and gather(chunk)
 /// for one chunk after the other: what is gathered has the order of i, for any number of threads. `chunks` is
@@ -30,4 +30,4 @@ void collect_in_order(JobSystem& jobs, int count, int grain, std::vector<Chunk>&
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

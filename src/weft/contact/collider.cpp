@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Meshes are met by their vertices, edges and triangles (see contact_system.h), never by this distance.
@@ -65,4 +65,4 @@ ColliderShape shape_at(const Collider& collider, double time) {
   return std::visit(Mover{collider.motion.at(time), pivot(collider.shape), time}, collider.shape);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/geometry/shape_distance.h"
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A triangle mesh as a collider, still or deforming, moved from the mesh's own coordinates: p ↦ rotation p +
 /// translation. Closed meshes face outwards; open ones hold cloth off on both sides.
@@ -56,4 +56,4 @@ Vec3 pivot(const ColliderShape& shape);
 /// The collider's shape where its motion, and its sequence if it has one, have taken it.
 ColliderShape shape_at(const Collider& collider, double time);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPositionTolerance = 1e-6;  // corrections below need no further pass [m]
@@ -94,4 +94,4 @@ void project_velocities(const std::vector<double>& inverse_masses, std::vector<C
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

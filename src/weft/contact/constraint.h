@@ -6,7 +6,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// n · Σ w_i x_i >= target, where x_i are vertices of cloths and mesh colliders. Weights of one feature are
 /// positive, of the other negative (see geometry/distance.h); against a plain shape there is only the first.
@@ -64,4 +64,4 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
 void project_velocities(const std::vector<double>& inverse_masses, std::vector<Constraint>& constraints,
                         std::vector<Vec3>& velocities, std::vector<Vec3>& slowed, std::vector<int>& active);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The share of its gap that a solve may leave a contact short of [1].
 constexpr double kMaxLack = 0.3;
@@ -69,4 +69,4 @@ struct Contact {
   Vec3 slide(const std::vector<Vec3>& x) const { return slide_at(point(x)); }
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/geometry/coplanar_time.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kPairGrain = 1024;  // pairs per chunk
@@ -252,4 +252,4 @@ bool ContactSystem::is_on_closed_body(int vertex) const {
   return vertex >= first_vertex_.back() && body_of(vertex).is_closed;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

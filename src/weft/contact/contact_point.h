@@ -3,7 +3,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A place where a cloth touched something in the last step. Exactly one of `other_cloth` and `collider` is
 /// not -1; cloth that touches itself is its own other cloth.
@@ -17,4 +17,4 @@ struct ContactPoint {
   int other_vertex = -1;  // the nearest of the other cloth or of the collider's mesh; -1: of a plain shape
 };
 
-}  // namespace weft
+}  // namespace weft::engine

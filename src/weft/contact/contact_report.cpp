@@ -5,7 +5,7 @@
 
 #include "weft/contact/contact_system.h"
 
-namespace weft {
+namespace weft::engine {
 
 void ContactSystem::add_touch(const Constraint& c, const Vec3& force) {
   if (!step_.tracks || force.isZero(0)) return;
@@ -114,14 +114,14 @@ std::vector<Vec3> ContactSystem::positions_now() const {
 Knots ContactSystem::find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                                 const ContactStep& now) {
   begin_step(cloths, colliders, now);
-  return weft::find_knots(make_tangle(), positions_now());
+  return weft::engine::find_knots(make_tangle(), positions_now());
 }
 
 UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
                                        const std::vector<Collider>& colliders, const ContactStep& now) {
   begin_step(cloths, colliders, now);
   std::vector<Vec3> positions = positions_now();
-  const UntangleResult result = weft::untangle(make_tangle(), positions);
+  const UntangleResult result = weft::engine::untangle(make_tangle(), positions);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
@@ -133,4 +133,4 @@ UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

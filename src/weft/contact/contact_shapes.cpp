@@ -7,7 +7,7 @@
 #include "weft/contact/contact_system.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// An edge or a triangle counts beside its corners where it comes this much nearer to a shape than they do
@@ -192,4 +192,4 @@ double ContactSystem::clearance_of(const Constraint& c) const {
   return share * motion_.half_thickness[c.vertex[0]];
 }
 
-}  // namespace weft
+}  // namespace weft::engine

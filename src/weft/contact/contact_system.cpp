@@ -6,7 +6,7 @@
 
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// How much stiffer than its inertia, m/h², a contact is in the solve: the higher, the less cloth is pressed
@@ -64,7 +64,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
     shapes_.push_back({&c, shape_at(c, start), shape_at(c, step.time), c.motion.at(start),
-                       c.motion.at(step.time), weft::pivot(c.shape)});
+                       c.motion.at(step.time), weft::engine::pivot(c.shape)});
   }
   proximity_.measure(step.clock);
   const bool is_new = renumber(colliders);
@@ -571,4 +571,4 @@ void ContactSystem::store_touched() {
   std::fill(is_touched_.begin(), is_touched_.end(), char{0});
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -20,7 +20,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// What contact sees of a cloth during a step.
 struct ContactCloth {
@@ -240,4 +240,4 @@ class ContactSystem {
   std::vector<Vec3> arrived_;  // where contacts were last looked for
 };
 
-}  // namespace weft
+}  // namespace weft::engine

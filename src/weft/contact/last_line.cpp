@@ -8,7 +8,7 @@
 #include "weft/contact/collect.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kPairGrain = 1024;     // pairs per chunk
@@ -467,4 +467,4 @@ void LastLine::scale_zone(const Zone& zone) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -24,7 +24,7 @@
 #include "weft/contact/shape_clearance.h"
 #include "weft/geometry/time_of_impact.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A pair of features that prescribed motions have pushed through each other.
 struct Infeasible {
@@ -141,4 +141,4 @@ class LastLine {
   std::vector<Vec3> shape_end_;  // (cloth vertices) of near ones: the end in the frame of the shape's start
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 
 #include "weft/contact/collider.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct MovingShape {
   const Collider* collider = nullptr;
@@ -38,4 +38,4 @@ struct MovingShape {
   }
 };
 
-}  // namespace weft
+}  // namespace weft::engine

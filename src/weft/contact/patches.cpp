@@ -8,7 +8,7 @@
 
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kCellsPerPatch = 2;  // of a grid, along each side
@@ -468,4 +468,4 @@ float Patches::least_distance(int w, const std::vector<PatchDeformation>& start,
   return std::min(bound(window.least_distance, window.detour), bound(window.far, window.detour_of_far));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -24,7 +24,7 @@
 #include "weft/contact/surface.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A point or a vector in floats; the last component is 0 and only fills the register.
 using Float4 = Eigen::Vector4f;
@@ -142,4 +142,4 @@ class Patches {
   std::vector<MeshPart> mesh_parts_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

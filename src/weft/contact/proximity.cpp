@@ -4,7 +4,7 @@
 
 #include "weft/contact/collect.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A tree this much looser than when it was built is built anew.
@@ -697,4 +697,4 @@ void Proximity::find_fans(JobSystem& jobs) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -13,7 +13,7 @@
 #include "weft/geometry/aabb_tree.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Where all vertices of the Surface are at the start and at the end of a step, and how much room they want.
 struct SurfaceMotion {
@@ -208,4 +208,4 @@ class Proximity {
   std::vector<ItemPair> fans_;  // triangles that share a vertex at which the cloth makes a point
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -71,4 +71,4 @@ void ShapeClearance::set(int shape, int vertex, double distance, double way) {
   row.farther[vertex] = std::isfinite(at_start) ? row.moved + at_start : -kInfinity;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -14,7 +14,7 @@
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The greater of the two squared lengths, not a number if either is none.
 inline double farther_sq(double length_sq, const Vec3& v) {
@@ -49,4 +49,4 @@ class ShapeClearance {
   std::vector<Row> rows_;  // (shapes)
 };
 
-}  // namespace weft
+}  // namespace weft::engine

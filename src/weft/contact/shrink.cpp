@@ -7,7 +7,7 @@
 #include "weft/geometry/aabb_tree.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -111,4 +111,4 @@ std::vector<Vec3> shrink(const TriangleMesh& mesh, const std::vector<double>& in
   return places;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The radius of the largest ball inside a closed mesh that touches it at each vertex (num_vertices) [m]: the
 /// shrinking ball of Ma, Bae and Choi (2012, "3D medial axis point approximation using nearest neighbors and
@@ -22,4 +22,4 @@ std::vector<double> compute_inner_radii(const TriangleMesh& mesh);
 /// where it is not so thick, it keeps a tenth of its radius.
 std::vector<Vec3> shrink(const TriangleMesh& mesh, const std::vector<double>& inner_radii, double depth);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace weft {
+namespace weft::engine {
 
 void Surface::add(const std::vector<Triangle>& mesh_triangles, int mesh_vertices) {
   struct Side {
@@ -59,4 +59,4 @@ int mesh_of(const std::vector<int>& first_vertex, int vertex) {
          1;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline bool has_vertex(const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; }
 
@@ -55,4 +55,4 @@ int num_shared_vertices(const Triangle& a, const Triangle& b);
 /// Which of several meshes a vertex belongs to; `first_vertex` (meshes + 1) ascends.
 int mesh_of(const std::vector<int>& first_vertex, int vertex);
 
-}  // namespace weft
+}  // namespace weft::engine

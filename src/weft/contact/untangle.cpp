@@ -11,7 +11,7 @@
 #include "weft/geometry/distance.h"
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMinRounds = 60, kMaxRounds = 600;  // that may be made …
@@ -548,4 +548,4 @@ UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions) {
   return Untangler(tangle, positions).run();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

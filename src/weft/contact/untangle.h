@@ -18,7 +18,7 @@
 #include "weft/contact/collider.h"
 #include "weft/contact/surface.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// What is to be set apart.
 struct Tangle {
@@ -73,4 +73,4 @@ struct UntangleResult {
 /// thousands of particles; does nothing where nothing crosses.
 UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions);
 
-}  // namespace weft
+}  // namespace weft::engine

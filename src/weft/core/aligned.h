@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 template <class T>
 struct AlignedAllocator {
@@ -25,4 +25,4 @@ struct AlignedAllocator {
 
 using AlignedFloats = std::vector<float, AlignedAllocator<float>>;
 
-}  // namespace weft
+}  // namespace weft::engine

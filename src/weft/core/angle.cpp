@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kRadiansPerDegree = 0.017453292519943295;
@@ -41,4 +41,4 @@ SinCos sin_cos_deg(double angle_deg) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

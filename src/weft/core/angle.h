@@ -1,7 +1,7 @@
 #pragma once
 /// Sine and cosine with the same bits on every machine (the C library's last bit is not specified).
 
-namespace weft {
+namespace weft::engine {
 
 struct SinCos {
   double sin = 0;
@@ -12,4 +12,4 @@ struct SinCos {
 /// The angle must be finite; it is reduced by fmod, so large angles are fine.
 SinCos sin_cos_deg(double angle_deg);
 
-}  // namespace weft
+}  // namespace weft::engine

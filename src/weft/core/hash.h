@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace weft {
+namespace weft::engine {
 
 class Hash {
  public:
@@ -26,4 +26,4 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

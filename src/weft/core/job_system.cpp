@@ -12,13 +12,13 @@
 #include <optional>
 #endif
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class SerialJobs final : public JobSystem {
  public:
   int num_threads() const override { return 1; }
-  void run(int num_jobs, const std::function<void(int)>& job) override {
+  void run(int num_jobs, const Job& job) override {
     for (int i = 0; i < num_jobs; ++i) job(i);
   }
 };
@@ -33,7 +33,7 @@ class PlainThreads final : public JobSystem {
 
   int num_threads() const override { return num_threads_; }
 
-  void run(int num_jobs, const std::function<void(int)>& job) override {
+  void run(int num_jobs, const Job& job) override {
     const auto share = [&](int first) {
       for (int i = first; i < num_jobs; i += num_threads_) job(i);
     };
@@ -56,7 +56,7 @@ class TbbJobs final : public JobSystem {
 
   int num_threads() const override { return num_threads_; }
 
-  void run(int num_jobs, const std::function<void(int)>& job) override {
+  void run(int num_jobs, const Job& job) override {
     arena_.execute([&] { tbb::parallel_for(0, num_jobs, job, tbb::static_partitioner{}); });
   }
 
@@ -69,13 +69,17 @@ class TbbJobs final : public JobSystem {
 
 }  // namespace
 
-std::unique_ptr<JobSystem> make_serial_jobs() { return std::make_unique<SerialJobs>(); }
+}  // namespace weft::engine
+
+namespace weft {
+
+std::unique_ptr<JobSystem> make_serial_jobs() { return std::make_unique<engine::SerialJobs>(); }
 
 std::unique_ptr<JobSystem> make_jobs(int num_threads) {
 #if WEFT_PLAIN_THREADS
-  if (num_threads > 1) return std::make_unique<PlainThreads>(num_threads);
+  if (num_threads > 1) return std::make_unique<engine::PlainThreads>(num_threads);
 #elif WEFT_WITH_TBB
-  if (num_threads > 1) return std::make_unique<TbbJobs>(num_threads);
+  if (num_threads > 1) return std::make_unique<engine::TbbJobs>(num_threads);
 #endif
   (void)num_threads;
   return make_serial_jobs();

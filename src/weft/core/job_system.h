@@ -1,28 +1,9 @@
 #pragma once
-/// Threads, behind one small interface: oneTBB, nothing at all, or the caller's own job system.
+/// Loops cut into jobs.
 
-#include <functional>
-#include <memory>
+#include "weft/jobs.h"
 
-namespace weft {
-
-/// Runs independent jobs. Implement it to let Weft use your engine's threads.
-class JobSystem {
- public:
-  virtual ~JobSystem() = default;
-
-  /// Threads that jobs may run on at once [1].
-  virtual int num_threads() const = 0;
-
-  /// Calls job(0) … job(num_jobs - 1), in any order, on any thread, and returns when all are done.
-  virtual void run(int num_jobs, const std::function<void(int)>& job) = 0;
-};
-
-/// Everything on the calling thread.
-std::unique_ptr<JobSystem> make_serial_jobs();
-
-/// oneTBB with its own arena of `num_threads` (>= 1) threads. One thread gives make_serial_jobs().
-std::unique_ptr<JobSystem> make_jobs(int num_threads);
+namespace weft::engine {
 
 /// Calls body(begin, end) over [0, count) cut into chunks of `grain`. The cut depends on `grain` alone,
 /// never on the number of threads, so whatever is computed per chunk has the same bits for any of them.
@@ -40,4 +21,4 @@ void parallel_for(JobSystem& jobs, int count, int grain, const Body& body) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

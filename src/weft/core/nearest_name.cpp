@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace weft {
+namespace weft::engine {
 
 int edit_distance(std::string_view a, std::string_view b, int limit) {
   const int na = static_cast<int>(a.size()), nb = static_cast<int>(b.size());
@@ -38,4 +38,4 @@ std::string find_nearest(std::string_view name, const std::vector<std::string>& 
   return nearest;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

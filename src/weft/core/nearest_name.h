@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 /// The fewest letters to insert, drop, replace or swap with their neighbour to make `b` of `a` (optimal
 /// string alignment); at most `limit` + 1, which saves time.
@@ -15,4 +15,4 @@ int edit_distance(std::string_view a, std::string_view b, int limit);
 /// most (one at least, never all), "" if none can.
 std::string find_nearest(std::string_view name, const std::vector<std::string>& names);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -14,7 +14,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"  // packs are never passed between functions: all are inlined
 #endif
 
-namespace weft {
+namespace weft::engine {
 
 /// Every row of floats that packs run over is readable and writable up to a multiple of this [1].
 constexpr int kPackLanes = 16;
@@ -217,7 +217,7 @@ WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine
 
 // WEFT_MULTIVERSION_PACKS(name, (parameters), (arguments)): as WEFT_MULTIVERSION, for a body that is a
 // template over the width of its packs.
@@ -229,12 +229,12 @@ WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
   }                                                                                                  \
   static void name##_baseline parameters { name##_body<4> arguments; }                               \
   static void name parameters {                                                                      \
-    switch (::weft::simd_level()) {                                                                  \
-      case ::weft::SimdLevel::avx512:                                                                \
+    switch (::weft::engine::simd_level()) {                                                                  \
+      case ::weft::engine::SimdLevel::avx512:                                                                \
         return name##_avx512 arguments;                                                              \
-      case ::weft::SimdLevel::avx2:                                                                  \
+      case ::weft::engine::SimdLevel::avx2:                                                                  \
         return name##_avx2 arguments;                                                                \
-      case ::weft::SimdLevel::baseline:                                                              \
+      case ::weft::engine::SimdLevel::baseline:                                                              \
         return name##_baseline arguments;                                                            \
     }                                                                                                \
   }

@@ -6,7 +6,7 @@
 
 #include "weft/core/pack.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct PaddedRows {
   static constexpr int kRowsAround = 2;  // above the first row and below the last one
@@ -25,4 +25,4 @@ struct PaddedRows {
   bool operator==(const PaddedRows&) const = default;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

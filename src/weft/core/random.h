@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace weft {
+namespace weft::engine {
 
 class Random {
  public:
@@ -25,4 +25,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

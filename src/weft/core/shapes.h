@@ -5,7 +5,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Sphere {
   Vec3 center = Vec3::Zero();  // [m]
@@ -43,4 +43,4 @@ struct Box {
   bool contains(const Vec3& p) const { return (p.array() >= min.array() && p.array() <= max.array()).all(); }
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 SimdLevel detect() {
@@ -42,4 +42,4 @@ std::string_view to_string(SimdLevel level) {
   return "baseline";
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include <string_view>
 
-namespace weft {
+namespace weft::engine {
 
 enum class SimdLevel { baseline, avx2, avx512 };
 
@@ -22,7 +22,7 @@ void limit_simd_level(SimdLevel level);
 
 std::string_view to_string(SimdLevel level);
 
-}  // namespace weft
+}  // namespace weft::engine
 
 // WEFT_MULTIVERSION(name, (parameters), (arguments)) defines `name(parameters)`, which forwards to the
 // always-inlined function `name_body(arguments)` compiled for the level in use.
@@ -61,12 +61,12 @@ std::string_view to_string(SimdLevel level);
   }                                                                                                \
   static void name##_baseline parameters { name##_body arguments; }                                \
   static void name parameters {                                                                    \
-    switch (::weft::simd_level()) {                                                                \
-      case ::weft::SimdLevel::avx512:                                                              \
+    switch (::weft::engine::simd_level()) {                                                                \
+      case ::weft::engine::SimdLevel::avx512:                                                              \
         return name##_avx512 arguments;                                                            \
-      case ::weft::SimdLevel::avx2:                                                                \
+      case ::weft::engine::SimdLevel::avx2:                                                                \
         return name##_avx2 arguments;                                                              \
-      case ::weft::SimdLevel::baseline:                                                            \
+      case ::weft::engine::SimdLevel::baseline:                                                            \
         return name##_baseline arguments;                                                          \
     }                                                                                              \
   }

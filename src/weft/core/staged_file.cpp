@@ -4,14 +4,14 @@
 #include <iostream>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
 #ifndef _WIN32
 #include <fcntl.h>
 #include <unistd.h>
 #endif
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ void require_writable(const fs::path& file) {
   StagedFile probe(file);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace weft {
+namespace weft::engine {
 
 /// New content for a file: written aside in the same folder (`.NAME.partial`), then renamed over the old one.
 /// Until replace() has returned, the old content stays, whatever happens. A partial file that an ended
@@ -47,4 +47,4 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 /// Throws InputError if StagedFile could not replace the file now. Its content stays, and so does a pipe.
 void require_writable(const std::filesystem::path& file);
 
-}  // namespace weft
+}  // namespace weft::engine

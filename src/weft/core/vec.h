@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace weft {
+namespace weft::engine {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 #include "weft/core/aligned.h"
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 class Vec3Array {
  public:
@@ -46,4 +46,4 @@ class Vec3Array {
   AlignedFloats x_, y_, z_;  // (size_ + kPadding) each
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -323,4 +323,4 @@ BendingMatrix build_bending_matrix(const BendingRows& rows, int num_vertices) {
   return matrix;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

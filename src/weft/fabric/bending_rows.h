@@ -33,7 +33,7 @@
 #include "weft/fabric/elements.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// ½ Σ_r stiffness_r |Σ_k weight_k x_{vertex_k}|², k from begin[r] to begin[r + 1].
 struct BendingRows {
@@ -64,4 +64,4 @@ struct BendingMatrix {
 
 BendingMatrix build_bending_matrix(const BendingRows& rows, int num_vertices);
 
-}  // namespace weft
+}  // namespace weft::engine

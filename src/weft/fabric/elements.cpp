@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kLeastSine = 1e-6;  // of the angle between a direction and a triangle's normal
@@ -118,4 +118,4 @@ std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField
   return hinges;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,11 +4,11 @@
 #include <array>
 #include <vector>
 
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 #include "weft/mesh/rest_triangle.h"
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Which way warp goes in each triangle; weft is across it, in the triangle's plane.
 struct WarpField {
@@ -49,4 +49,4 @@ struct HingeElement {
 /// whose hinges count on top of the others: BendingRows has not that fault.
 std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,9 +1,9 @@
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 
 #include <charconv>
 #include <cmath>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/fabric/membrane_law.h"
 
 namespace weft {
@@ -91,7 +91,7 @@ void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judg
 /// The least slope of the stress along a thread [N/m].
 double least_slope(const std::vector<StretchPoint>& curve, double linear) {
   double slope = linear, least = linear;
-  for (const StretchKink& kink : make_stretch_kinks(curve, linear)) {
+  for (const engine::StretchKink& kink : engine::make_stretch_kinks(curve, linear)) {
     slope += kink.slope;
     least = std::min(least, slope);
   }

@@ -1,9 +1,9 @@
 #include "weft/fabric/grid_springs.h"
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/fabric/spring_warnings.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 void require_stiffer(double c, double shear, const char* key, const Fabric& fabric, const std::string& name) {
@@ -42,4 +42,4 @@ GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWar
   return springs;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

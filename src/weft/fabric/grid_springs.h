@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "weft/fabric/bending_rows.h"
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Which diagonals of a cell have springs.
 enum class CellDiagonals {
@@ -41,4 +41,4 @@ struct GridSprings {
 GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWarp warp, const Fabric& fabric,
                               const std::string& name);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,8 +1,8 @@
-#include "weft/fabric/laboratory.h"
+#include "weft/laboratory.h"
 
 #include <cmath>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
 namespace weft {
 namespace {

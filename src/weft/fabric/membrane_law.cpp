@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kBegin = 0.85, kFull = 1.05, kLoaded = 1.3;  // of the fabric's strain limit
@@ -91,4 +91,4 @@ MembraneResponse membrane_response(const MembraneLaw& law, const Vec3& e) {
   return response;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "weft/core/vec.h"
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Of principal stretches (stiffness in N/m), or of a spring (in N).
 struct StrainLimit {
@@ -74,4 +74,4 @@ struct MembraneResponse {
 };
 MembraneResponse membrane_response(const MembraneLaw& law, const Vec3& strain);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/fabric/spring_warnings.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMostSweeps = 1000;
@@ -130,4 +130,4 @@ MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, c
   return springs;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -16,7 +16,7 @@
 
 #include "weft/fabric/elements.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct MeshSprings {
   std::vector<double> stiffness;      // of each edge of build_edges() [N/m]
@@ -28,4 +28,4 @@ struct MeshSprings {
 MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
                               const std::string& name);
 
-}  // namespace weft
+}  // namespace weft::engine

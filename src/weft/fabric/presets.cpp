@@ -1,10 +1,10 @@
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 
 #include <algorithm>
 
-#include "weft/core/error.h"
 #include "weft/core/nearest_name.h"
-#include "weft/fabric/laboratory.h"
+#include "weft/error.h"
+#include "weft/laboratory.h"
 
 namespace weft {
 namespace {
@@ -207,7 +207,7 @@ const std::vector<FabricPreset>& fabric_presets() {
   return presets;
 }
 
-const FabricPreset& find_fabric(std::string_view name) {
+const FabricPreset& find_fabric_preset(std::string_view name) {
   const std::string plain = to_plain(name);
   std::vector<std::string> names;
   std::string list;
@@ -217,9 +217,11 @@ const FabricPreset& find_fabric(std::string_view name) {
     list += (list.empty() ? "" : ", ") + preset.name;
   }
   const std::string sentence = "there is no fabric \"" + std::string(name) + "\"";
-  const std::string nearest = find_nearest(plain, names);
+  const std::string nearest = engine::find_nearest(plain, names);
   throw InputError(nearest.empty() ? sentence + "; there are " + list
                                    : sentence + "; did you mean \"" + nearest + "\"?");
 }
+
+const Fabric& find_fabric(std::string_view name) { return find_fabric_preset(name).fabric; }
 
 }  // namespace weft

@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace weft {
+namespace weft::engine {
 
 std::string short_text(double number) {
   char buffer[32];
@@ -21,4 +21,4 @@ std::vector<std::string> warn_of_springs(const Fabric& fabric, const std::string
   return warnings;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

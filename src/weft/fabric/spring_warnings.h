@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A number in four digits.
 std::string short_text(double number);
@@ -14,4 +14,4 @@ std::string short_text(double number);
 /// What no springs can be, on whatever mesh: C12 other than G, stretch curves.
 std::vector<std::string> warn_of_springs(const Fabric& fabric, const std::string& name);
 
-}  // namespace weft
+}  // namespace weft::engine

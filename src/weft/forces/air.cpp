@@ -4,7 +4,7 @@
 
 #include "weft/core/random.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kRootMeanSquare =
@@ -57,4 +57,4 @@ Vec3 gust_velocity(const Gusts& gusts, const Vec3& place, double time) {
   return gusts.strength / kRootMeanSquare * sum;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

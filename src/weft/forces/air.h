@@ -16,30 +16,15 @@
 /// With G from the start of a step and u from its end a step takes energy from the motion against the air,
 /// whatever its length: no light cloth is blown up by it.
 
-#include <cstdint>
-
 #include "weft/core/vec.h"
+#include "weft/wind.h"
 
-namespace weft {
-
-struct Air {
-  double density = 0;  // of air about 1.2; 0: no drag and lift [kg/m³]
-  double drag = 1.2;   // C_D of a plate face-on; > 0 [1]
-  double lift = 0.6;   // C_L; from 0 to `drag`. More: slides sideways as it falls, flutters [1]
-};
+namespace weft::engine {
 
 /// G of a triangle [N·s/m]; `area_vector` is A n [m²], `slip` is u [m/s]. Zero without slip.
 Mat3 air_matrix(const Air& air, const Vec3& area_vector, const Vec3& slip);
 
-/// Velocity that comes and goes in space and time about zero: smooth noise, the same for the same numbers.
-struct Gusts {
-  double strength = 0;     // root of its mean square along each axis; 0: none [m/s]
-  double length = 1;       // over which it changes; more: broader gusts; > 0 [m]
-  double time = 0.5;       // in which it changes; more: slower gusts; > 0 [s]
-  std::uint64_t seed = 1;  // another one: other gusts
-};
-
 /// At a place of the world and a time [m/s]. Continuous with its first and second derivatives.
 Vec3 gust_velocity(const Gusts& gusts, const Vec3& place, double time);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,6 +1,6 @@
 #include "weft/forces/bending.h"
 
-namespace weft {
+namespace weft::engine {
 Vec3 bending_curvature(const BendingRows& rows, int row, const std::vector<Vec3>& x) {
   // Differences from the row's first vertex: as exact wherever the cloth is.
   const Vec3 origin = x[rows.vertex[rows.begin[row]]];
@@ -26,4 +26,4 @@ void add_bending_force(const BendingRows& rows, const std::vector<Vec3>& x, std:
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

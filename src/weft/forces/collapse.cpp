@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kNoLength = 1e-12;  // a stretch without a direction [1]
@@ -135,4 +135,4 @@ Mat3 collapse_block(const CollapseHessian& hessian, int a, int b) {
   return block;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

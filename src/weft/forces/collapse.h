@@ -30,7 +30,7 @@
 #include "weft/forces/membrane.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline constexpr double kCollapseBegin = 0.5;  // principal stretch below which ψ > 0 [1]
 inline constexpr double kCollapseFull = 0.3;   // principal stretch below which ψ'' = k [1]
@@ -68,4 +68,4 @@ CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& la
 /// The 3×3 block of corners a and b [N/m].
 Mat3 collapse_block(const CollapseHessian& hessian, int a, int b);
 
-}  // namespace weft
+}  // namespace weft::engine

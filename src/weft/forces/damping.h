@@ -3,7 +3,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Force on i: b (v_j − v_i) [N] (the paper's Eq. 2 with its sign corrected: as printed it feeds the motion).
 /// Conserves linear momentum, but also brakes a rigid rotation.
@@ -27,4 +27,4 @@ inline Mat3 projected_damping_jacobian(double b, const Vec3& d) {
   return (b / length_sq) * d * d.transpose();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include "weft/forces/element_kernels.h"
 #include "weft/forces/pack3.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 /// Columns of F: where warp and weft go.
 template <int W>
@@ -166,4 +166,4 @@ WEFT_ALWAYS_INLINE void add_transposed_product(const float* n, std::ptrdiff_t pi
   q.z += dot<W>(load3<W>({n + 2 * pitch, n + 5 * pitch, n + 8 * pitch}, 0), d);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

@@ -12,7 +12,7 @@
 
 #include "weft/forces/element_block.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 /// A cell's triangles from the column at which a pack begins.
@@ -436,4 +436,4 @@ void grid_multiply_elements(const GridElements& g, ConstRows p, Rows q, int row_
   multiply(g, p, q, row_begin, row_end, dot);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

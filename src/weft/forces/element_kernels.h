@@ -2,11 +2,11 @@
 /// Private to forces/: what element_potential.cpp hands to the kernels of grids and meshes.
 
 #include "weft/core/padded_rows.h"
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 #include "weft/forces/increments_kernels.h"
 #include "weft/forces/limit_pull.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 /// C with damping in it: (1 + η) [C11 C12 0; C12 C22 0; 0 0 G] [N/m].
 struct MembraneNumbers {
@@ -134,4 +134,4 @@ void mesh_blocks(const MeshElements& m, int slice_begin, int slice_end);
 void mesh_multiply_elements(const MeshElements& m, ConstRows p, Rows q, int slice_begin, int slice_end,
                             double* dot);
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

@@ -10,7 +10,7 @@
 
 #include "weft/forces/element_block.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 constexpr int kLanes = kPackLanes;
@@ -251,4 +251,4 @@ void mesh_multiply_elements(const MeshElements& m, ConstRows p, Rows q, int slic
   multiply(m, p, q, slice_begin, slice_end, dot);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

@@ -4,10 +4,10 @@
 #include <map>
 #include <utility>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/forces/element_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using kernels::GridElements;
@@ -299,4 +299,4 @@ double ElementPotential::multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array
   return sum_parts(tables_.num_slices());
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -26,7 +26,7 @@
 #include "weft/forces/element_tables.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 namespace kernels {
 struct GridElements;
@@ -99,4 +99,4 @@ class ElementPotential {
   std::vector<double> parts_;  // sums of rows or slices
 };
 
-}  // namespace weft
+}  // namespace weft::engine

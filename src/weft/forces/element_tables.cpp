@@ -5,7 +5,7 @@
 
 #include "weft/forces/element_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using kernels::MeshElements;
@@ -151,4 +151,4 @@ ElementTables build_element_tables(const ClothElements& elements, int num_partic
   return tables;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

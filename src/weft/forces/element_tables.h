@@ -8,7 +8,7 @@
 #include "weft/core/pack.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct ElementTables {
   std::vector<int> corner;
@@ -25,4 +25,4 @@ struct ElementTables {
 
 ElementTables build_element_tables(const ClothElements& elements, int num_particles);
 
-}  // namespace weft
+}  // namespace weft::engine

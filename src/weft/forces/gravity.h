@@ -3,7 +3,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// m g [N]; its Jacobian is zero.
 inline Vec3 gravity_force(double mass, const Vec3& gravity) { return mass * gravity; }
@@ -13,4 +13,4 @@ inline double gravity_energy(double mass, const Vec3& gravity, const Vec3& posit
   return -mass * gravity.dot(position);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -87,4 +87,4 @@ Mat3 hinge_gauss_newton_block(double stiffness, const HingeCorners& gradient, in
   return stiffness * gradient[a] * gradient[b].transpose();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -20,7 +20,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 using HingeCorners = std::array<Vec3, 4>;
 
@@ -49,4 +49,4 @@ std::array<double, 4> hinge_rest_weights(const HingeCorners& rest);
 /// The Gauss–Newton Hessian k (∂θ/∂x_a)(∂θ/∂x_b)ᵀ [N/m]: positive semidefinite.
 Mat3 hinge_gauss_newton_block(double stiffness, const HingeCorners& gradient, int a, int b);
 
-}  // namespace weft
+}  // namespace weft::engine

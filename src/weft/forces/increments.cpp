@@ -3,7 +3,7 @@
 #include "weft/core/simd.h"
 #include "weft/forces/increments_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Particles per chunk of work: enough to outweigh handing a chunk to another thread.
@@ -125,4 +125,4 @@ std::vector<float> to_padded_floats(const std::vector<double>& values) {
   return floats;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

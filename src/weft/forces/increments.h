@@ -9,7 +9,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// One 3-vector per particle, laid out for the kernels: on grids the rows stand apart, with zeros between and
 /// around them, so that stencils need not know where the border is.
@@ -72,4 +72,4 @@ void apply_filtered_increments(const ClothModel& model, const IncrementField& u,
 /// Values of a per-particle quantity as the kernels want them: floats, padded with zeros.
 std::vector<float> to_padded_floats(const std::vector<double>& values);
 
-}  // namespace weft
+}  // namespace weft::engine

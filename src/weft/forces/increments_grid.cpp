@@ -17,7 +17,7 @@
 
 #include "weft/forces/increments_kernels.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 constexpr int kLanes = 16;
@@ -316,4 +316,4 @@ void grid_filtered(const GridStencil& stencil, SpringModel model, float step, co
              model);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

@@ -6,7 +6,7 @@
 #include "weft/core/simd.h"
 #include "weft/forces/increments.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 /// Elastic and projected damping force on i of a spring with d = x_j − x_i and w = v_j − v_i, as a factor of
 /// d [N/m]: [k (l − l0) l + b w·d] / l². Zero times d where the spring has no length, and in the unused
@@ -69,4 +69,4 @@ void mesh_increments(const ClothModel& model, const Forcing& forcing, ConstRows 
 void mesh_filtered(const ClothModel& model, float step, const float* weight, const Outside& outside,
                    ConstRows u, Rows x, Rows v, int slice_begin, int slice_end);
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

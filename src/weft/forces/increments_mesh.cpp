@@ -5,7 +5,7 @@
 
 #include "weft/forces/increments_kernels.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 constexpr int kLanes = NeighbourTable::kLanes;
@@ -129,4 +129,4 @@ void mesh_filtered(const ClothModel& model, float step, const float* weight, con
               g.x(), g.y(), g.z(), u, x, v, slice_begin, slice_end});
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

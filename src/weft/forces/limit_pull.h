@@ -4,7 +4,7 @@
 #include "weft/core/pack.h"
 #include "weft/fabric/membrane_law.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 /// StrainLimit in floats.
 struct LimitNumbers {
@@ -36,4 +36,4 @@ WEFT_ALWAYS_INLINE LimitPull<W> limit_pull(const LimitNumbers& n, Pack<W> strain
           0.5f * per_width * m * m + k * over, per_width * m};
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

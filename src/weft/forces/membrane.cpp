@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Where warp and weft go: the columns of F.
@@ -95,4 +95,4 @@ Mat3 membrane_block(const MembraneHessian& hessian, int a, int b, StressFilter f
   return hessian.material[a][b] + stress * Mat3::Identity();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

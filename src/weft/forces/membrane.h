@@ -22,7 +22,7 @@
 #include "weft/fabric/membrane_law.h"
 #include "weft/mesh/rest_triangle.h"
 
-namespace weft {
+namespace weft::engine {
 
 using TriangleCorners = std::array<Vec3, 3>;
 
@@ -62,4 +62,4 @@ enum class StressFilter {
 /// The 3×3 block of corners a and b [N/m].
 Mat3 membrane_block(const MembraneHessian& hessian, int a, int b, StressFilter filter);
 
-}  // namespace weft
+}  // namespace weft::engine

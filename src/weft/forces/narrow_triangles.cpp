@@ -5,7 +5,7 @@
 
 #include "weft/forces/pack3.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using kernels::ConstRows;
@@ -188,4 +188,4 @@ void NarrowTriangles::find_on_mesh(const Vec3Array& x, JobSystem& jobs) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

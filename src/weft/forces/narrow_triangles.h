@@ -13,7 +13,7 @@
 #include "weft/core/vec3_array.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 class NarrowTriangles {
  public:
@@ -39,4 +39,4 @@ class NarrowTriangles {
   std::vector<int> found_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

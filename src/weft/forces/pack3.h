@@ -4,7 +4,7 @@
 #include "weft/core/pack.h"
 #include "weft/forces/increments_kernels.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 template <int W>
 struct Three {
@@ -56,4 +56,4 @@ WEFT_ALWAYS_INLINE Three<W> times(S s, const Three<W>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

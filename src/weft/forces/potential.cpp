@@ -6,7 +6,7 @@
 
 #include "weft/forces/potential_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Particles per chunk of work: enough to outweigh handing a chunk to another thread.
@@ -248,4 +248,4 @@ double IncrementalPotential::multiply_springs(const Vec3Array& p, JobSystem& job
   return sum_parts(num_slices);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

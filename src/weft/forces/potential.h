@@ -25,7 +25,7 @@
 #include "weft/forces/element_potential.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 namespace kernels {
 struct GridPotential;
@@ -114,4 +114,4 @@ class IncrementalPotential {
   ElementPotential elements_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 constexpr float kMinLengthSq = 1e-30f;
@@ -270,4 +270,4 @@ void grid_multiply(const GridPotential& g, ConstRows p, Rows q, int row_begin, i
   multiply(g, p, q, row_begin, row_end, dot);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

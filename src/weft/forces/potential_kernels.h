@@ -5,7 +5,7 @@
 #include "weft/forces/increments_kernels.h"
 #include "weft/forces/limit_pull.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 
 /// The springs of a grid come in families, each spring owned by one of its ends:
 ///
@@ -83,4 +83,4 @@ void mesh_springs(const MeshPotential& m, bool store, int slice_begin, int slice
 
 void mesh_multiply(const MeshPotential& m, ConstRows p, Rows q, int slice_begin, int slice_end, double* dot);
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

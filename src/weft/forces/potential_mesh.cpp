@@ -6,7 +6,7 @@
 #include "weft/forces/pack3.h"
 #include "weft/forces/potential_kernels.h"
 
-namespace weft::kernels {
+namespace weft::engine::kernels {
 namespace {
 
 constexpr int kLanes = NeighbourTable::kLanes;
@@ -138,4 +138,4 @@ void mesh_multiply(const MeshPotential& m, ConstRows p, Rows q, int slice_begin,
   multiply(m, p, q, slice_begin, slice_end, result);
 }
 
-}  // namespace weft::kernels
+}  // namespace weft::engine::kernels

@@ -10,7 +10,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// ½ k (l − l0)² [J].
 inline double spring_energy(double k, double rest_length, const Vec3& d) {
@@ -45,4 +45,4 @@ inline Mat3 spring_jacobian_clamped(double k, double rest_length, const Vec3& d)
   return (k - transverse) * u * u.transpose() + transverse * Mat3::Identity();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,10 +1,12 @@
 #pragma once
 /// Wind (the paper's Eq. 4), per area, so that the mesh does not matter; and the air's drag and lift.
 
+#include <span>
+
 #include "weft/core/vec.h"
 #include "weft/forces/air.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Wind {
   Vec3 velocity = Vec3::Zero();  // of the air [m/s]
@@ -12,6 +14,14 @@ struct Wind {
   Air air = {};      // by triangles; `newton` and `implicit_euler` know it
   Gusts gusts = {};  // besides `velocity`; only `air` feels them
 };
+
+struct WindKey {
+  double time = 0;               // [s]
+  Vec3 velocity = Vec3::Zero();  // [m/s]
+};
+
+/// The velocity at a time: linear between keys, constant outside. At least one key.
+Vec3 wind_velocity(std::span<const WindKey> keys, double time);
 
 /// c_w A (v_wind − v) [N] on a particle that stands for the area A [m²]. Still air brakes too.
 inline Vec3 wind_force(const Wind& wind, double area, const Vec3& velocity) {
@@ -21,4 +31,4 @@ inline Vec3 wind_force(const Wind& wind, double area, const Vec3& velocity) {
 /// ∂f/∂v = −c_w A I [N·s/m].
 inline Mat3 wind_jacobian(const Wind& wind, double area) { return -wind.drag * area * Mat3::Identity(); }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// { p : min <= p <= max }, component by component. By default empty: it overlaps nothing, not even itself.
 struct Aabb {
@@ -103,4 +103,4 @@ inline Aabb make_aabb(const Vec3& min, const Vec3& max, double margin = 0) {
   return box;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

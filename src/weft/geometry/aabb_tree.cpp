@@ -5,7 +5,7 @@
 
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kNodesPerPart = 256;      // of a query
@@ -472,4 +472,4 @@ void AabbTree::choose_starts() {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

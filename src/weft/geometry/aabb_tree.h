@@ -15,7 +15,7 @@
 #include "weft/core/job_system.h"
 #include "weft/geometry/aabb.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct ItemPair {
   int a = 0, b = 0;
@@ -286,4 +286,4 @@ class AabbTree {
   std::vector<int> above_starts_;  // all nodes above them, ascending
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 struct Cubic {
@@ -55,4 +55,4 @@ std::optional<double> find_coplanar_time(const std::array<Vec3, 4>& start, const
   return std::nullopt;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

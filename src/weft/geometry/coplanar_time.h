@@ -6,7 +6,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Four points move in straight lines from `start` to `end`, in time 0 to 1. Returns the first time > 0 at
 /// which the volume that they span,
@@ -18,4 +18,4 @@ namespace weft {
 /// whether they really meet. Found by bisection between the cubic's extremes, to 1e-9.
 std::optional<double> find_coplanar_time(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end);
 
-}  // namespace weft
+}  // namespace weft::engine

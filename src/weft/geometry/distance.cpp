@@ -1,6 +1,6 @@
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Vec3 edge_weights(int from, double t) {
@@ -54,4 +54,4 @@ SegmentTriangleDistance segment_triangle_distance(const Vec3& p0, const Vec3& p1
   return best;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -34,7 +34,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline constexpr double kDistanceTolerance = 1e-14;  // some forty roundings of a double [1]
 
@@ -187,4 +187,4 @@ inline EdgeEdgeDistance edge_edge_distance(const Vec3& a0, const Vec3& a1, const
   return {(r + t * v - s * u).squaredNorm(), s, t, detail::edge_region(s), detail::edge_region(t)};
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
@@ -285,4 +285,4 @@ double support(const OrientedBox& box, const Vec3& normal) {
   return normal.dot(box.center) + box.half_size.dot((box.rotation.transpose() * normal).cwiseAbs());
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -24,7 +24,7 @@
 #include "weft/core/shapes.h"
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct SignedDistance {
   double distance;  // [m]
@@ -77,4 +77,4 @@ double support(const Sphere& sphere, const Vec3& normal);
 double support(const Capsule& capsule, const Vec3& normal);
 double support(const OrientedBox& box, const Vec3& normal);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 struct Corners {
@@ -73,4 +73,4 @@ std::optional<Impact> find_edge_edge_impact(const std::array<Vec3, 4>& start, co
   return find(at, travel, limit);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

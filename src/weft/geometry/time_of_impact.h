@@ -17,7 +17,7 @@
 #include "weft/core/shapes.h"
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// How near features may come: `separation`, or half of their distance at the start if that is less than
 /// twice as much. Halving it step by step would end in rounding: not below `floor`, as long as the start was
@@ -85,4 +85,4 @@ auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
   return std::optional<Found>(now);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,6 +1,6 @@
 #include "weft/integrators/air_terms.h"
 
-namespace weft {
+namespace weft::engine {
 
 void AirTerms::begin(const ClothModel& model, const Environment& environment, const ClothState& state) {
   matrix_.clear();
@@ -59,4 +59,4 @@ double AirTerms::add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Arr
   return dot;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -12,7 +12,7 @@
 #include "weft/core/vec3_array.h"
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 
 class AirTerms {
  public:
@@ -43,4 +43,4 @@ class AirTerms {
   std::vector<Vec3> air_, slip_;  // velocity of the air at each particle; s [m/s]
 };
 
-}  // namespace weft
+}  // namespace weft::engine

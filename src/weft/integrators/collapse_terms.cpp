@@ -1,6 +1,6 @@
 #include "weft/integrators/collapse_terms.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kMargin = 1.4;  // narrow triangles: those below so many times kCollapseBegin [1]
@@ -65,4 +65,4 @@ double CollapseTerms::add_product(const Vec3Array& p, Vec3Array& q) const {
   return dot;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

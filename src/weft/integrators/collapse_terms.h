@@ -12,7 +12,7 @@
 #include "weft/forces/collapse.h"
 #include "weft/forces/narrow_triangles.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Σ W over the narrow triangles of the last linearise(): those with W > 0, and those that a Newton step may
 /// narrow so far. All others have W = 0. Positions are laid out by the rows, in floats; the sums are in
@@ -49,4 +49,4 @@ class CollapseTerms {
   std::vector<Active> active_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

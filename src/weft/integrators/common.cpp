@@ -1,7 +1,13 @@
 #include "weft/integrators/common.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
+
+/// External forces, as velocities at the start of the step.
+void add_external(const Environment& environment, double step, ClothState& state) {
+  for (std::size_t i = 0; i < environment.acceleration.size(); ++i)
+    state.v.set(i, state.v.get(i) + step * environment.acceleration[i]);
+}
 
 class OneByOne final : public Integrator {
  public:
@@ -19,6 +25,7 @@ class OneByOne final : public Integrator {
     IntegratorReport report;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const Body& body = bodies[b];
+      add_external(*body.environment, step.step, *body.state);
       const IntegratorReport done =
           cloths_[b]->advance(*body.model, *body.environment, step.step, jobs, *body.state);
       report.include(done, static_cast<int>(b));
@@ -73,4 +80,4 @@ IncrementSettings make_increment_settings(const ClothModel& model, const Environ
   return settings;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "weft/forces/increments.h"
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// An integrator that knows neither contacts nor other cloths.
 class ClothIntegrator {
@@ -75,4 +75,4 @@ double free_share(const ClothModel& model, const std::vector<int>& pinned, const
 IncrementSettings make_increment_settings(const ClothModel& model, const Environment& environment,
                                           double step);
 
-}  // namespace weft
+}  // namespace weft::engine

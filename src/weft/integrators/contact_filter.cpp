@@ -1,6 +1,6 @@
 #include "weft/integrators/contact_filter.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Normals that differ by less than this from those a particle has already are none of their own [1].
@@ -44,4 +44,4 @@ void ContactFilter::add_slid(Vec3Array& z) const {
   add(z.z(), slid_.z());
 }
 
-}  // namespace weft
+}  // namespace weft::engine

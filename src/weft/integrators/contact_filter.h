@@ -8,7 +8,7 @@
 #include "weft/core/job_system.h"
 #include "weft/core/vec3_array.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Contacts are a thousand times stiffer than inertia, but along their normals alone. A scalar matrix stiff
 /// enough for them holds cloth fast along the surface too, where it slides. So there are two,
@@ -70,4 +70,4 @@ class ContactFilter {
   std::unique_ptr<JobSystem> serial_ = make_serial_jobs();
 };
 
-}  // namespace weft
+}  // namespace weft::engine

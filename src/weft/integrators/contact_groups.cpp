@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace weft {
+namespace weft::engine {
 
 void ContactGroups::find(std::span<const Body> bodies, std::span<const Contact> contacts) {
   first_particle_.assign(1, 0);
@@ -50,4 +50,4 @@ void ContactGroups::Parts::sort(const std::vector<int>& group, int num_groups) {
   begin[0] = 0;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/contact/contact.h"
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The connected components of cloths under their contacts, in the order of their first cloths. They depend
 /// on what is in contact alone.
@@ -43,4 +43,4 @@ class ContactGroups {
   Parts bodies_of_, contacts_of_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
@@ -309,4 +309,4 @@ void ContactTerms::touch(FreeBodies& bodies) const {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -13,7 +13,7 @@
 #include "weft/integrators/integrator.h"
 #include "weft/solvers/conjugate_gradients.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A contact's depth under a weight is some micrometres, and no solve goes that far: what it has left over at
 /// the particles of contacts that push is theirs, and goes to their forces. `left` is the sum of all forces
@@ -148,4 +148,4 @@ class ContactTerms {
   std::vector<int> held_;       // terms that did
 };
 
-}  // namespace weft
+}  // namespace weft::engine

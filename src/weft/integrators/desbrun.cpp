@@ -15,7 +15,7 @@
 #include "weft/forces/spring.h"
 #include "weft/integrators/common.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
@@ -132,4 +132,4 @@ std::unique_ptr<Integrator> make_desbrun() {
   return make_one_by_one([] { return std::make_unique<DesbrunIntegrator>(); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Measured on the hanging sheet (docs/method.md): 10 iterations at 2000 N/m and 60 steps per second, where
@@ -70,4 +70,4 @@ Effort choose_effort(const NewtonSettings& settings, double reach) {
   return effort;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include "weft/integrators/integrator.h"
 #include "weft/solvers/conjugate_gradients.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Effort {
   int newton_steps = 1;       // that are always made [1]
@@ -21,4 +21,4 @@ Effort choose_effort(const NewtonSettings& settings, double reach);
 /// reach = h² · (this) [1/s²].
 double compute_reach_rate(const ClothModel& model);
 
-}  // namespace weft
+}  // namespace weft::engine

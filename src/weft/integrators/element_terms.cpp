@@ -4,7 +4,7 @@
 
 #include "weft/forces/bending.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TriangleCorners corners_of(const MembraneElement& m, const std::vector<Vec3>& x) {
@@ -166,4 +166,4 @@ std::vector<std::pair<int, int>> ElementTerms::find_pairs(const ClothElements& e
   return pairs;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

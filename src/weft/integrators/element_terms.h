@@ -15,7 +15,7 @@
 #include "weft/forces/membrane.h"
 #include "weft/model/cloth_elements.h"
 
-namespace weft {
+namespace weft::engine {
 
 class ElementTerms {
  public:
@@ -56,4 +56,4 @@ class ElementTerms {
   std::vector<Vec3> weight_;  // weight times direction
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/integrators/common.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Share of the stability limit that automatic substeps use: the limit is that of the cloth at rest.
@@ -54,4 +54,4 @@ std::unique_ptr<Integrator> make_explicit(const ExplicitSettings& settings) {
   return make_one_by_one([=] { return std::make_unique<ExplicitIntegrator>(settings); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

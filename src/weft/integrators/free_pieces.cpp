@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace weft {
+namespace weft::engine {
 
 void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
   const int n = model.num_particles();
@@ -104,4 +104,4 @@ void FreeBodies::remove_mean(std::span<Vec3Array* const> displacements) {
   });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "weft/core/vec3_array.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Pieces of a cloth that hang together by springs or elements, without a pinned particle among them.
 class FreePieces {
@@ -60,4 +60,4 @@ class FreeBodies {
   std::vector<double> weight_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/integrators/common.h"
 #include "weft/integrators/newton_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 TriangleCorners corners_of(const MembraneElement& triangle, const std::vector<Vec3>& x) {
@@ -65,7 +65,7 @@ void ImplicitCloth::start_from(const std::vector<Vec3>& x, const std::vector<Vec
   start_ = x;
   inertial_.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
-    inertial_[i] = x[i] + time * v[i] + time * time * environment_->gravity;
+    inertial_[i] = x[i] + time * v[i] + time * time * (environment_->gravity + environment_->external(i));
 }
 
 /// As `newton` has it: of cloth that falls freely as far as nothing carries it.
@@ -83,8 +83,9 @@ void ImplicitCloth::invent_history() {
   before_.displacement.resize(before_.x.size());
   before_.velocity.resize(before_.x.size());
   for (std::size_t i = 0; i < before_.x.size(); ++i) {
-    before_.displacement[i] = step * before_.v[i] - 0.5 * step * step * a;
-    before_.velocity[i] = before_.v[i] - step * a;
+    const Vec3 all = a + environment_->external(i);
+    before_.displacement[i] = step * before_.v[i] - 0.5 * step * step * all;
+    before_.velocity[i] = before_.v[i] - step * all;
   }
 }
 
@@ -275,4 +276,4 @@ void ImplicitCloth::finish(const std::vector<Vec3>& x, bool is_pushed) {
   state_->history.had_contact = is_pushed;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/integrators/element_terms.h"
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 
 enum class Order { first, second };
 enum class Keeps { floats, doubles };
@@ -22,7 +22,9 @@ class ImplicitCloth {
   void begin(const Body& body, double step, Order order, Keeps keeps);
 
   /// Whether contact took part in the step before.
-  bool had_contact() const { return state_->history.step > 0 && state_->history.had_contact; }
+  bool is_first_order() const {
+    return state_->history.is_held || (state_->history.step > 0 && state_->history.had_contact);
+  }
 
   /// Makes that BDF2.
   void begin_second_order();
@@ -91,4 +93,4 @@ class ImplicitCloth {
   std::vector<Vec3> start_, inertial_, placed_, damped_shape_, velocity_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -22,7 +22,7 @@
 #include "weft/integrators/implicit_cloth.h"
 #include "weft/solvers/block_cholesky.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kArmijo = 1e-4;              // share of the predicted decrease that a step must bring
@@ -70,7 +70,7 @@ class ImplicitGroup {
 
   /// BDF2, unless contact takes part in this step or did in the one before (see `newton`).
   void begin_second_order() {
-    if (std::any_of(cloths_.begin(), cloths_.end(), [](const auto* c) { return c->had_contact(); })) return;
+    if (std::any_of(cloths_.begin(), cloths_.end(), [](const auto* c) { return c->is_first_order(); })) return;
     x_.clear();
     for (const ImplicitCloth* cloth : cloths_)
       x_.insert(x_.end(), cloth->inertial().begin(), cloth->inertial().end());
@@ -476,4 +476,4 @@ std::unique_ptr<Integrator> make_newton_in_double() {
                                                    Order::second, Keeps::doubles);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

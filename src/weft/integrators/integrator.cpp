@@ -1,8 +1,18 @@
 #include "weft/integrators/integrator.h"
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
 namespace weft {
+
+const std::vector<std::string_view>& integrator_names() {
+  static const std::vector<std::string_view> names = {"explicit",       "paper",  "paper_fixed", "desbrun",
+                                                      "implicit_euler", "newton", "xpbd"};
+  return names;
+}
+
+}  // namespace weft
+
+namespace weft::engine {
 
 void add_count(const std::optional<int>& count, std::optional<int>& sum) {
   if (count) sum = sum.value_or(0) + *count;
@@ -14,12 +24,6 @@ void IntegratorReport::include(const IntegratorReport& other, int cloth) {
   iterations += other.iterations;
   add_count(other.linear_iterations, linear_iterations);
   add_count(other.guard_events, guard_events);
-}
-
-const std::vector<std::string_view>& integrator_names() {
-  static const std::vector<std::string_view> names = {"explicit",       "paper",  "paper_fixed", "desbrun",
-                                                      "implicit_euler", "newton", "xpbd"};
-  return names;
 }
 
 bool moves_elements(std::string_view integrator) {
@@ -61,4 +65,4 @@ double compute_stiffness_number(const ClothModel& model, double step) {
 
 double gravity_factor(double a) { return (1 + 2 * a) / ((1 + a) * (1 + a)); }
 
-}  // namespace weft
+}  // namespace weft::engine

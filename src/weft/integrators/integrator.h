@@ -24,8 +24,9 @@
 #include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
+#include "weft/solver.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Particles whose motion is prescribed, and where they are at the end of the step.
 struct PinTargets {
@@ -39,6 +40,11 @@ struct Environment {
   double time = 0;               // at the end of the step [s]
   Wind wind;
   PinTargets pins;
+  std::vector<Vec3> acceleration;  // by external forces (num_particles); empty: none [m/s²]
+
+  Vec3 external(std::size_t particle) const {
+    return acceleration.empty() ? Vec3(Vec3::Zero()) : acceleration[particle];
+  }
 };
 
 /// One cloth during a step.
@@ -52,49 +58,6 @@ struct SystemStep {
   double step = 0;                    // [s]
   bool tells_contact_forces = false;  // whether Contact::force is wanted
   WorkClock* clock = nullptr;         // of the whole step; null: not measured
-};
-
-struct ExplicitSettings {
-  int substeps = 0;  // per step; 0: as many as stability asks for [1]
-};
-
-struct PaperSettings {
-  /// Use the damping force as the paper prints it, d (v_i − v_j), which feeds motion instead of damping it.
-  bool printed_damping_sign = false;
-};
-
-struct ImplicitEulerSettings {
-  double tolerance = 1e-2;  // Newton stops when no particle's velocity changes more; smaller is slower [m/s]
-  int iterations = 50;      // Newton iterations per step at most; running out is told by the report [1]
-};
-
-/// One knob for the effort of `newton`: halves or doubles what it would choose by itself.
-enum class NewtonQuality { fast, normal, high };
-
-struct NewtonSettings {
-  /// Of conjugate gradients, per Newton step; 0: chosen from stiffness, step and mesh (about 5 for soft
-  /// cloth, 10 for 2000 N/m and 60 steps per second, 20 for 20000 N/m). More is slower and closer to the
-  /// exact solution [1].
-  int iterations = 0;
-  NewtonQuality quality = NewtonQuality::normal;  // only without fixed iterations
-};
-
-struct XpbdSettings {
-  /// Per step. More is slower and stretches less: by measurement the error falls like 1/substeps, and the
-  /// number needed for the same error grows with the particles per side [1].
-  int substeps = 50;
-};
-
-struct IntegratorSettings {
-  std::string integrator = "newton";  // one of integrator_names()
-  ExplicitSettings explicit_euler;
-  PaperSettings paper;
-  ImplicitEulerSettings implicit_euler;
-  NewtonSettings newton;
-  XpbdSettings xpbd;
-  /// For references: states are kept in doubles too, and `newton` then solves its equations like
-  /// `implicit_euler`, to the last digits, by sparse Cholesky. Only these two have it.
-  bool is_double = false;
 };
 
 /// Adds a count to a sum; both may be empty.
@@ -138,9 +101,6 @@ class Integrator {
   }
 };
 
-/// Names that make_integrator knows, in the order of the list above.
-const std::vector<std::string_view>& integrator_names();
-
 /// Whether the integrator of this name moves a fabric's membranes and bending (ClothModel::elements); the
 /// others know springs alone.
 bool moves_elements(std::string_view integrator);
@@ -178,4 +138,4 @@ double compute_stiffness_number(const ClothModel& model, double step);
 /// The share of gravity that Eq. 16 lets through where neighbours share a: (1 + 2a)/(1 + a)² [1].
 double gravity_factor(double stiffness_number);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -24,7 +24,7 @@
 #include "weft/integrators/free_pieces.h"
 #include "weft/integrators/newton_cloth.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
@@ -85,7 +85,7 @@ class NewtonGroup {
   /// each other is momentum only if their steps are alike.
   void predict() {
     bool is_euler =
-        std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->had_contact(); });
+        std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->is_first_order(); });
     if (!contacts_.empty()) {
       for (NewtonCloth* cloth : cloths_) cloth->remember_gain();
     }
@@ -333,4 +333,4 @@ std::unique_ptr<Integrator> make_newton(const NewtonSettings& settings) {
   return std::make_unique<NewtonIntegrator>(settings);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/integrators/effort.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kMuchStiffer = 8;  // a preconditioner that is off by less will do
@@ -50,8 +50,9 @@ void NewtonCloth::invent_history(JobSystem& jobs) {
   const Vec3 a = free_share(jobs) * gravity();
   for (std::size_t i = 0; i < state_->x.size(); ++i) {
     const Vec3 v = state_->v.get(i);
-    history.displacement.set(i, step_ * v - 0.5 * step_ * step_ * a);
-    history.velocity.set(i, v - step_ * a);
+    const Vec3 all = a + environment_->external(i);
+    history.displacement.set(i, step_ * v - 0.5 * step_ * step_ * all);
+    history.velocity.set(i, v - step_ * all);
   }
   history.step = step_;
   history.had_contact = false;
@@ -65,14 +66,16 @@ double NewtonCloth::free_share(JobSystem& jobs) {
   clear(correction_);
   potential_.linearise(correction_, jobs, force_);
   hold_pins(force_);
-  return weft::free_share(*model_, pinned_, gravity(), [&](int i) { return force_.get(rows_.index(i)); });
+  return weft::engine::free_share(*model_, pinned_, gravity(),
+                                  [&](int i) { return force_.get(rows_.index(i)); });
 }
 
 ContactTerms::Positions NewtonCloth::place_freely(JobSystem& jobs) {
   StepScheme euler{.step = step_};
   add_outside(euler);
   scratch_ = *state_;
-  weft::predict(euler, rows_, jobs, scratch_, trial_);
+  weft::engine::predict(euler, rows_, jobs, scratch_, trial_);
+  add_external(euler, scratch_, trial_);
   clear(solution_);
   return {&trial_, &solution_};
 }
@@ -82,6 +85,19 @@ void NewtonCloth::add_outside(StepScheme& scheme) const {
   const double wind = time * environment_->wind.drag / model_->material.density;
   scheme.keep = 1 / (1 + wind);
   scheme.gain = scheme.keep * (time * gravity() + wind * environment_->wind.velocity);
+}
+
+/// External forces, beside gravity: they enter a prediction as it does.
+void NewtonCloth::add_external(const StepScheme& scheme, ClothState& state, Vec3Array& y) const {
+  const std::vector<Vec3>& acceleration = environment_->acceleration;
+  const double time = scheme.step / scheme.beta;
+  for (std::size_t i = 0; i < acceleration.size(); ++i) {
+    const Vec3 gain = scheme.keep * time * acceleration[i];
+    const int row = rows_.index(static_cast<int>(i));
+    state.v.set(i, state.v.get(i) + gain);
+    state.history.displacement.set(i, state.history.displacement.get(i) + time * gain);
+    y.set(row, y.get(row) + time * gain);
+  }
 }
 
 void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
@@ -94,7 +110,8 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
   pin_motion_.prepare(pins, step_, *state_);
-  weft::predict(scheme_, rows_, jobs, *state_, potential_.target);
+  weft::engine::predict(scheme_, rows_, jobs, *state_, potential_.target);
+  add_external(scheme_, *state_, potential_.target);
   for (std::size_t p = 0; p < pinned_.size(); ++p) {
     potential_.target.set(rows_.index(pinned_[p]), pins.position[p] - state_->origin);
     state_->v.set(pinned_[p], pin_motion_.velocity()[p]);
@@ -267,4 +284,4 @@ void NewtonCloth::clear(Vec3Array& field) {
   for (float* component : {field.x(), field.y(), field.z()}) std::fill_n(component, field.size(), 0.0f);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

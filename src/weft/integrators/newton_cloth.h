@@ -14,7 +14,7 @@
 #include "weft/integrators/scalar_preconditioner.h"
 #include "weft/solvers/conjugate_gradients.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Its potential but for contacts, the preconditioner that goes with it, and the step from prediction to
 /// state. The functions are to be called in this order.
@@ -24,7 +24,7 @@ class NewtonCloth {
   void begin(const Body& body, const SystemStep& step, JobSystem& jobs);
 
   /// Whether contact took part in the step before.
-  bool had_contact() const { return state_->history.had_contact; }
+  bool is_first_order() const { return state_->history.is_held || state_->history.had_contact; }
 
   /// Where implicit Euler without springs would take it; its state stays as it is.
   ContactTerms::Positions place_freely(JobSystem& jobs);
@@ -103,6 +103,7 @@ class NewtonCloth {
   void invent_history(JobSystem& jobs);
   double free_share(JobSystem& jobs);
   void add_outside(StepScheme& scheme) const;
+  void add_external(const StepScheme& scheme, ClothState& state, Vec3Array& y) const;
   void prepare_matrices(JobSystem& jobs);
   void set_weights(double rate);
   double energy_noise() const;
@@ -147,4 +148,4 @@ class NewtonCloth {
   ClothState scratch_;    // where the cloth would go without springs
 };
 
-}  // namespace weft
+}  // namespace weft::engine

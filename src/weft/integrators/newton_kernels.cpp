@@ -4,7 +4,7 @@
 
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 4096;  // particles per chunk of work
@@ -111,4 +111,4 @@ void add_scaled(const Vec3Array& y, double share, const Vec3Array& d, JobSystem&
   });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "weft/core/padded_rows.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// One step of BDF2, or of implicit Euler (memory 0, beta 1), as a prediction without springs:
 ///
@@ -36,4 +36,4 @@ void correct(const StepScheme& scheme, const PaddedRows& rows, const Vec3Array& 
 /// x = y + share · d.
 void add_scaled(const Vec3Array& y, double share, const Vec3Array& d, JobSystem& jobs, Vec3Array& x);
 
-}  // namespace weft
+}  // namespace weft::engine

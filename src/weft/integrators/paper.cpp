@@ -8,7 +8,7 @@
 
 #include "weft/integrators/common.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class PaperIntegrator final : public ClothIntegrator {
@@ -41,4 +41,4 @@ std::unique_ptr<Integrator> make_paper(const PaperSettings& settings) {
   return make_one_by_one([=] { return std::make_unique<PaperIntegrator>(settings); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

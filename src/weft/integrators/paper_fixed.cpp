@@ -13,7 +13,7 @@
 
 #include "weft/integrators/common.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class PaperFixedIntegrator final : public ClothIntegrator {
@@ -51,4 +51,4 @@ std::unique_ptr<Integrator> make_paper_fixed() {
   return make_one_by_one([] { return std::make_unique<PaperFixedIntegrator>(); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

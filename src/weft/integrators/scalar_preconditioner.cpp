@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft {
+namespace weft::engine {
 
 namespace {
 
@@ -204,4 +204,4 @@ double ScalarPreconditioner::apply(const Vec3Array& r, JobSystem& jobs, Vec3Arra
   return is_grid_ ? grid_.apply(r, jobs, z) : mesh_.apply(r, first_, jobs, z);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/solvers/aggregation_multigrid.h"
 #include "weft/solvers/grid_multigrid.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved roughly by one multigrid
 /// V-cycle. Bending springs are not in it: on grids they count as four times their stiffness along the
@@ -50,4 +50,4 @@ class ScalarPreconditioner {
   AggregationMultigrid mesh_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include "weft/integrators/common.h"
 #include "weft/integrators/xpbd_projection.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class XpbdIntegrator final : public ClothIntegrator {
@@ -82,4 +82,4 @@ std::unique_ptr<Integrator> make_xpbd(const XpbdSettings& settings) {
   return make_one_by_one([=] { return std::make_unique<XpbdIntegrator>(settings); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

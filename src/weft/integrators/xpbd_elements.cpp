@@ -6,7 +6,7 @@
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 256;  // elements per chunk of work
@@ -150,4 +150,4 @@ void XpbdElements::project(double step, JobSystem& jobs, XpbdParticles& particle
   });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

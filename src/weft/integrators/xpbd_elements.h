@@ -20,7 +20,7 @@
 #include "weft/integrators/xpbd_particles.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 class XpbdElements {
  public:
@@ -37,4 +37,4 @@ class XpbdElements {
   Colours membranes_, stencils_, hinges_, limits_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

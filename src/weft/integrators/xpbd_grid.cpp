@@ -17,7 +17,7 @@
 
 #include "weft/integrators/xpbd_projection.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kClasses = 4;    // of columns, and of rows
@@ -375,4 +375,4 @@ std::unique_ptr<ClothProjection> make_grid_projection(const ClothTopology& topol
   return std::make_unique<GridProjection>(topology);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/integrators/xpbd_elements.h"
 #include "weft/integrators/xpbd_projection.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kParticleGrain = 4096, kSpringGrain = 2048;  // per chunk of work
@@ -183,4 +183,4 @@ std::unique_ptr<ClothProjection> make_mesh_projection(const ClothModel& model) {
   return std::make_unique<MeshProjection>(model);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

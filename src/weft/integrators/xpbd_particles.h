@@ -6,7 +6,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// All that a spring needs to know of one end, in half a cache line.
 struct alignas(32) XpbdParticle {
@@ -75,4 +75,4 @@ Colours colour_items(int num_items, int num_particles, const ParticlesOf& partic
   return colours;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

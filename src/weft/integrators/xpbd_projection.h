@@ -23,7 +23,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// What a substep does to particles and springs besides elasticity.
 struct XpbdSubstep {
@@ -90,4 +90,4 @@ WEFT_ALWAYS_INLINE SpringPush<V> spring_push(const Number& elastic, const Number
   return {total - sideways * approach / length_sq, sideways};
 }
 
-}  // namespace weft
+}  // namespace weft::engine

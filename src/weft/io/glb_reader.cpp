@@ -10,9 +10,9 @@
 #include <iterator>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Pose = RigidMesh::Pose;
@@ -377,4 +377,4 @@ Animation parse_glb(std::span<const unsigned char> bytes, const std::string& nam
 
 Animation read_glb(const std::filesystem::path& file) { return parse_glb(read_bytes(file), file.string()); }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include "weft/io/glb_writer.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The animation in the file: cloths with a position per frame, bodies with their poses and exact shapes.
 /// Numbers come back as they were written: positions and moving poses as floats, shapes and resting poses as
@@ -20,4 +20,4 @@ Animation read_glb(const std::filesystem::path& file);
 /// The same from the file's bytes; `name` stands for the file in messages. Never reads another file.
 Animation parse_glb(std::span<const unsigned char> bytes, const std::string& name);
 
-}  // namespace weft
+}  // namespace weft::engine

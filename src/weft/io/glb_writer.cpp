@@ -9,10 +9,10 @@
 #include <limits>
 #include <span>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/mesh/vertex_normals.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kRoughness = 0.8;  // cloth scatters light
@@ -437,4 +437,4 @@ void write_glb(const std::filesystem::path& file, const Animation& animation) {
   staged.replace();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

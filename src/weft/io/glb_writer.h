@@ -11,7 +11,7 @@
 #include "weft/core/staged_file.h"
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A mesh with a position per vertex and frame. In the file: the first frame as the mesh, every further frame
 /// as a morph target (positions and normals), and one animation that blends linearly from frame to frame.
@@ -29,6 +29,9 @@ struct RigidMesh {
   struct Pose {
     Vec3 translation = Vec3::Zero();                               // [m]
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // unit
+    bool operator==(const Pose& other) const {
+      return translation == other.translation && rotation.coeffs() == other.rotation.coeffs();
+    }
   };
 
   std::string name;
@@ -67,4 +70,4 @@ void write_glb(const std::filesystem::path& file, const Animation& animation);
 /// The same up to finish(): replace() is left to the caller.
 void write_glb(StagedFile& file, const Animation& animation);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -18,10 +18,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/staged_file.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 // ---- Lines and words ----
@@ -389,4 +389,4 @@ void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& 
   write_file(file, text);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct ObjMesh {
   TriangleMesh mesh;         // all objects and groups of the file together; vertices as in the file
@@ -40,4 +40,4 @@ void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 /// The same for several meshes, each as an object of its own.
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects);
 
-}  // namespace weft
+}  // namespace weft::engine

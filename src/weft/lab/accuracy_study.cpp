@@ -13,7 +13,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kFrame = 1.0 / 60, kGravity = 9.81, kPi = 3.141592653589793;
@@ -396,4 +396,4 @@ Chapter study_accuracy(const ChapterOptions& options) {
   return chapter;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,9 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -303,4 +303,4 @@ std::string to_html(const StudyReport& report, const std::filesystem::path& fold
   return html + "</body></html>\n";
 }
 
-}  // namespace weft
+}  // namespace weft::engine

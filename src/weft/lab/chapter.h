@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 struct KeyFigure {
   std::string name;  // unique in its chapter, as JSON calls it
@@ -83,4 +83,4 @@ std::string to_html(const StudyReport& report, const std::filesystem::path& fold
 /// `holds`, `holds in part`, `does not hold`, `finding`.
 std::string to_string(Verdict verdict);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "weft/lab/chapter.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct ChapterOptions {
   bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
@@ -39,4 +39,4 @@ Chapter study_contact(const ChapterOptions& options);
 /// One fabric on many meshes and at many steps.
 Chapter study_fabric(const ChapterOptions& options);
 
-}  // namespace weft
+}  // namespace weft::engine

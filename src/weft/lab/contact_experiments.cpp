@@ -7,7 +7,7 @@
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -359,4 +359,4 @@ Collision collide_sheets(const ContactExperiment& setup, double seconds) {
   return collision;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

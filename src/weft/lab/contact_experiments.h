@@ -6,7 +6,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 class World;
 
@@ -110,4 +110,4 @@ struct Collision {
 };
 Collision collide_sheets(const ContactExperiment& setup, double seconds);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Claim nothing_crosses(const ChapterOptions& options) {
@@ -177,4 +177,4 @@ Chapter study_contact(const ChapterOptions& options) {
   return chapter;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 #include "weft/run/stopwatch.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMostRuns = 3;   // of which the fastest counts: others may be using the machine …
@@ -86,4 +86,4 @@ PlotPanel make_panel(const std::string& title, const std::vector<ContestResult>&
   return panel;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

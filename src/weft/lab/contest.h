@@ -8,7 +8,7 @@
 #include "weft/lab/plot.h"
 #include "weft/lab/reference.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// At which methods are compared: 4 cm in a swing of a metre is hard to see [m].
 inline constexpr double kEqualError = 0.045;
@@ -41,4 +41,4 @@ std::optional<double> find_time(const std::string& method, const std::vector<Con
 /// Error against time, a series per method; what flew apart is left out.
 PlotPanel make_panel(const std::string& title, const std::vector<ContestResult>& results);
 
-}  // namespace weft
+}  // namespace weft::engine

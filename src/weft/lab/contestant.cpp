@@ -2,7 +2,7 @@
 
 #include "weft/lab/reference.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 class IntegratorContestant final : public Contestant {
@@ -61,4 +61,4 @@ std::unique_ptr<Contestant> make_integrator_contestant(const ContestantSettings&
   return std::make_unique<IntegratorContestant>(entry, cloth);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

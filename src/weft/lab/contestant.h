@@ -7,7 +7,7 @@
 
 #include "weft/lab/hung_cloth.h"
 
-namespace weft {
+namespace weft::engine {
 
 class Contestant {
  public:
@@ -36,4 +36,4 @@ std::vector<ContestantSettings> list_integrator_entries();
 std::unique_ptr<Contestant> make_integrator_contestant(const ContestantSettings& entry,
                                                        const HungCloth& cloth);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/mesh/sample_meshes.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPlateRadius = 0.09, kSpecimenRadius = 0.15;  // of ISO 9073-9 [m]
@@ -173,4 +173,4 @@ Drape simulate_drape(const Fabric& fabric, const SpecimenSettings& settings, std
   return drape;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

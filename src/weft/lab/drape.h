@@ -4,7 +4,7 @@
 #include "weft/io/glb_writer.h"
 #include "weft/lab/specimen.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Drape {
   double coefficient = 0;  // [1]
@@ -23,4 +23,4 @@ double compute_shadow(const std::vector<Triangle>& triangles, const ClothState& 
 /// A cloth as an animation of one frame.
 Animation show_specimen(const ClothModel& model, const ClothState& state);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include "weft/lab/chapters.h"
 #include "weft/lab/fabric_studies.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 struct FabricStudy {
@@ -68,4 +68,4 @@ Chapter study_fabric(const ChapterOptions& options) {
   return chapter;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/lab/drape.h"
 #include "weft/lab/hung_strip.h"
 #include "weft/lab/studies.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
@@ -103,7 +103,7 @@ StudyResult study_fabric_constants(const StudySettings& settings) {
       const SpecimenSettings specimen{.mesh = mesh, .membrane = membrane};
       double worst = 0;
       for (const char* name : names) {
-        const Fabric& f = find_fabric(name).fabric;
+        const Fabric& f = find_fabric(name);
         if (has_springs && f.c11 <= f.g) continue;  // springs cannot be it
         const std::string kind = std::string(has_springs ? "springs, " : "triangle, ") + name_of(mesh);
         settings.say(std::string(name) + ", " + kind);
@@ -141,7 +141,7 @@ StudyResult study_fabric_cantilever(const StudySettings& settings) {
         for (const StripDirection direction :
              {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
           const StudyResult test =
-              study_cantilever(find_fabric(name).fabric, {.mesh = mesh, .resolution = cells}, direction);
+              study_cantilever(find_fabric(name), {.mesh = mesh, .resolution = cells}, direction);
           ratio.push_back(find_figure(test, "h_over_w"));
         }
         table.rows.push_back({name, name_of(mesh), std::to_string(cells), digits(ratio[0], 4),
@@ -172,7 +172,7 @@ StudyResult study_fabric_drape(const StudySettings& settings) {
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       settings.say("denim, " + std::to_string(n) + " rings");
       const StudyResult test =
-          study_drape(find_fabric("denim").fabric, {.mesh = mesh, .resolution = n}, settings.threads);
+          study_drape(find_fabric("denim"), {.mesh = mesh, .resolution = n}, settings.threads);
       const double coefficient = find_figure(test, "drape_coefficient");
       row.push_back(digits(coefficient, 3) + " ± " +
                     digits(find_figure(test, "drape_coefficient_spread"), 2));
@@ -199,7 +199,7 @@ StudyResult study_fabric_drape(const StudySettings& settings) {
 
 StudyResult study_fabric_meshes(const StudySettings& settings) {
   StudyResult result;
-  Fabric fabric = find_fabric("cotton_shirting").fabric;
+  Fabric fabric = find_fabric("cotton_shirting");
   StudyTable table{"Cotton shirting on five meshes",
                    {"mesh", "drape coefficient [%]", "folds", "sag [m]", "swing [s]"},
                    {}};
@@ -234,7 +234,7 @@ StudyResult study_fabric_strain_limit(const StudySettings& settings) {
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       for (const int cells : resolutions) {
         settings.say(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) + " cells");
-        Fabric fabric = find_fabric(name).fabric;
+        Fabric fabric = find_fabric(name);
         const Swing free = swing_sheet(fabric, cells, mesh);
         fabric.strain_limit = kLimit;
         const Swing held = swing_sheet(fabric, cells, mesh);
@@ -252,7 +252,7 @@ StudyResult study_fabric_strain_limit(const StudySettings& settings) {
 StudyResult study_fabric_steps(const StudySettings& settings) {
   StudyResult result;
   StudyTable table{"One fabric at three steps", {"steps per second", "sag [m]", "swing [s]"}, {}};
-  const Fabric& denim = find_fabric("denim").fabric;
+  const Fabric& denim = find_fabric("denim");
   const int cells = settings.quick ? 12 : 32;
   std::vector<double> sags;
   for (const int steps_per_second : {60, 120, 240}) {
@@ -273,4 +273,4 @@ StudyResult study_fabric_steps(const StudySettings& settings) {
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

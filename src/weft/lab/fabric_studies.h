@@ -3,7 +3,7 @@
 
 #include "weft/lab/study.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// c11, c22, c12 and g of five fabrics, as tensile and shear tests on a grid and on a random mesh give them
 /// back.
@@ -25,4 +25,4 @@ StudyResult study_fabric_strain_limit(const StudySettings& settings);
 /// The shape at rest at 60, 120 and 240 steps per second, and how fast a swing dies away.
 StudyResult study_fabric_steps(const StudySettings& settings);
 
-}  // namespace weft
+}  // namespace weft::engine

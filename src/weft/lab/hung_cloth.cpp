@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "weft/core/angle.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 HungCloth hang(std::string name, std::shared_ptr<const ClothTopology> topology, const ClothMaterial& material,
@@ -105,4 +105,4 @@ double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

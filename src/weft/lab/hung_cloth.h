@@ -6,7 +6,7 @@
 
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct HungCloth {
   std::string name;
@@ -37,4 +37,4 @@ std::vector<Vec3> positions_of(const ClothState& state);
 /// Root mean square distance of as many places [m].
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 
-}  // namespace weft
+}  // namespace weft::engine

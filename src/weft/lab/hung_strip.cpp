@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -97,4 +97,4 @@ double measure_swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh, 
   return 0;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

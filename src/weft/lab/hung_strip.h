@@ -3,7 +3,7 @@
 
 #include "weft/lab/specimen.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A strip of 1 m × 0.25 m between two bars that are 0.8 m apart: a catenary, where bending and stretching
 /// are small beside weight. It starts as an arc near it, at rest.
@@ -22,4 +22,4 @@ inline constexpr double kSwingFrequency = 0.59940;
 /// a hundred iterations [s]. 0 if it does not swing.
 double measure_swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh, int steps_per_second = 240);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -16,7 +16,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft::paper_study {
+namespace weft::engine::paper_study {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;  // [s]
@@ -437,4 +437,4 @@ Claim figures_remade(const ChapterOptions& options) {
   return claim;
 }
 
-}  // namespace weft::paper_study
+}  // namespace weft::engine::paper_study

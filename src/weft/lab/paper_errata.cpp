@@ -12,7 +12,7 @@
 #include "weft/lab/plot.h"
 #include "weft/world/measures.h"
 
-namespace weft::paper_study {
+namespace weft::engine::paper_study {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s²]
@@ -187,4 +187,4 @@ Claim damping_feeds_motion() {
   return claim;
 }
 
-}  // namespace weft::paper_study
+}  // namespace weft::engine::paper_study

@@ -1,6 +1,6 @@
 #include "weft/lab/paper_study.h"
 
-namespace weft {
+namespace weft::engine {
 
 Chapter study_paper(const ChapterOptions& options) {
   Chapter chapter{
@@ -20,4 +20,4 @@ Chapter study_paper(const ChapterOptions& options) {
   return chapter;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

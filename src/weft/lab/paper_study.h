@@ -3,7 +3,7 @@
 
 #include "weft/lab/chapters.h"
 
-namespace weft::paper_study {
+namespace weft::engine::paper_study {
 
 Claim one_shear_spring(const ChapterOptions& options);
 Claim large_steps(const ChapterOptions& options);
@@ -17,4 +17,4 @@ Claim gravity_is_filtered();
 Claim no_damping_of_its_own();
 Claim damping_feeds_motion();
 
-}  // namespace weft::paper_study
+}  // namespace weft::engine::paper_study

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <limits>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
@@ -222,4 +222,4 @@ double fit_exponent(const std::vector<PlotPoint>& points) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

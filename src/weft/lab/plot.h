@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 struct PlotPoint {
   double x = 1, y = 1;  // > 0 on logarithmic axes
@@ -47,4 +47,4 @@ void write_svg(const Plot& plot, const std::filesystem::path& file);
 /// The slope of the straight line nearest to the points (log x, log y).
 double fit_exponent(const std::vector<PlotPoint>& points);
 
-}  // namespace weft
+}  // namespace weft::engine

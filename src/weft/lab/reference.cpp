@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/hash.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kVersion = 1;             // of the method: to be raised with every change of its results
@@ -126,4 +126,4 @@ std::filesystem::path default_cache_folder() {
   return std::filesystem::temp_directory_path() / "weft";
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 
 #include "weft/lab/hung_cloth.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline constexpr double kReferenceFrame = 1.0 / 60;  // [s]
 
@@ -33,4 +33,4 @@ double distance_from(const std::vector<float>& frame, const ClothState& state);
 /// $XDG_CACHE_HOME/weft, or ~/.cache/weft, or a folder for temporary files.
 std::filesystem::path default_cache_folder();
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/mesh/vertex_normals.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kCheckSize = 0.025;  // of the checks in cloth [m]
@@ -151,4 +151,4 @@ Camera frame_scene(const Animation& animation, int first, int last, const Camera
   return frame_points(like, points, aspect);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/render/picture.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The springs of one cloth, to be drawn instead of its surface.
 struct SpringsToDraw {
@@ -40,4 +40,4 @@ Camera frame_scene(const Animation& animation, int first, int last, const Camera
 
 int num_frames(const Animation& animation);
 
-}  // namespace weft
+}  // namespace weft::engine

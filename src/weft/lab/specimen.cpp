@@ -9,7 +9,7 @@
 #include "weft/model/fabric_springs.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kIterations = 60;    // of conjugate gradients per step
@@ -149,4 +149,4 @@ std::vector<Vec3> compute_membrane_forces(const Specimen& specimen) {
   return force;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

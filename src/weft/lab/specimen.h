@@ -3,11 +3,11 @@
 
 #include <functional>
 
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 #include "weft/integrators/integrator.h"
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 
 enum class SpecimenMesh {
   grid,    // squares, cut along alternating diagonals
@@ -56,4 +56,4 @@ bool settle(Specimen& specimen, double size);
 /// [N].
 std::vector<Vec3> compute_membrane_forces(const Specimen& specimen);
 
-}  // namespace weft
+}  // namespace weft::engine

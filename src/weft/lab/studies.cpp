@@ -5,7 +5,7 @@
 
 #include "weft/lab/drape.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -211,4 +211,4 @@ StudyResult study_drape(const Fabric& fabric, const SpecimenSettings& settings, 
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/lab/specimen.h"
 #include "weft/lab/study.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Which way a strip is cut.
 enum class StripDirection { warp, weft, bias };
@@ -53,4 +53,4 @@ StudyResult study_buckling(const Fabric& fabric, const SpecimenSettings& setting
 /// Specimen: 30 rings, with self-contact; `settings.mesh` moves its vertices for `random`.
 StudyResult study_drape(const Fabric& fabric, const SpecimenSettings& settings, int threads);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace weft {
+namespace weft::engine {
 
 bool Figure::is_as_expected() const { return !expected || std::abs(value - *expected) <= tolerance; }
 
@@ -13,4 +13,4 @@ std::string digits(double value, int significant) {
   return buffer;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "weft/io/glb_writer.h"
 #include "weft/lab/plot.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Figure {
   std::string name;  // as standards call it; no other of the study has it
@@ -57,4 +57,4 @@ struct StudySettings {
 /// A number as tables show it: so many significant digits.
 std::string digits(double value, int significant);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kNone = -1;
@@ -162,4 +162,4 @@ Borders build_borders(const TriangleMesh& mesh) {
   return std::move(builder.borders);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

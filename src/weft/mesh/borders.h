@@ -12,7 +12,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A border edge of the mesh, in the border's direction.
 struct BorderEdge {
@@ -58,4 +58,4 @@ struct Borders {
 
 Borders build_borders(const TriangleMesh& mesh);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <set>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/mesh/sew.h"
 #include "weft/mesh/slivers.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A triangle thinner than this, as area over longest edge squared, counts as having no area [1].
@@ -220,4 +220,4 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/mesh/derived_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct CleanOptions {
   /// Vertices closer than this are sewn into one [m]; 0 sews exact duplicates, negative sews nothing.
@@ -30,4 +30,4 @@ struct CleanMesh : DerivedMesh {
 /// lowest index; sewn ones meet halfway.
 CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options = {});
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace weft {
+namespace weft::engine {
 
 DerivedMesh compose(const DerivedMesh& first, DerivedMesh second) {
   for (std::size_t t = 0; t < second.source_triangle.size(); ++t) {
@@ -17,4 +17,4 @@ DerivedMesh compose(const DerivedMesh& first, DerivedMesh second) {
   return second;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct DerivedMesh {
   TriangleMesh mesh;
@@ -17,4 +17,4 @@ struct DerivedMesh {
 /// `second`, made of first.mesh, as made of the first's source.
 DerivedMesh compose(const DerivedMesh& first, DerivedMesh second);
 
-}  // namespace weft
+}  // namespace weft::engine

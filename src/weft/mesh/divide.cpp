@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 struct Corner {
@@ -86,4 +86,4 @@ DividedTriangles divide_edges(const DividedTriangles& whole, std::vector<EdgePoi
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

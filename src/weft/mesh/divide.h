@@ -14,7 +14,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A point inside the edge a–b.
 struct EdgePoint {
@@ -37,4 +37,4 @@ DividedTriangles make_undivided(const std::vector<Triangle>& triangles);
 /// may come in any order.
 DividedTriangles divide_edges(const DividedTriangles& whole, std::vector<EdgePoint> points);
 
-}  // namespace weft
+}  // namespace weft::engine

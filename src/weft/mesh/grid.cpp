@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 
 void require_valid(const Grid& grid) {
   for (const double size : {grid.size_x, grid.size_z}) {
@@ -12,6 +12,9 @@ void require_valid(const Grid& grid) {
   }
   if (grid.cells_x < 1 || grid.cells_z < 1)
     throw InputError("a grid needs one cell at least along each side");
+  constexpr double kMaxParticles = 1e8;
+  if ((grid.cells_x + 1.0) * (grid.cells_z + 1.0) > kMaxParticles)
+    throw InputError("a grid may have 100 million particles at most");
 }
 
 TriangleMesh build_grid_mesh(const Grid& grid, GridDiagonals diagonals) {
@@ -53,4 +56,4 @@ std::vector<double> compute_grid_areas(const Grid& grid) {
   return areas;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 
 RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2) {
   const Vec2 edge[3] = {x2 - x1, x0 - x2, x1 - x0};  // opposite to each corner
@@ -20,4 +20,4 @@ RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t) {
   return make_rest_triangle({0, 0}, {length, 0}, {d1.dot(d2) / length, d1.cross(d2).norm() / length});
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 using Vec2 = Eigen::Vector2d;
 
@@ -28,4 +28,4 @@ RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2);
 /// directions.
 RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include "weft/core/angle.h"
 #include "weft/core/random.h"
 
-namespace weft {
+namespace weft::engine {
 
 TriangleMesh build_random_mesh(const Grid& grid, std::uint64_t seed) {
   TriangleMesh mesh = build_grid_mesh(grid, GridDiagonals::alternating);
@@ -57,4 +57,4 @@ TriangleMesh build_disc_mesh(double radius, int num_rings) {
   return mesh;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

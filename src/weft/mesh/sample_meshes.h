@@ -5,7 +5,7 @@
 
 #include "weft/mesh/grid.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The grid's vertices, the inner ones moved at random by up to 0.3 cells, each cell cut along its shorter
 /// diagonal. The same for the same seed, on every machine.
@@ -15,4 +15,4 @@ TriangleMesh build_random_mesh(const Grid& grid, std::uint64_t seed);
 /// are nearly equilateral. Ring by ring from the middle, each from +x on, turning to −z.
 TriangleMesh build_disc_mesh(double radius, int num_rings);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/geometry/aabb_tree.h"
 #include "weft/geometry/distance.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kRounding = 1 + 1e-9;  // of distances that are exactly the one allowed [1]
@@ -385,4 +385,4 @@ Vec3 SeamFinder::mean_position(const std::vector<int>& vertices) const {
   return sum / static_cast<double>(vertices.size());
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -18,7 +18,7 @@
 
 #include "weft/mesh/borders.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A point of a border: on the part of an edge from a node to the next.
 struct BorderPlace {
@@ -128,4 +128,4 @@ class SeamFinder {
   std::vector<Seam> seams_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 #include "weft/mesh/divide.h"
 #include "weft/mesh/seams.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The mesh in the making: divided, its vertices not yet joined.
@@ -151,4 +151,4 @@ OpenSeams find_open_seams(const TriangleMesh& mesh, double distance) {
   return open;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

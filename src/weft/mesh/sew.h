@@ -28,7 +28,7 @@
 
 #include "weft/mesh/derived_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct SewnMesh : DerivedMesh {
   int num_seams = 0;
@@ -50,4 +50,4 @@ struct OpenSeams {
 /// Seams between different pieces, not those whose vertices coincide already.
 OpenSeams find_open_seams(const TriangleMesh& mesh, double distance);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMaxPasses = 20;
@@ -243,4 +243,4 @@ MeshWithoutSlivers remove_slivers(const TriangleMesh& mesh, double flatness) {
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -16,7 +16,7 @@
 
 #include "weft/mesh/derived_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct MeshWithoutSlivers : DerivedMesh {
   int num_collapsed = 0;  // edges
@@ -30,4 +30,4 @@ struct MeshWithoutSlivers : DerivedMesh {
 /// mesh must be clean (see clean_mesh). Deterministic.
 MeshWithoutSlivers remove_slivers(const TriangleMesh& mesh, double flatness);
 
-}  // namespace weft
+}  // namespace weft::engine

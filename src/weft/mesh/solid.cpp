@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Seen from above, whether p lies to the left of the line from vertex a to vertex b. Of an edge's two
@@ -149,4 +149,4 @@ std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::ve
   return winding;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

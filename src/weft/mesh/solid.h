@@ -5,7 +5,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// How the triangles meet at their edges; every edge of a good solid joins two that run along it in opposite
 /// directions.
@@ -45,4 +45,4 @@ Shells turn_shells_outwards(TriangleMesh& mesh);
 /// point; an edge that two of them share is counted for exactly one. Points on the surface may go either way.
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points);
 
-}  // namespace weft
+}  // namespace weft::engine

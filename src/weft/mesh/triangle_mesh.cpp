@@ -4,9 +4,9 @@
 #include <string>
 
 #include "weft/core/angle.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 
 CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights) {
   CornerUv result;
@@ -165,4 +165,4 @@ TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side
   return {{point - u - w, point + u - w, point + u + w, point - u + w}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-}  // namespace weft
+}  // namespace weft::engine

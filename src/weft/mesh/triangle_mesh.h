@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "weft/core/vec.h"
+#include "weft/mesh.h"
 
-namespace weft {
-
-using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen from the front
+namespace weft::engine {
 
 /// Texture coordinates of a triangle's corners: across a seam the same vertex has several.
 using CornerUv = std::array<Eigen::Vector2d, 3>;
@@ -69,4 +68,4 @@ TriangleMesh make_box_mesh(const Vec3& center, const Vec3& half_size, const Mat3
 /// A square of the given side around `point`, perpendicular to the unit vector `normal`, for display.
 TriangleMesh make_square_mesh(const Vec3& point, const Vec3& normal, double side);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 Eigen::Vector3f vertex(std::span<const float> positions, int v) {
@@ -30,4 +30,4 @@ std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles
   return normals;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

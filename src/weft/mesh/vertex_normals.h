@@ -6,11 +6,11 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Unit normals of the vertices (num_vertices x 3), by area: the sum of the cross products of the triangles
 /// around. Up where that is too short to have a direction. `positions` are (num_vertices x 3) [m].
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::vector<Coupling> find_couplings(const ClothElements& elements) {
@@ -83,4 +83,4 @@ std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mes
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -8,7 +8,7 @@
 #include "weft/fabric/elements.h"
 #include "weft/fabric/membrane_law.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// An entry of a matrix that is the same for x, y and z: ½ stiffness |x_j − x_i|².
 struct Coupling {
@@ -56,4 +56,4 @@ std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mes
                                                          const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 
-}  // namespace weft
+}  // namespace weft::engine

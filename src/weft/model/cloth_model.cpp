@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::uint64_t next_id() {
@@ -111,4 +111,4 @@ std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
   return heavier;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

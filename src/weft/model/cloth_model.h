@@ -15,13 +15,7 @@
 #include "weft/model/neighbour_table.h"
 #include "weft/model/springs.h"
 
-namespace weft {
-
-/// How spring damping acts on the relative velocity of the two ends.
-enum class DampingKind {
-  plain,      // all of it: the paper's Eq. 2; also brakes a rigid rotation
-  projected,  // only along the spring: leaves rigid motion alone
-};
+namespace weft::engine {
 
 /// The numbers of a cloth made of springs.
 struct ClothMaterial {
@@ -114,4 +108,4 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
 std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
                                                       const std::vector<double>& added);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The origin lies on a lattice of this pitch [m]. Steps of a power of two make the subtraction exact for
@@ -80,4 +80,4 @@ void add_to_hash(const ClothState& state, Hash& hash) {
   add(history.velocity);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

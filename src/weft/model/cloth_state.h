@@ -5,12 +5,13 @@
 #include "weft/core/vec3_array.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// What the step before has left for an integrator of second order. Any other may leave it alone.
 struct MotionHistory {
   double step = 0;           // length of the step before, 0: there is none to go by [s]
   bool had_contact = false;  // contact took part in it
+  bool is_held = false;      // hands act in the step to come, whose balance is that of implicit Euler
   Vec3Array displacement;    // x now − x before it (num_particles) [m]
   Vec3Array velocity;        // v before it (num_particles) [m/s]
 };
@@ -47,4 +48,4 @@ void follow_cloth(ClothState& state);
 
 void add_to_hash(const ClothState& state, Hash& hash);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,6 +1,6 @@
 #include "weft/model/fabric_springs.h"
 
-namespace weft {
+namespace weft::engine {
 
 void set_fabric_springs(const GridSprings& springs, const Fabric& fabric, ClothMaterial& material) {
   material.structural = springs.along_x;
@@ -17,4 +17,4 @@ void set_fabric_springs(const MeshSprings& springs, const ClothTopology& topolog
   material.damping_time = fabric.damping;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "weft/fabric/mesh_springs.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The members of `material` that these springs and the fabric's damping determine; the others stay.
 void set_fabric_springs(const GridSprings& springs, const Fabric& fabric, ClothMaterial& material);
@@ -14,4 +14,4 @@ void set_fabric_springs(const GridSprings& springs, const Fabric& fabric, ClothM
 void set_fabric_springs(const MeshSprings& springs, const ClothTopology& topology, const Fabric& fabric,
                         ClothMaterial& material);
 
-}  // namespace weft
+}  // namespace weft::engine

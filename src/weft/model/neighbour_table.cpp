@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft {
+namespace weft::engine {
 
 NeighbourTable build_neighbour_table(int num_particles, const std::vector<Spring>& springs) {
   constexpr int kLanes = NeighbourTable::kLanes;
@@ -32,4 +32,4 @@ NeighbourTable build_neighbour_table(int num_particles, const std::vector<Spring
   return table;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 
 #include "weft/model/springs.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct NeighbourTable {
   static constexpr int kLanes = 16;
@@ -25,4 +25,4 @@ struct NeighbourTable {
 
 NeighbourTable build_neighbour_table(int num_particles, const std::vector<Spring>& springs);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace weft {
+namespace weft::engine {
 
 std::string_view to_string(SpringModel model) {
   switch (model) {
@@ -58,4 +58,4 @@ std::vector<Spring> build_mesh_springs(const TriangleMesh& mesh) {
   return springs;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -15,14 +15,13 @@
 #include <string_view>
 #include <vector>
 
+#include "weft/cloth.h"
 #include "weft/mesh/grid.h"
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft {
+namespace weft::engine {
 
 enum class SpringKind { structural, shear, bend };
-enum class SpringModel { basic, simplified, alternating };
-
 std::string_view to_string(SpringModel model);
 
 struct Spring {
@@ -37,4 +36,4 @@ GridDiagonals diagonals_of(SpringModel model);
 std::vector<Spring> build_grid_springs(const Grid& grid, SpringModel model);
 std::vector<Spring> build_mesh_springs(const TriangleMesh& mesh);
 
-}  // namespace weft
+}  // namespace weft::engine

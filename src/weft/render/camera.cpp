@@ -5,7 +5,7 @@
 
 #include "weft/core/angle.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kMaxElevation = 89;  // straight down has no up [degrees]
@@ -101,4 +101,4 @@ Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double 
   return camera;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

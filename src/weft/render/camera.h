@@ -5,7 +5,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 using Mat4 = Eigen::Matrix4d;
 
@@ -55,4 +55,4 @@ struct Camera {
 /// margin.
 Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double aspect);
 
-}  // namespace weft
+}  // namespace weft::engine

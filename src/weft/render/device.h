@@ -14,7 +14,7 @@
 #include "weft/render/image.h"
 #include "weft/render/picture.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// This machine cannot draw: what is missing, and what to do.
 class GraphicsError : public std::runtime_error {
@@ -112,4 +112,4 @@ std::unique_ptr<Device> make_gl_device();
 /// GraphicsError where there is no EGL or no OpenGL 3.3.
 std::unique_ptr<Device> make_offscreen_device();
 
-}  // namespace weft
+}  // namespace weft::engine

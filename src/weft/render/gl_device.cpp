@@ -7,7 +7,7 @@
 #include "weft/render/device.h"
 #include "weft/render/shaders.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kNumPrograms = 9;
@@ -334,4 +334,4 @@ class GlDevice : public Device {
 
 std::unique_ptr<Device> make_gl_device() { return std::make_unique<GlDevice>(); }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/staged_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -17,7 +17,7 @@
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
 
-namespace weft {
+namespace weft::engine {
 
 Image::Image(int width_, int height_)
     : width(width_),
@@ -69,4 +69,4 @@ Image read_png(const std::filesystem::path& file) {
   return image;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 /// Rows from the top, four bytes a pixel: sRGB red, green, blue, and alpha (not premultiplied).
 struct Image {
@@ -33,4 +33,4 @@ void write_image(const std::filesystem::path& file, const Image& image);
 /// Throws InputError if the file cannot be read or is no PNG.
 Image read_png(const std::filesystem::path& file);
 
-}  // namespace weft
+}  // namespace weft::engine

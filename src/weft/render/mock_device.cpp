@@ -7,7 +7,7 @@
 
 #include "weft/render/shaders.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 void require(bool condition, const std::string& sentence) {
@@ -161,4 +161,4 @@ void MockDevice::show(TargetId target, const WindowPart& part) {
   log_.push_back("show " + at(target).name);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 
 #include "weft/render/device.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Throws std::logic_error, saying what is wrong, for calls that OpenGL would refuse or silently get wrong:
 /// uniforms that the program does not have, lacks, or has as another type, numbers that are not finite,
@@ -44,4 +44,4 @@ class MockDevice : public Device {
   std::vector<std::string> log_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

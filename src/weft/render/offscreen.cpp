@@ -2,7 +2,7 @@
 
 #include "weft/render/device.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr const char* kAdvice =
@@ -99,4 +99,4 @@ class OffscreenDevice : public Device {
 
 std::unique_ptr<Device> make_offscreen_device() { return std::make_unique<OffscreenDevice>(); }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/geometry/aabb_tree.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Where a ray meets a triangle (Möller and Trumbore 1997).
@@ -70,4 +70,4 @@ std::optional<Hit> find_first_hit(std::span<const DrawnMesh> meshes, const Ray& 
   return first;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

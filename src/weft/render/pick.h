@@ -7,7 +7,7 @@
 #include "weft/render/camera.h"
 #include "weft/render/picture.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Hit {
   int mesh = 0, triangle = 0;   // indices
@@ -19,4 +19,4 @@ struct Hit {
 /// The first triangle that the ray meets, from either side; of equally near ones the first.
 std::optional<Hit> find_first_hit(std::span<const DrawnMesh> meshes, const Ray& ray);
 
-}  // namespace weft
+}  // namespace weft::engine

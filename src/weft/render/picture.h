@@ -8,7 +8,7 @@
 #include "weft/mesh/triangle_mesh.h"
 #include "weft/render/camera.h"
 
-namespace weft {
+namespace weft::engine {
 
 using Color = std::array<double, 3>;  // linear red, green, blue in [0, 1]
 
@@ -60,4 +60,4 @@ struct Picture {
   bool transparent = false;      // no sky and no ground: alpha tells where something is
 };
 
-}  // namespace weft
+}  // namespace weft::engine

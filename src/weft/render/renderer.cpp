@@ -5,7 +5,7 @@
 
 #include "weft/mesh/vertex_normals.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Vector2f = Eigen::Vector2f;
@@ -266,4 +266,4 @@ void Renderer::show(const Picture& picture, PictureSize size, const WindowPart& 
   device_->show(compose(picture, size), part);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -12,7 +12,7 @@
 #include "weft/render/device.h"
 #include "weft/render/picture.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct RenderSettings {
   int samples = 4;         // per pixel, against steps at edges; 1: none
@@ -42,4 +42,4 @@ class Renderer {
   RenderSettings settings_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

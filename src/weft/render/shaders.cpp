@@ -1,6 +1,6 @@
 #include "weft/render/shaders.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 const char* const kHead = "#version 330 core\n";
@@ -338,4 +338,4 @@ ShaderSource shader_source(Program program) {
   return source(kDotVertex, kDotFragment);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

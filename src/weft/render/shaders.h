@@ -5,7 +5,7 @@
 
 #include "weft/render/device.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct ShaderSource {
   std::string vertex, fragment;
@@ -13,4 +13,4 @@ struct ShaderSource {
 
 ShaderSource shader_source(Program program);
 
-}  // namespace weft
+}  // namespace weft::engine

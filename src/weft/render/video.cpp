@@ -13,11 +13,11 @@
 #include <system_error>
 #include <vector>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
 extern char** environ;
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -158,4 +158,4 @@ void VideoWriter::fail(const std::string& reason) {
   throw InputError(file_.string() + " cannot be written: " + reason);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

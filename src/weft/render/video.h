@@ -6,7 +6,7 @@
 
 #include "weft/render/image.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Whether the file's ending is one that VideoWriter knows: .mp4 (H.264), .webp (animated) or .gif.
 bool is_video(const std::filesystem::path& file);
@@ -40,4 +40,4 @@ class VideoWriter {
   int process_ = -1;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <variant>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr const char* kAdvice = "; weft render draws pictures and videos without a window";
@@ -238,4 +238,4 @@ Image Window::end_frame_and_read() {
   return image;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

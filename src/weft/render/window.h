@@ -8,7 +8,7 @@
 
 #include "weft/render/device.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Keys that are no letters; letters and digits are themselves, as in 'R'.
 enum SpecialKey { kKeyEscape = 256, kKeyRight, kKeyLeft, kKeyHelp };  // kKeyHelp: F1
@@ -73,4 +73,4 @@ class Window {
   std::unique_ptr<System> system_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

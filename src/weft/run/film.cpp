@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
@@ -71,6 +71,15 @@ std::vector<float> positions(const ClothState& state) {
   return values;
 }
 
+/// Of a mesh that has not been deformed yet.
+std::vector<float> rest_positions(const TriangleMesh& mesh) {
+  std::vector<float> values;
+  for (const Vec3& p : mesh.positions) {
+    for (const double c : p) values.push_back(static_cast<float>(c));
+  }
+  return values;
+}
+
 }  // namespace
 
 Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
@@ -92,18 +101,25 @@ Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
 void Film::add_frame() {
   for (int c = 0; c < world_.num_cloths(); ++c)
     animation_.cloths[c].frames.push_back(positions(world_.state(world_.cloth(c))));
+  const std::size_t num_before = num_frames_++;
   for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
     const Collider& collider = world_.colliders()[b];
+    RigidMesh& body = animation_.bodies[b];
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
-    if (mesh && mesh->sequence) animation_.bodies[b].frames.push_back(positions(*mesh, world_.time()));
-    if (collider.motion.is_still() && !animation_.bodies[b].poses.empty()) continue;
+    if (mesh && mesh->sequence) {
+      body.frames.resize(num_before, rest_positions(body.mesh));
+      body.frames.push_back(positions(*mesh, world_.time()));
+    }
     const Pose pose = collider.motion.at(world_.time());
-    const Vec3 center = pivot(collider.shape);
-    animation_.bodies[b].poses.push_back({center + pose.translation, Eigen::Quaterniond(pose.rotation)});
+    const RigidMesh::Pose now{pivot(collider.shape) + pose.translation, Eigen::Quaterniond(pose.rotation)};
+    if (body.poses.size() == 1 && body.poses[0] == now) continue;  // it has stood still so far
+    if (!body.poses.empty()) body.poses.resize(num_before, body.poses[0]);
+    body.poses.push_back(now);
   }
 }
 
 void Film::clear() {
+  num_frames_ = 0;
   for (AnimatedMesh& cloth : animation_.cloths) cloth.frames.clear();
   for (RigidMesh& body : animation_.bodies) {
     body.poses.clear();
@@ -111,4 +127,4 @@ void Film::clear() {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include "weft/scene/scene_desc.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Films a world that was built from a scene. The world must outlive the film.
 class Film {
@@ -24,6 +24,7 @@ class Film {
  private:
   const World& world_;
   Animation animation_;
+  std::size_t num_frames_ = 0;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

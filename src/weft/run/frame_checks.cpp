@@ -5,7 +5,7 @@
 
 #include "weft/verify/passages.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using verify::MeshView;
@@ -195,4 +195,4 @@ AnimationCheck check_animation(const Animation& animation, const AnimationCheckO
   return sum;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,7 +9,7 @@
 #include "weft/verify/checker.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A frame for the checker, with the positions that it looks at. Moves, but does not copy.
 struct FrameToCheck {
@@ -82,4 +82,4 @@ struct AnimationCheckOptions {
 /// Checks every frame.
 AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options = {});
 
-}  // namespace weft
+}  // namespace weft::engine

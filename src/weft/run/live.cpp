@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <future>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/run/reach.h"
 #include "weft/run/report.h"
 #include "weft/run/runner.h"
 #include "weft/run/warnings.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kPatience = 0.05;    // how far play may fall behind real time before time slows [s]
@@ -351,4 +351,4 @@ void LiveSimulation::publish() {
   is_fresh_ = true;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -22,7 +22,7 @@
 #include "weft/run/film.h"
 #include "weft/scene/scene_world.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct LiveSettings {
   int threads = 1;      // of the simulation, >= 1
@@ -159,4 +159,4 @@ class LiveSimulation {
   std::thread thread_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "weft/world/infeasible_pairs.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kInARow = 5;             // frames that strain and flatness may last
@@ -106,4 +107,4 @@ std::vector<RunProblem> ProblemFinder::problems() const {
   return result;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include "weft/run/warnings.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct RunProblem {
   WarningCode code = WarningCode::not_converged;
@@ -61,4 +61,4 @@ class ProblemFinder {
   double energy_ = 0, most_energy_ = 0, least_energy_ = 0;  // in the last frame, and in all [J]
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kBelow =
@@ -97,4 +97,4 @@ std::vector<Vec3> find_reach(const World& world) {
   return points;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,10 +6,10 @@
 
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Points around all that is at the start, what can hang from pins, and what falls, down to a level plane, to
 /// a little below the lowest collider, or by its own size [m].
 std::vector<Vec3> find_reach(const World& world);
 
-}  // namespace weft
+}  // namespace weft::engine

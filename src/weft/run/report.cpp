@@ -6,7 +6,7 @@
 
 #include "weft/core/staged_file.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string to_string(RunOutcome outcome) {
@@ -124,4 +124,4 @@ double quantile(std::vector<double> values, double q) {
   return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 #include "weft/core/work_times.h"
 #include "weft/run/problems.h"
 
-namespace weft {
+namespace weft::engine {
 
 enum class RunOutcome { done, interrupted, failed };
 
@@ -76,4 +76,4 @@ void write_report(const std::filesystem::path& file, const RunReport& report);
 /// The quantile q in [0, 1] of values (nearest rank); 0 of no values.
 double quantile(std::vector<double> values, double q);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/version.h"
 #include "weft/run/film.h"
 #include "weft/run/frame_checks.h"
@@ -16,7 +16,7 @@
 #include "weft/world/energy_audit.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMostInfeasible = 100;  // listed in a report
@@ -45,7 +45,7 @@ class Recorder {
 
   /// Warns of cloth that crosses something before anything has moved, or refuses it by an InputError.
   void check_start(const SceneDesc& scene) {
-    const std::vector<std::string> found = weft::check_start(world_);
+    const std::vector<std::string> found = weft::engine::check_start(world_);
     report_.warnings.insert(report_.warnings.end(), found.begin(), found.end());
     if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return;
     std::string all = scene.untangle ? "the start crosses, and could not be set apart:"
@@ -308,4 +308,4 @@ RunResult run_scene(const SceneDesc& scene, const RunOptions& options, const OnF
   return Run(scene, options).go(on_frame);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

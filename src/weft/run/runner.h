@@ -9,7 +9,7 @@
 #include "weft/scene/scene_desc.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct RunOptions {
   std::optional<int> frames;     // instead of the scene's duration · fps [1]
@@ -45,4 +45,4 @@ RunResult run_scene(const SceneDesc& scene, const RunOptions& options, const OnF
 /// cloth that is too stiff for it.
 void warn_about_paper(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include "weft/run/frame_checks.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMaxTold = 100000;         // crossings that are told apart by surfaces
@@ -131,4 +131,4 @@ SizeCheck check_sizes(const SceneDesc& scene, const World& world) {
   return check;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 #include "weft/scene/scene_desc.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A sentence for every two things that cross, or of which one is in the other, before anything has moved.
 std::vector<std::string> check_start(const World& world);
@@ -22,4 +22,4 @@ struct SizeCheck {
 /// `world` is the scene's.
 SizeCheck check_sizes(const SceneDesc& scene, const World& world);
 
-}  // namespace weft
+}  // namespace weft::engine

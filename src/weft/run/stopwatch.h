@@ -4,7 +4,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace weft {
+namespace weft::engine {
 
 class Stopwatch {
  public:
@@ -36,4 +36,4 @@ class Stopwatch {
   double cpu_ = 0, cpu_total_ = 0;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

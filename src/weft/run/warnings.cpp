@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string number(double value) {
@@ -131,4 +131,4 @@ std::string describe(const World& world, const InfeasiblePair& pair) {
          (pair.other_cloth < 0 ? collider() : particle(pair.other_cloth, pair.other_particle));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// The code as reports have it: "cap_reached", …
 std::string to_string(WarningCode code);
@@ -17,4 +17,4 @@ std::string describe(const World& world, const StepWarning& warning);
 /// `cloth "sheet" particle 12 and collider "ball"`
 std::string describe(const World& world, const InfeasiblePair& pair);
 
-}  // namespace weft
+}  // namespace weft::engine

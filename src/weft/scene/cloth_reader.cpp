@@ -4,11 +4,11 @@
 #include <span>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/scene/fabric_reader.h"
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Shape = std::variant<Grid, MeshFile>;
@@ -194,4 +194,4 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   return cloth;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

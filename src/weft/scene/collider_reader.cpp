@@ -3,7 +3,7 @@
 
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Shape = decltype(ColliderSceneDesc::shape);
@@ -169,4 +169,4 @@ ColliderSceneDesc read_collider(TomlTable table, int number, const std::filesyst
   return collider;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -1,6 +1,6 @@
 #include "weft/scene/diagnostic.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string list(const std::vector<Diagnostic>& diagnostics) {
@@ -20,4 +20,4 @@ std::string Diagnostic::to_string() const {
 SceneError::SceneError(std::vector<Diagnostic> diagnostics)
     : InputError(list(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// One mistake: "FILE:LINE:COLUMN: what is wrong, what was expected".
 struct Diagnostic {
@@ -27,4 +27,4 @@ class SceneError : public InputError {
   std::vector<Diagnostic> diagnostics_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,10 +6,10 @@
 #include <span>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,7 +107,7 @@ FabricPreset load_fabric(const std::string& name_or_file, const fs::path& folder
   const fs::path file = folder / name_or_file;
   const bool is_file = fs::exists(file, not_there) && !fs::is_directory(file, not_there);
   if (is_file || file.extension() == ".toml") return read_fabric_file(file);
-  return find_fabric(name_or_file);
+  return find_fabric_preset(name_or_file);
 }
 
-}  // namespace weft
+}  // namespace weft::engine

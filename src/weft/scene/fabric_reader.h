@@ -20,10 +20,10 @@
 #include <string>
 #include <string_view>
 
-#include "weft/fabric/presets.h"
+#include "weft/fabric.h"
 #include "weft/scene/diagnostic.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Reads and judges a fabric file; the fabric is named for the file. Throws SceneError with every mistake.
 FabricPreset read_fabric_file(const std::filesystem::path& file);
@@ -35,4 +35,4 @@ FabricPreset parse_fabric(std::string_view text, const std::filesystem::path& fi
 /// naming the nearest preset.
 FabricPreset load_fabric(const std::string& name_or_file, const std::filesystem::path& folder = {});
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// What may be pinned; a shape that could not be read is taken to have everything.
@@ -159,4 +159,4 @@ std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Gri
   return stiffened;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,14 +10,14 @@
 #include "weft/animation/rigid_motion.h"
 #include "weft/contact/collider.h"
 #include "weft/core/shapes.h"
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 #include "weft/forces/wind.h"
 #include "weft/integrators/integrator.h"
 #include "weft/mesh/grid.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/springs.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct GridCorner {
   int i = 0, j = 0;  // 0 or 1 each: which end of the first and of the second axis
@@ -69,12 +69,6 @@ struct ColliderSceneDesc {
   RigidMotion motion;
 };
 
-/// What stands for the stretching and shearing of a fabric.
-enum class Membrane {
-  triangle,  // elements on the mesh's triangles (forces/membrane.h)
-  springs,   // of a grid (fabric/grid_springs.h)
-};
-
 /// What a cloth is made of, in SI units.
 struct FabricDesc {
   std::string name;  // for messages
@@ -105,11 +99,6 @@ struct ContactDesc {
   std::optional<double> friction;      // Coulomb's coefficient, >= 0 [1]
   double static_friction = 0;          // while nothing slides; only with `friction` [1]
   bool collide = true;                 // false: they go through each other
-};
-
-struct WindKey {
-  double time = 0;               // [s]
-  Vec3 velocity = Vec3::Zero();  // [m/s]
 };
 
 struct WindDesc {
@@ -146,4 +135,4 @@ struct SceneDesc {
   int num_frames() const;  // round(duration · fps), at least 1
 };
 
-}  // namespace weft
+}  // namespace weft::engine

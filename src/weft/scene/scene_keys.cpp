@@ -6,7 +6,7 @@
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// Files that between them make the reader ask for every key it knows; they need not be good scenes.
@@ -122,4 +122,4 @@ std::string describe_scene_keys() {
          table.to_markdown();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/core/nearest_name.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ std::filesystem::path find_scene(const std::string& file_or_name) {
   throw InputError(describe_missing(file_or_name));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 struct ShippedScene {
   std::string name;  // e.g. "paper/fig6_ball"
@@ -24,4 +24,4 @@ std::vector<ShippedScene> list_scenes();
 /// naming the nearest shipped scene.
 std::filesystem::path find_scene(const std::string& file_or_name);
 
-}  // namespace weft
+}  // namespace weft::engine

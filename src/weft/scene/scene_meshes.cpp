@@ -1,18 +1,14 @@
 #include "weft/scene/scene_meshes.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "weft/core/error.h"
+#include "weft/error.h"
+#include "weft/face/convert.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/solid.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
-
-std::string name_with_file(const std::string& owner, const MeshFile& source) {
-  return owner + " (" + source.file.filename().string() + "): ";
-}
 
 ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
   try {
@@ -23,93 +19,77 @@ ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
 }
 
 /// In metres, y up.
-Vec3 to_world(const Vec3& p, const MeshFile& source) {
-  return source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+ObjMesh read_in_metres(const std::filesystem::path& file, const MeshFile& source, const std::string& owner) {
+  ObjMesh obj = read(file, owner);
+  for (Vec3& p : obj.mesh.positions) p = source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+  return obj;
 }
 
-std::string count_edges(int count) { return std::to_string(count) + (count == 1 ? " edge" : " edges"); }
-
-/// Turns the mesh right side out if it needs that, and says what else is wrong with it as a solid.
-void judge_as_solid(TriangleMesh& mesh, const std::string& who, std::vector<std::string>& warnings) {
-  const SurfaceEdges edges = count_surface_edges(mesh);
-  const auto warn = [&](const std::string& sentence) { warnings.push_back(who + sentence); };
-  if (edges.non_manifold > 0) {
-    warn(count_edges(edges.non_manifold) +
-         " of more than two triangles (non-manifold): inside and outside may be " + "mistaken there");
-  }
-  if (edges.twisted > 0) {
-    warn(count_edges(edges.twisted) +
-         " between triangles that face opposite ways: inside and outside may be " +
-         "mistaken; recalculate the mesh's normals to face outwards");
-  }
-  if (edges.border > 0) {
-    warn("has a border of " + count_edges(edges.border) +
-         ": cloth is held off on both sides, inside is not defined");
-    return;
-  }
-  const Shells shells = turn_shells_outwards(mesh);
-  if (shells.turned == 0) return;
-  const std::string turned = std::to_string(shells.turned) + " of its " + std::to_string(shells.count);
-  warn((shells.count == 1 ? "is inside out (its triangles face inwards); it was"
-                          : turned + " shells are inside out (their triangles face inwards); they were") +
-       std::string(" turned right side out"));
+weft::TriangleMesh read_mesh(const MeshFile& source, const std::string& owner,
+                             std::vector<std::string>& warnings) {
+  const ObjMesh obj = read_in_metres(source.file, source, owner);
+  for (const std::string& warning : obj.warnings)
+    warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
+  return from_engine(obj.mesh, obj.uv);
 }
 
-struct ShapeMaker {
+weft::Pose make_pose(const Vec3& position, const Vec3& rotation_deg) {
+  return from_engine(Pose{position, rotation_from_angles_deg(rotation_deg)});
+}
+
+Springs make_springs(const ClothMaterial& m) {
+  return {.density = m.density,
+          .structural = m.structural,
+          .shear = m.shear,
+          .bend = m.bend,
+          .damping = m.damping,
+          .damping_kind = m.damping_kind,
+          .thickness = m.thickness,
+          .friction = m.friction};
+}
+
+std::string describe(std::size_t vertices, std::size_t triangles) {
+  return std::to_string(vertices) + " vertices and " + std::to_string(triangles) + " triangles";
+}
+
+std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const weft::TriangleMesh& first,
+                                   const std::string& owner) {
+  std::vector<MeshFrame> frames;
+  for (std::size_t k = 0; k < placed.frames.size(); ++k) {
+    const TriangleMesh mesh = read_in_metres(placed.frames[k], placed.source, owner).mesh;
+    if (mesh.positions.size() != first.positions.size() || mesh.triangles != first.triangles) {
+      throw InputError(owner + ": frame " + std::to_string(k) + " (" + placed.frames[k].filename().string() +
+                       ") has " + describe(mesh.positions.size(), mesh.triangles.size()) +
+                       ", the first one (" + placed.frames[0].filename().string() + ") " +
+                       describe(first.positions.size(), first.triangles.size()) +
+                       "; all frames must have the same triangles of the same vertices, in the same order");
+    }
+    frames.push_back({static_cast<double>(k) / placed.frame_rate, from_engine(mesh.positions)});
+  }
+  return frames;
+}
+
+struct ShapeDescriber {
   const std::string& owner;
   std::vector<std::string>& warnings;
+  ColliderDesc& desc;
 
-  template <class Shape>
-  ColliderShape operator()(const Shape& shape) const {
-    return shape;
+  void operator()(const Sphere& s) const { desc.shape = weft::Sphere{from_engine(s.center), s.radius}; }
+  void operator()(const Plane& p) const {
+    desc.shape = weft::Plane{from_engine(p.point), from_engine(p.normal)};
   }
-
-  ColliderShape operator()(const PlacedMesh& placed) const {
-    CleanMesh clean = load_mesh(placed.source, MeshUse::collider, owner, warnings);
-    judge_as_solid(clean.mesh, name_with_file(owner, placed.source), warnings);
-    MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
-                    .rotation = rotation_from_angles_deg(placed.rotation_deg),
-                    .translation = placed.position};
-    if (!placed.frames.empty())
-      shape.sequence = load_sequence(placed, clean.vertex_of_source, shape.mesh->num_vertices());
-    return shape;
+  void operator()(const Capsule& c) const {
+    desc.shape = weft::Capsule{from_engine(c.a), from_engine(c.b), c.radius};
   }
-
-  /// What cleaning made of the first frame's vertices it makes of every frame's.
-  std::shared_ptr<const MeshSequence> load_sequence(const PlacedMesh& placed,
-                                                    const std::vector<int>& vertex_of_source,
-                                                    int num_vertices) const {
-    const std::vector<Triangle> triangles = read(placed.frames[0], owner).mesh.triangles;
-    std::vector<MeshSequence::Key> keys;
-    for (std::size_t k = 0; k < placed.frames.size(); ++k) {
-      const TriangleMesh frame = read_frame(placed.frames[k], placed.source);
-      if (frame.positions.size() != vertex_of_source.size() || frame.triangles != triangles) {
-        throw InputError(
-            owner + ": frame " + std::to_string(k) + " (" + placed.frames[k].filename().string() + ") has " +
-            describe(frame) + ", the first one (" + placed.frames[0].filename().string() + ") " +
-            std::to_string(vertex_of_source.size()) + " vertices and " + std::to_string(triangles.size()) +
-            " triangles; all frames must have the same triangles of the same vertices, in the "
-            "same order");
-      }
-      MeshSequence::Key key{static_cast<double>(k) / placed.frame_rate, {}};
-      key.positions.resize(static_cast<std::size_t>(num_vertices));
-      for (std::size_t v = 0; v < vertex_of_source.size(); ++v) {
-        if (vertex_of_source[v] >= 0) key.positions[vertex_of_source[v]] = frame.positions[v];
-      }
-      keys.push_back(std::move(key));
-    }
-    return std::make_shared<const MeshSequence>(std::move(keys));
+  void operator()(const OrientedBox& b) const {
+    desc.shape = weft::OrientedBox{from_engine(b.center), from_engine(b.half_size), from_engine(b.rotation)};
   }
-
-  TriangleMesh read_frame(const std::filesystem::path& file, const MeshFile& source) const {
-    TriangleMesh mesh = read(file, owner).mesh;
-    for (Vec3& p : mesh.positions) p = to_world(p, source);
-    return mesh;
-  }
-
-  static std::string describe(const TriangleMesh& mesh) {
-    return std::to_string(mesh.positions.size()) + " vertices and " + std::to_string(mesh.triangles.size()) +
-           " triangles";
+  void operator()(const PlacedMesh& placed) const {
+    weft::TriangleMesh mesh = read_mesh(placed.source, owner, warnings);
+    desc.frames = read_frames(placed, mesh, owner);
+    desc.pose = make_pose(placed.position, placed.rotation_deg);
+    desc.source = placed.source.file.filename().string();
+    desc.shape = std::move(mesh);
   }
 };
 
@@ -123,36 +103,38 @@ int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
 
 }  // namespace
 
-CleanMesh load_mesh(const MeshFile& source, MeshUse use, const std::string& owner,
-                    std::vector<std::string>& warnings, std::vector<CornerUv>* uv) {
-  const std::string who = name_with_file(owner, source);
-  ObjMesh obj = read(source.file, owner);
-  for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
-  try {
-    CleanMesh clean = clean_mesh(obj.mesh, {.weld_distance = source.weld ? source.weld_distance : -1,
-                                            .sew_distance = source.sew_distance,
-                                            .is_cloth = use == MeshUse::cloth});
-    for (std::string& note : clean.notes) note = who + note;
-    for (const auto* list : {&obj.warnings, &clean.warnings}) {
-      for (const std::string& warning : *list) warnings.push_back(who + warning);
-    }
-    if (uv != nullptr && !obj.uv.empty()) {
-      for (std::size_t t = 0; t < clean.source_triangle.size(); ++t)
-        uv->push_back(interpolate(obj.uv[clean.source_triangle[t]], clean.corner_weights[t]));
-    }
-    return clean;
-  } catch (const InputError& error) {
-    throw InputError(who + error.what());
+ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
+  ClothDesc cloth{.name = desc.name};
+  if (const MeshFile* file = std::get_if<MeshFile>(&desc.shape)) {
+    cloth.shape = read_mesh(*file, "cloth \"" + desc.name + '"', warnings);
+    cloth.source = file->file.filename().string();
+    if (file->weld) cloth.weld = file->weld_distance;
+    cloth.sew = file->sew_distance;
+  } else {
+    cloth.shape = std::get<Grid>(desc.shape);
   }
+  if (desc.fabric) {
+    cloth.fabric = desc.fabric->numbers;
+    cloth.fabric_name = desc.fabric->name;
+    cloth.membrane = desc.fabric->membrane;
+    if (desc.fabric->warp) cloth.warp = from_engine(*desc.fabric->warp);
+  } else {
+    cloth.fabric = make_springs(desc.material);
+  }
+  cloth.model = desc.model;
+  cloth.pose = make_pose(desc.position, desc.rotation_deg);
+  cloth.velocity = from_engine(desc.velocity);
+  cloth.fits_thickness = has_contact && !desc.has_own_thickness;
+  return cloth;
 }
 
-Collider make_collider(const ColliderSceneDesc& desc, std::vector<std::string>& warnings) {
-  const std::string owner = "collider \"" + desc.name + "\"";
-  return {.name = desc.name,
-          .shape = std::visit(ShapeMaker{owner, warnings}, desc.shape),
-          .friction = desc.friction,
-          .motion = desc.motion,
-          .static_friction = desc.static_friction};
+ColliderDesc describe_collider(const ColliderSceneDesc& desc, std::vector<std::string>& warnings) {
+  ColliderDesc collider{.name = desc.name};
+  std::visit(ShapeDescriber{"collider \"" + desc.name + '"', warnings, collider}, desc.shape);
+  collider.motion = from_engine(desc.motion.keys());
+  collider.friction = desc.friction;
+  collider.static_friction = desc.static_friction;
+  return collider;
 }
 
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points) {
@@ -161,4 +143,4 @@ int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points) {
       points.begin(), points.end(), [&](const Vec3& p) { return signed_distance(shape, p).distance < 0; }));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

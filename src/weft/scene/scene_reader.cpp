@@ -9,7 +9,7 @@
 
 #include "weft/scene/scene_sections.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// The path below a folder called "scenes", else the stem.
@@ -254,4 +254,4 @@ SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file, 
   return scene;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

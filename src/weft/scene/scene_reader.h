@@ -9,7 +9,7 @@
 #include "weft/scene/diagnostic.h"
 #include "weft/scene/scene_desc.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Replaces or adds values before the scene is judged: "path.to.key=value", with [n] for the n-th table of an
 /// array, as in "solver.integrator=desbrun" or "cloth[0].fabric.density=0.3". The value is TOML; what is not
@@ -27,4 +27,4 @@ SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file,
 /// from what the reader asks a file for.
 std::string describe_scene_keys();
 
-}  // namespace weft
+}  // namespace weft::engine

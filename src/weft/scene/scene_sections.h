@@ -8,7 +8,7 @@
 #include "weft/scene/scene_desc.h"
 #include "weft/scene/toml_table.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A whole scene; mistakes are left in the document.
 SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file);
@@ -48,4 +48,4 @@ bool read_time(TomlTable& table, const std::vector<Key>& before, Key& key) {
   return is_later;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,147 +6,13 @@
 #include <cstdio>
 #include <optional>
 
-#include "weft/core/error.h"
-#include "weft/model/fabric_springs.h"
+#include "weft/error.h"
+#include "weft/face/convert.h"
+#include "weft/face/world_impl.h"
 #include "weft/scene/scene_meshes.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
-
-/// A cloth's topology, and which of its particles each vertex of the mesh file became (empty for grids).
-struct LoadedCloth {
-  std::shared_ptr<const ClothTopology> topology;
-  std::vector<int> particle_of_vertex;
-  std::vector<CornerUv> uv;  // of the mesh file; may be empty
-};
-
-/// The axis of a grid that warp goes along, if it is one.
-std::optional<GridWarp> grid_warp(const FabricDesc& fabric) {
-  constexpr double kAlong = 0.999999;  // least cosine of the angle between them
-  const Vec3 direction = fabric.warp.value_or(Vec3::UnitX()).normalized();
-  if (std::abs(direction.x()) > kAlong) return GridWarp::first_axis;
-  if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
-  return {};
-}
-
-/// A grid whose warp is along neither axis is a mesh like any other.
-LoadedCloth load(const ClothSceneDesc& desc, std::vector<std::string>& warnings,
-                 std::vector<std::string>& notes) {
-  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
-    if (desc.fabric && !grid_warp(*desc.fabric))
-      return {build_mesh_topology(build_grid_mesh(*grid, diagonals_of(desc.model))), {}, {}};
-    return {build_grid_topology(*grid, desc.model), {}, {}};
-  }
-  std::vector<CornerUv> uv;
-  CleanMesh clean =
-      load_mesh(std::get<MeshFile>(desc.shape), MeshUse::cloth, "cloth \"" + desc.name + "\"", warnings, &uv);
-  notes.insert(notes.end(), clean.notes.begin(), clean.notes.end());
-  return {build_mesh_topology(std::move(clean.mesh)), std::move(clean.vertex_of_source), std::move(uv)};
-}
-
-CellDiagonals cell_diagonals(SpringModel model) {
-  switch (model) {
-    case SpringModel::basic:
-      return CellDiagonals::both;
-    case SpringModel::alternating:
-      return CellDiagonals::alternating;
-    case SpringModel::simplified:
-      break;
-  }
-  return CellDiagonals::parallel;
-}
-
-struct Stuff {
-  ClothMaterial material;
-  std::shared_ptr<const ClothElements> elements;
-};
-
-Stuff make_springs_on_grid(const ClothSceneDesc& desc, const Grid& grid, std::vector<std::string>& warnings) {
-  const FabricDesc& fabric = *desc.fabric;
-  const std::optional<GridWarp> warp = grid_warp(fabric);
-  if (!warp)
-    throw InputError("cloth \"" + desc.name +
-                     "\": springs can only have warp along one of the grid's axes, " +
-                     "[1, 0, 0] or [0, 0, 1]; use membrane = \"triangle\" for other directions");
-  const GridSprings springs =
-      make_grid_springs(grid, cell_diagonals(desc.model), *warp, fabric.numbers, fabric.name);
-  for (const std::string& warning : springs.warnings)
-    warnings.push_back("cloth \"" + desc.name + "\": " + warning);
-  ClothMaterial material = desc.material;
-  set_fabric_springs(springs, fabric.numbers, material);
-  return {material, build_grid_bending_elements(grid, *warp, fabric.numbers)};
-}
-
-/// Whether most of the surface is nearer to upright than to level, at rest.
-bool stands_upright(const TriangleMesh& mesh) {
-  double upright = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3 area = (mesh.positions[j] - mesh.positions[i]).cross(mesh.positions[k] - mesh.positions[i]);
-    upright += area.norm() - std::sqrt(2.0) * std::abs(area.y());
-  }
-  return upright > 0;
-}
-
-/// Along the direction that is given, or as the mesh's texture coordinates say; without either, along the
-/// body in what is worn.
-WarpField find_warp(const ClothSceneDesc& desc, const LoadedCloth& loaded,
-                    std::vector<std::string>& warnings) {
-  const std::string who = "cloth \"" + desc.name + "\": ";
-  const TriangleMesh& mesh = loaded.topology->mesh;
-  std::optional<Vec3> direction = desc.fabric->warp;
-  if (!direction && loaded.uv.empty()) {
-    const bool stands = stands_upright(mesh);
-    direction = stands ? Vec3::UnitY() : Vec3::UnitX();
-    warnings.push_back(who +
-                       "its mesh has no texture coordinates, which would say where warp goes; it goes " +
-                       (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
-  }
-  WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, loaded.uv);
-  if (warp.num_guessed == 0) return warp;
-  warnings.push_back(
-      who + (direction ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
-      std::to_string(warp.num_guessed) + (warp.num_guessed == 1 ? " triangle" : " triangles") +
-      ", which got another axis");
-  return warp;
-}
-
-Stuff make_springs_on_mesh(const ClothSceneDesc& desc, const LoadedCloth& loaded,
-                           std::vector<std::string>& warnings) {
-  const Fabric& fabric = desc.fabric->numbers;
-  const ClothTopology& topology = *loaded.topology;
-  const WarpField warp = find_warp(desc, loaded, warnings);
-  const MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric->name);
-  for (const std::string& warning : springs.warnings)
-    warnings.push_back("cloth \"" + desc.name + "\": " + warning);
-  ClothMaterial material = desc.material;
-  set_fabric_springs(springs, topology, fabric, material);
-  return {material, build_mesh_bending_elements(topology.mesh, warp, fabric)};
-}
-
-Stuff make_stuff(const ClothSceneDesc& desc, const LoadedCloth& loaded, std::vector<std::string>& warnings) {
-  const ClothTopology& topology = *loaded.topology;
-  if (!desc.fabric) return {desc.material, nullptr};
-  const FabricDesc& fabric = *desc.fabric;
-  const Grid* grid = std::get_if<Grid>(&desc.shape);
-  if (fabric.membrane == Membrane::springs) {
-    return grid ? make_springs_on_grid(desc, *grid, warnings) : make_springs_on_mesh(desc, loaded, warnings);
-  }
-  if (topology.grid)
-    return {desc.material, build_grid_elements(*grid, topology.mesh, *grid_warp(fabric), fabric.numbers)};
-  return {desc.material,
-          build_mesh_elements(topology.mesh, find_warp(desc, loaded, warnings), fabric.numbers)};
-}
-
-/// A thickness that nobody has given is at most half of a mesh's mean edge, so that few neighbours are
-/// nearer than it.
-void fit_thickness(const ClothSceneDesc& desc, const TriangleMesh& mesh, ClothMaterial& material) {
-  constexpr double kShareOfEdge = 0.5;
-  if (desc.has_own_thickness) return;
-  const std::vector<Edge> edges = build_edges(mesh);
-  double sum = 0;
-  for (const Edge& e : edges) sum += (mesh.positions[e.b] - mesh.positions[e.a]).norm();
-  material.thickness = std::min(material.thickness, kShareOfEdge * sum / static_cast<double>(edges.size()));
-}
 
 std::vector<Vec3> place(const std::vector<Vec3>& rest, const ClothSceneDesc& desc) {
   const Mat3 rotation = rotation_from_angles_deg(desc.rotation_deg);
@@ -168,7 +34,7 @@ std::vector<int> select_inside(const std::vector<Vec3>& positions, const Region&
 /// Selections become particle numbers.
 struct Selector {
   const ClothSceneDesc& cloth;
-  const LoadedCloth& loaded;
+  const std::vector<int>& particle_of_vertex;
   const std::vector<Vec3>& positions;
 
   std::vector<int> operator()(const GridCorner& corner) const {
@@ -177,15 +43,14 @@ struct Selector {
   }
 
   std::vector<int> operator()(const ParticleIndices& selection) const {
-    const bool is_mesh = !loaded.particle_of_vertex.empty();
-    const auto count = is_mesh ? loaded.particle_of_vertex.size() : positions.size();
+    const auto count = particle_of_vertex.size();
     std::vector<int> selected;
     for (const int index : selection.indices) {
       if (index < 0 || static_cast<std::size_t>(index) >= count) {
         throw InputError("cloth \"" + cloth.name + "\": there is no index " + std::to_string(index) +
                          " to pin; the last one is " + std::to_string(count - 1));
       }
-      const int particle = is_mesh ? loaded.particle_of_vertex[index] : index;
+      const int particle = particle_of_vertex[index];
       if (particle < 0) {
         throw InputError("cloth \"" + cloth.name + "\": vertex " + std::to_string(index) +
                          " cannot be pinned, for no triangle uses it");
@@ -214,28 +79,19 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
                    " holds no particle; regions are in world coordinates [m], after position and rotation");
 }
 
-/// Multiplies the factors of each spring, which are 1 if there are none yet, by those of regions.
-void multiply_spring_factors(const ClothSceneDesc& desc, const LoadedCloth& loaded,
-                             const std::vector<Vec3>& positions, std::vector<double>& factors) {
-  const std::vector<Spring>& springs = loaded.topology->springs;
-  for (const StiffenDesc& part : desc.stiffened) {
-    factors.resize(springs.size(), 1.0);
-    std::vector<char> is_inside(positions.size(), 0);
-    for (const int p : select({desc, loaded, positions}, part.select, "a stiffened region")) is_inside[p] = 1;
-    for (std::size_t s = 0; s < springs.size(); ++s) {
-      if (is_inside[springs[s].i] && is_inside[springs[s].j]) factors[s] *= part.factor;
-    }
-  }
-}
-
-std::vector<Pin> make_pins(const ClothSceneDesc& desc, const LoadedCloth& loaded,
-                           const std::vector<Vec3>& positions) {
-  std::vector<Pin> pins;
-  for (const PinDesc& pin : desc.pins) {
-    pins.push_back({select({desc, loaded, positions}, pin.select, "a pin's region"), RigidMotion(pin.motion),
-                    pin.pivot});
-  }
-  return pins;
+/// Pins and stiffened regions, selected by where particles are at the start.
+void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
+  const std::vector<Vec3> positions =
+      place(WorldAccess::engine(built).model(id).topology->mesh.positions, desc);
+  const Selector selector{desc, built.notes(id).particle_of_vertex, positions};
+  for (const StiffenDesc& part : desc.stiffened)
+    built.stiffen(id, select(selector, part.select, "a stiffened region"), part.factor);
+  std::vector<weft::Pin> pins;
+  for (const PinDesc& pin : desc.pins)
+    pins.push_back({.particles = select(selector, pin.select, "a pin's region"),
+                    .motion = from_engine(pin.motion),
+                    .pivot = from_engine(pin.pivot)});
+  built.set_pins(id, pins);
 }
 
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {
@@ -257,9 +113,9 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   }
 }
 
-void untangle(SceneWorld& built) {
+void untangle(World& world, SceneNotes& built) {
   const auto start = std::chrono::steady_clock::now();
-  const UntangleReport report = built.world.untangle();
+  const UntangleReport report = world.untangle();
   if (report.rounds == 0) return;
   built.untangle_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::vector<std::string>& warnings = built.warnings;
@@ -272,34 +128,38 @@ void untangle(SceneWorld& built) {
     warnings.push_back("could not be untangled: " + what + "; move them apart");
 }
 
+weft::Wind describe_wind(const WindDesc& wind) {
+  weft::Wind result{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
+  for (const WindKey& key : wind.keys) result.keys.push_back({key.time, from_engine(key.velocity)});
+  return result;
+}
+
+void append(const std::vector<std::string>& sentences, std::vector<std::string>& to) {
+  to.insert(to.end(), sentences.begin(), sentences.end());
+}
+
 }  // namespace
 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
 
-SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
-  SceneWorld result;
-  World& world = result.world;
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
+  PublicScene result;
+  World& world = WorldAccess::engine(result.world);
   world.set_jobs(std::move(jobs));
   world.set_gravity(scene.gravity);
   world.set_integrator(scene.solver);
   world.set_division({scene.adaptive, 1 / (scene.fps * scene.max_steps_per_frame)});
-  world.set_wind(wind_at(scene.wind, 0));
+  result.world.set_wind(describe_wind(scene.wind));
   world.set_contact(scene.contact);
-  for (const ColliderSceneDesc& desc : scene.colliders)
-    world.add_collider(make_collider(desc, result.warnings));
+  for (const ColliderSceneDesc& desc : scene.colliders) {
+    const ColliderId id = result.world.add_collider(describe_collider(desc, result.warnings));
+    append(result.world.warnings(id), result.warnings);
+  }
   for (const ClothSceneDesc& desc : scene.cloths) {
-    const LoadedCloth loaded = load(desc, result.warnings, result.notes);
-    const std::vector<Vec3> positions = place(loaded.topology->mesh.positions, desc);
-    Stuff stuff = make_stuff(desc, loaded, result.warnings);
-    multiply_spring_factors(desc, loaded, positions, stuff.material.spring_factors);
-    if (scene.contact) fit_thickness(desc, loaded.topology->mesh, stuff.material);
-    const ClothId id = world.add_cloth({.name = desc.name,
-                                        .topology = loaded.topology,
-                                        .material = stuff.material,
-                                        .elements = stuff.elements,
-                                        .positions = positions,
-                                        .velocity = desc.velocity});
-    world.set_pins(id, make_pins(desc, loaded, positions));
+    const ClothId id = result.world.add_cloth(describe_cloth(desc, scene.contact, result.warnings));
+    append(result.world.notes(id).warnings, result.warnings);
+    append(result.world.notes(id).done, result.notes);
+    hold_cloth(desc, id, result.world);
   }
   for (const ContactDesc& rule : scene.contacts) {
     const auto& [a, b] = rule.between;
@@ -307,21 +167,19 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
     world.set_collision(a, b, rule.collide);
   }
   const bool is_repaired = scene.untangle && scene.contact;
-  is_repaired ? untangle(result) : warn_about_start(world, result.warnings);
+  is_repaired ? untangle(world, result) : warn_about_start(world, result.warnings);
   return result;
+}
+
+SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
+  PublicScene built = build_scene(scene, std::move(jobs));
+  return {std::move(static_cast<SceneNotes&>(built)), std::move(WorldAccess::engine(built.world))};
 }
 
 Wind wind_at(const WindDesc& wind, double time) {
   Wind now{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
-  if (wind.keys.empty()) return now;
-  std::size_t next = 0;
-  while (next < wind.keys.size() && wind.keys[next].time <= time) ++next;
-  const WindKey& a = wind.keys[next == 0 ? 0 : next - 1];
-  const WindKey& b = wind.keys[next == wind.keys.size() ? next - 1 : next];
-  const double span = b.time - a.time;
-  const double s = span > 0 ? (time - a.time) / span : 0.0;
-  now.velocity = a.velocity + s * (b.velocity - a.velocity);
+  if (!wind.keys.empty()) now.velocity = wind_velocity(wind.keys, time);
   return now;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,22 +6,33 @@
 #include <vector>
 
 #include "weft/scene/scene_desc.h"
+#include "weft/world.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
-struct SceneWorld {
-  World world;
+/// What building a scene has to say.
+struct SceneNotes {
   double untangle_seconds = 0;        // that setting apart what crossed at the start took [s]
   std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
   std::vector<std::string> notes;     // what was done to meshes as the scene asks, in sentences
 };
 
+struct PublicScene : SceneNotes {
+  weft::World world;
+};
+
+/// The same without the public face.
+struct SceneWorld : SceneNotes {
+  World world;
+};
+
 /// Loads meshes, places cloth, sets pins. A collider's mesh that faces inwards is turned right side out.
 /// Throws InputError where a mesh cannot be used or a pin selects nothing.
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
 /// The wind that blows at a time.
 Wind wind_at(const WindDesc& wind, double time);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/core/nearest_name.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
@@ -113,4 +113,4 @@ std::string quote(std::string_view text, std::size_t max_length) {
   return quoted + (length < text.size() ? "…\"" : "\"");
 }
 
-}  // namespace weft
+}  // namespace weft::engine

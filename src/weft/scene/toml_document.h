@@ -9,7 +9,7 @@
 #include "weft/scene/diagnostic.h"
 #include "weft/scene/toml_plus_plus.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// What a key may hold, in words: for the reference of scene files.
 struct KeyNote {
@@ -77,4 +77,4 @@ toml::table parse_toml(std::string_view text, const std::string& source);
 /// In quotes, shortened to so many bytes, and without control characters that would upset a terminal.
 std::string quote(std::string_view text, std::size_t max_length = 60);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 
 #include "weft/scene/toml_document.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::string trim(const std::string& text) {
@@ -167,4 +167,4 @@ void TomlDocument::override_value(const std::string& assignment) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 
 #include "weft/scene/toml_document.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kMaxDepth = 32;  // of brackets, and of dots in a key
@@ -122,4 +122,4 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

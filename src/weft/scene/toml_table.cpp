@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace weft {
+namespace weft::engine {
 
 namespace {
 
@@ -118,4 +118,4 @@ void TomlTable::refuse(std::string_view key, std::string_view why) {
                          std::string(key) + ": " + std::string(why));
 }
 
-}  // namespace weft
+}  // namespace weft::engine

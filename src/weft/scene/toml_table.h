@@ -16,7 +16,7 @@
 #include "weft/core/vec.h"
 #include "weft/scene/toml_document.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Magnitudes are limited, so that squares neither overflow nor vanish in single precision.
 constexpr double kSmallestNumber = 1e-12;  // where it has to be above 0
@@ -157,4 +157,4 @@ class TomlTable {
   TomlSection* section_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

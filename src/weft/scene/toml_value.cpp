@@ -6,7 +6,7 @@
 #include "weft/core/nearest_name.h"
 #include "weft/scene/toml_table.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// As short as it can be said, and not to be mistaken for an integer.
@@ -186,4 +186,4 @@ std::vector<TomlValue> TomlValue::elements(std::string_view what) const {
   return values;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

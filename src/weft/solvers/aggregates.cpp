@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kStrong = 0.25;  // of the strongest coupling of a particle
@@ -83,4 +83,4 @@ Aggregates find_aggregates(const SparseMatrix& couplings, const std::vector<doub
   return Aggregation(couplings, diagonal).run();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 
 #include "weft/solvers/sparse_matrix.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Aggregates {
   std::vector<int> of;  // aggregate of each particle, -1: none
@@ -16,4 +16,4 @@ struct Aggregates {
 /// Particles without couplings, or whose diagonal is 0, are in none.
 Aggregates find_aggregates(const SparseMatrix& couplings, const std::vector<double>& diagonal);
 
-}  // namespace weft
+}  // namespace weft::engine

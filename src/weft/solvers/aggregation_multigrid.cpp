@@ -9,7 +9,7 @@
 #include "weft/solvers/aggregates.h"
 #include "weft/solvers/dense_inverse.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 256;         // slices per chunk of work
@@ -376,4 +376,4 @@ void AggregationMultigrid::cycle(std::size_t l, const float* const side[3], floa
   });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -15,7 +15,7 @@
 #include "weft/core/vec3_array.h"
 #include "weft/solvers/sparse_matrix.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A matrix for vector registers (sliced ELLPACK): sixteen rows side by side, as many entry rows as the
 /// longest of them has entries.
@@ -69,4 +69,4 @@ class AggregationMultigrid {
   std::vector<double> dots_;                // of each slice
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -7,7 +7,7 @@
 
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 #if defined(__GNUC__)
@@ -206,4 +206,4 @@ void BlockCholesky::solve(std::vector<Vec3>& b) const {
   for (int k = 0; k < num_rows_; ++k) b[order_[k]] = x[k];
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -10,7 +10,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// A = diagonal blocks + for each pair (i, j) the block at (i, j) and its transpose at (j, i). Pairs may
 /// repeat: their blocks add up.
@@ -67,4 +67,4 @@ class BlockCholesky {
   std::vector<std::size_t> filled_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

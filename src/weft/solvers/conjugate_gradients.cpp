@@ -4,7 +4,7 @@
 
 #include "weft/core/simd.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 16384;  // numbers per chunk of work
@@ -66,4 +66,4 @@ void CgBlock::advance(double alpha, JobSystem& jobs) {
   });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

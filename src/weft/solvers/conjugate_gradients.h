@@ -6,7 +6,7 @@
 #include "weft/core/job_system.h"
 #include "weft/core/vec3_array.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct CgSettings {
   int iterations = 10;  // at most [1]
@@ -79,4 +79,4 @@ class ConjugateGradients {
   CgBlock block_;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

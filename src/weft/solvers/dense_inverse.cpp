@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace weft {
+namespace weft::engine {
 
 /// Gauss–Jordan elimination along the diagonal: stable for such matrices without any pivoting.
 void invert_in_place(std::vector<double>& a, int n) {
@@ -26,4 +26,4 @@ void invert_in_place(std::vector<double>& a, int n) {
   }
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 /// Replaces a symmetric positive semidefinite n × n matrix, row by row, by its inverse. Rows that hold
 /// nothing, or nothing but rounding after the others are eliminated, get an inverse of zero.
 void invert_in_place(std::vector<double>& matrix, int n);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,7 +6,7 @@
 #include "weft/solvers/dense_inverse.h"
 #include "weft/solvers/grid_multigrid_kernels.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 4096;   // particles per chunk of work
@@ -127,4 +127,4 @@ void GridMultigrid::cycle(std::size_t l, const Vec3Array& right_side, Vec3Array&
   for_rows(jobs, fine.rows, [&](int begin, int end) { smooth(fine, b, now, result, begin, end, dots); });
 }
 
-}  // namespace weft
+}  // namespace weft::engine

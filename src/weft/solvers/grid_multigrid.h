@@ -16,7 +16,7 @@
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Particles per row (or rows) of the grid that is coarser than n: every second one. Of an even number the
 /// last one is kept as well, in its place; two become one.
@@ -70,4 +70,4 @@ class GridMultigrid {
   std::vector<double> dots_;  // of each row
 };
 
-}  // namespace weft
+}  // namespace weft::engine

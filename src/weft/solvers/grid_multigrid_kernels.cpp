@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace weft::grid_kernels {
+namespace weft::engine::grid_kernels {
 namespace {
 
 /// Share of Jacobi's correction that is taken; anything from 0.7 to 1.1 does [1].
@@ -362,4 +362,4 @@ void prolong(const GridLevel& coarse, ConstComponent3 e, const GridLevel& fine, 
   prolong_multi(coarse, e, fine, x, row_begin, row_end);
 }
 
-}  // namespace weft::grid_kernels
+}  // namespace weft::engine::grid_kernels

@@ -3,7 +3,7 @@
 
 #include "weft/solvers/grid_multigrid.h"
 
-namespace weft::grid_kernels {
+namespace weft::engine::grid_kernels {
 
 struct Component3 {
   float *x, *y, *z;
@@ -38,4 +38,4 @@ void restrict_residual(const GridLevel& fine, ConstComponent3 b, ConstComponent3
 void prolong(const GridLevel& coarse, ConstComponent3 e, const GridLevel& fine, Component3 x, int row_begin,
              int row_end);
 
-}  // namespace weft::grid_kernels
+}  // namespace weft::engine::grid_kernels

@@ -1,6 +1,6 @@
 #include "weft/solvers/sparse_matrix.h"
 
-namespace weft {
+namespace weft::engine {
 
 SparseMatrix transpose(const SparseMatrix& a) {
   SparseMatrix t;
@@ -45,4 +45,4 @@ SparseMatrix multiply(const SparseMatrix& a, const SparseMatrix& b) {
   return c;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace weft {
+namespace weft::engine {
 
 struct SparseMatrix {
   int num_rows = 0, num_columns = 0;
@@ -26,4 +26,4 @@ SparseMatrix transpose(const SparseMatrix& a);
 /// A B. Entries of a row stand in the order in which they first come up.
 SparseMatrix multiply(const SparseMatrix& a, const SparseMatrix& b);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 std::vector<SurfaceView> cloth_surfaces(const Frame& frame) {
@@ -105,4 +105,4 @@ std::string describe(const Frame& frame, const Penetration& deepest) {
          quoted("collider", frame.colliders[deepest.solid].name);
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -12,7 +12,7 @@
 #include "weft/verify/crossings.h"
 #include "weft/verify/penetration.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 struct NamedCloth {
   std::string name;
@@ -54,4 +54,4 @@ std::vector<std::string> describe_by_surfaces(const Frame& frame, std::span<cons
 /// `cloth "sheet" triangle 7 in collider "ball"`; "nowhere" if the depth is 0.
 std::string describe(const Frame& frame, const Penetration& deepest);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -6,7 +6,7 @@
 #include "weft/verify/predicates.h"
 #include "weft/verify/sweep.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 // ---- One pair ----
@@ -314,4 +314,4 @@ std::vector<Crossing> find_crossings(std::span<const SurfaceView> surfaces) {
   return Finder(surfaces).find();
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -30,7 +30,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 using Corners = std::array<Vec3, 3>;
 
@@ -65,4 +65,4 @@ struct Crossing {
 /// strips along the second: for cloth about n log n.
 std::vector<Crossing> find_crossings(std::span<const SurfaceView> surfaces);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

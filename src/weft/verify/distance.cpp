@@ -4,7 +4,7 @@
 
 #include "weft/verify/predicates.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 Segment side(const Corners& triangle, int k) { return {triangle[k], triangle[(k + 1) % 3]}; }
@@ -65,4 +65,4 @@ double distance_sq(const Segment& segment, const Corners& triangle) {
   return least;
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -4,7 +4,7 @@
 
 #include "weft/verify/crossings.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 struct Segment {
   Vec3 from, to;
@@ -15,4 +15,4 @@ double distance_sq(const Segment& a, const Segment& b);
 double distance_sq(const Vec3& p, const Corners& triangle);
 double distance_sq(const Segment& segment, const Corners& triangle);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -2,7 +2,7 @@
 /// Private to verify/: exact sums and products of doubles (Shewchuk 1997, "Adaptive precision floating-point
 /// arithmetic and fast robust geometric predicates", section 2).
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 inline int sign(double x) { return (x > 0) - (x < 0); }
 
@@ -50,4 +50,4 @@ inline int grow_expansion(double* terms, int size, double b) {
   return kept;
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

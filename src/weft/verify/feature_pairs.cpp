@@ -9,7 +9,7 @@
 #include "weft/verify/distance.h"
 #include "weft/verify/sweep.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr double kSteps = 4;        // that a list must last as it seems, to be worth the making
@@ -284,4 +284,4 @@ void FeaturePairs::reach_across_gaps(const std::vector<MovingSurface>& surfaces)
   }
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -10,7 +10,7 @@
 #include "weft/mesh/triangle_mesh.h"
 #include "weft/verify/sweep.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 struct FeaturePair {
   enum class Kind { vertex_triangle, edge_edge, particle_shape };
@@ -83,4 +83,4 @@ class FeaturePairs {
   std::vector<Group> groups_;  // of two surfaces
 };
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

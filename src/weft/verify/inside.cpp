@@ -5,7 +5,7 @@
 
 #include "weft/verify/predicates.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr int kMostCells = 256;  // per side of the grid
@@ -77,4 +77,4 @@ bool InsideOfMesh::contains(const Vec3& p) const {
   return winding != 0;
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

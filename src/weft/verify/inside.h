@@ -6,7 +6,7 @@
 
 #include "weft/mesh/triangle_mesh.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 /// Answers for many points: looks along +x from each and adds up the triangles ahead, +1 for a front left
 /// behind, −1 for one met. The sum is the number of times the surface winds round the point. All decisions
@@ -33,4 +33,4 @@ class InsideOfMesh {
   std::vector<int> in_cell_;        // triangles
 };
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -8,7 +8,7 @@
 #include "weft/verify/expansion.h"
 #include "weft/verify/predicates.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 /// How far the vertex or first edge is moved aside, so that no decision is a tie [m].
@@ -289,4 +289,4 @@ PairMotion test_edge_edge(const std::array<PointMotion, 2>& first, const std::ar
   return {is_odd, touch(starts_of(first), starts_of(second)), touch(ends_of(first), ends_of(second))};
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -19,7 +19,7 @@
 
 #include "weft/core/vec.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 struct PointMotion {
   Vec3 start, end;  // [m]
@@ -33,4 +33,4 @@ struct PairMotion {
 PairMotion test_vertex_triangle(const PointMotion& vertex, const std::array<PointMotion, 3>& triangle);
 PairMotion test_edge_edge(const std::array<PointMotion, 2>& first, const std::array<PointMotion, 2>& second);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

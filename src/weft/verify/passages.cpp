@@ -8,7 +8,7 @@
 
 #include "weft/verify/pair_motion.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr double kListedReach = 0.5;  // of the lists of near pairs, in mean edges of cloth
@@ -311,4 +311,4 @@ std::string describe(const Frame& frame, const FeaturePair& passage) {
          part(passage.other, passage.opposite, "triangle");
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

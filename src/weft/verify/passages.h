@@ -21,7 +21,7 @@
 #include "weft/verify/checker.h"
 #include "weft/verify/feature_pairs.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 /// Watches a motion, moment by moment. All moments have the same cloths and colliders, as many vertices and
 /// the same triangles; coordinates are in the range of pair_motion.h.
@@ -62,4 +62,4 @@ class PassageWatch {
 /// `cloth "sheet" particle 12 passes through cloth "rag" triangle 7`
 std::string describe(const Frame& frame, const FeaturePair& passage);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -9,7 +9,7 @@
 #include "weft/verify/distance.h"
 #include "weft/verify/inside.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -240,4 +240,4 @@ std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std
   return search.result();
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -10,7 +10,7 @@
 #include "weft/core/shapes.h"
 #include "weft/verify/crossings.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 /// Depth of the deepest point of a triangle: its distance from the solid's surface, positive inside [m].
 /// Depth in a convex solid is a concave function, so it has one greatest value over a triangle, which is
@@ -60,4 +60,4 @@ struct Penetration {
 /// the nearest triangle. Open meshes are passed over. Empty if there is nothing to be inside of.
 std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std::span<const Solid> solids);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

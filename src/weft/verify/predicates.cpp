@@ -5,7 +5,7 @@
 
 #include "weft/verify/expansion.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr double kHalfUlp = 0x1p-53;  // largest relative rounding error of one operation
@@ -98,4 +98,4 @@ int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
   return permanent == 0 ? 0 : orient2d_exact(a, b, c);
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

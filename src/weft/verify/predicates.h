@@ -4,7 +4,7 @@
 #include "weft/core/vec.h"
 
 /// The checker's own code: nothing here is shared with the detection of contact.
-namespace weft::verify {
+namespace weft::engine::verify {
 
 /// The sign, +1, 0 or −1, of
 ///
@@ -26,4 +26,4 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /// line. Exact in the same range.
 int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

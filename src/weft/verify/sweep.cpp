@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace weft::verify {
+namespace weft::engine::verify {
 namespace {
 
 constexpr int kMostStrips = 1024;
@@ -82,4 +82,4 @@ void Sweep::add_to_strip(int k, Strip& strip) const {
   strip.high_z.push_back(box.high[third_axis_]);
 }
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -7,7 +7,7 @@
 
 #include "weft/verify/crossings.h"
 
-namespace weft::verify {
+namespace weft::engine::verify {
 
 /// A sweep along the axis in which the boxes spread most, in each of many strips along the second. Boxes are
 /// kept in floats: rounding never changes the order of two numbers, so it hides no overlap.
@@ -61,4 +61,4 @@ class Sweep {
   std::vector<Strip> strips_;
 };
 
-}  // namespace weft::verify
+}  // namespace weft::engine::verify

@@ -3,12 +3,13 @@
 #include <array>
 
 #include "weft/forces/bending.h"
+#include "weft/forces/collapse.h"
 #include "weft/forces/damping.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane.h"
 #include "weft/forces/spring.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 std::vector<Vec3> to_vectors(const Vec3Array& values) {
@@ -71,6 +72,23 @@ void add_bending_damping(const ClothElements& elements, const std::vector<Vec3>&
   }
 }
 
+/// Drag and lift on each particle: of triangles where they were at the start, at the end's velocities, as
+/// integrators have it (forces/air.h).
+void add_air_forces(const ClothModel& model, const ClothState& before, const ClothState& after,
+                    const Wind& wind, double time, std::vector<Vec3>& force) {
+  std::vector<Vec3> air;
+  for (int i = 0; i < model.num_particles(); ++i)
+    air.push_back(wind.velocity + gust_velocity(wind.gusts, before.position(i), time));
+  for (const Triangle& triangle : model.topology->mesh.triangles) {
+    const auto& [a, b, c] = triangle;
+    const Vec3 xa = before.x.get(a), area = 0.5 * (before.x.get(b) - xa).cross(before.x.get(c) - xa);
+    Vec3 slip = Vec3::Zero();
+    for (const int v : triangle) slip += (air[v] - before.v.get(v)) / 3;
+    const Mat3 third = air_matrix(wind.air, area, slip) / 3;
+    for (const int v : triangle) force[v] += third * (air[v] - after.v.get(v));
+  }
+}
+
 }  // namespace
 
 std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state) {
@@ -87,6 +105,12 @@ std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothSta
     force[i] += pull;
     force[j] -= pull;
   }
+  const StrainLimit collapse = make_collapse_law(model);
+  const TriangleMesh& mesh = model.topology->mesh;
+  const std::vector<Vec3> x = to_vectors(state.x);
+  for (int t = 0; t < mesh.num_triangles(); ++t)
+    scatter(mesh.triangles[t],
+            collapse_force(make_rest_triangle(mesh, t), collapse, gather(mesh.triangles[t], x)), force);
   return force;
 }
 
@@ -111,4 +135,13 @@ std::vector<Vec3> compute_damping_forces(const ClothModel& model, const ClothSta
   return force;
 }
 
-}  // namespace weft
+std::vector<Vec3> compute_wind_forces(const ClothModel& model, const ClothState& before,
+                                      const ClothState& after, const Wind& wind, double time) {
+  std::vector<Vec3> force;
+  for (int i = 0; i < model.num_particles(); ++i)
+    force.push_back(wind_force(wind, model.topology->area[i], after.v.get(i)));
+  if (wind.air.density > 0) add_air_forces(model, before, after, wind, time, force);
+  return force;
+}
+
+}  // namespace weft::engine

@@ -1,15 +1,16 @@
 #pragma once
-/// Internal forces of a cloth on its particles (num_particles) [N]: in double precision, from the pure
+/// Forces of a cloth, and of wind, on its particles (num_particles) [N]: in double precision, from the pure
 /// functions of forces/, whatever the cloth's integrator computes with.
 
 #include <vector>
 
+#include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
-/// Of springs with their strain limit, membranes, curvature stencils and hinges: minus the gradient of
+/// Of springs with their strain limit, membranes, collapse, curvature stencils and hinges: minus the gradient of
 /// compute_elastic_energy(). They sum to zero.
 std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state);
 
@@ -17,4 +18,9 @@ std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothSta
 /// Σ f·v is never positive.
 std::vector<Vec3> compute_damping_forces(const ClothModel& model, const ClothState& state);
 
-}  // namespace weft
+/// Of the wind's drag and the air's drag and lift, in a step from `before` to `after` that ends at `time`, or at a
+/// moment, which is both.
+std::vector<Vec3> compute_wind_forces(const ClothModel& model, const ClothState& before,
+                                      const ClothState& after, const Wind& wind, double time);
+
+}  // namespace weft::engine

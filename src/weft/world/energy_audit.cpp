@@ -5,7 +5,7 @@
 #include "weft/world/cloth_forces.h"
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 using Forces = std::vector<Vec3>;  // (num_particles) [N]
@@ -20,31 +20,6 @@ struct ClothStep {
   Vec3 displacement(int i) const { return after.position(i) - before.position(i); }
   Vec3 acceleration(int i) const { return (after.v.get(i) - before.v.get(i)) / step; }
 };
-
-/// Drag and lift on each particle: of triangles where they were at the start, at the end's velocities, as
-/// integrators have it (forces/air.h).
-void add_air_forces(const Wind& wind, double time, const ClothStep& cloth, Forces& force) {
-  const ClothState& before = cloth.before;
-  std::vector<Vec3> air;
-  for (int i = 0; i < cloth.num_particles(); ++i)
-    air.push_back(wind.velocity + gust_velocity(wind.gusts, before.position(i), time));
-  for (const Triangle& triangle : cloth.model.topology->mesh.triangles) {
-    const auto& [a, b, c] = triangle;
-    const Vec3 xa = before.x.get(a), area = 0.5 * (before.x.get(b) - xa).cross(before.x.get(c) - xa);
-    Vec3 slip = Vec3::Zero();
-    for (const int v : triangle) slip += (air[v] - before.v.get(v)) / 3;
-    const Mat3 third = air_matrix(wind.air, area, slip) / 3;
-    for (const int v : triangle) force[v] += third * (air[v] - cloth.after.v.get(v));
-  }
-}
-
-Forces compute_wind_forces(const Wind& wind, double time, const ClothStep& cloth) {
-  Forces force;
-  for (int i = 0; i < cloth.num_particles(); ++i)
-    force.push_back(wind_force(wind, cloth.model.topology->area[i], cloth.after.v.get(i)));
-  if (wind.air.density > 0) add_air_forces(wind, time, cloth, force);
-  return force;
-}
 
 double compute_work(const Forces& force, const ClothStep& cloth) {
   double work = 0;
@@ -164,7 +139,7 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothStep cloth{world.model(world.cloth(c)), start.state.states.at(c), world.state(world.cloth(c)),
                           step};
-    Forces outside = compute_wind_forces(world.wind(), world.time(), cloth);
+    Forces outside = compute_wind_forces(cloth.model, cloth.before, cloth.after, world.wind(), world.time());
     audit.work_wind += compute_work(outside, cloth);
     add_contact_forces(c, contacts, outside);
     const std::vector<Pin>& pins = world.pins(world.cloth(c));
@@ -175,4 +150,4 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
   return audit;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -17,7 +17,7 @@
 
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 
 /// Energies of all cloths [J].
 struct WorldEnergy {
@@ -57,4 +57,4 @@ AuditStart begin_energy_audit(const World& world);
 /// A step that failed has no work, and leaves nothing over.
 EnergyAudit finish_energy_audit(const AuditStart& start, const World& world);
 
-}  // namespace weft
+}  // namespace weft::engine

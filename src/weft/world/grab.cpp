@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kFollowRate = 30;  // of the spring on the whole cloth's mass, critically damped [1/s]
@@ -94,4 +94,4 @@ Vec3 Hands::impulse(const std::vector<char>& is_pinned, double step, const Cloth
   return sum;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

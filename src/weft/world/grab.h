@@ -19,7 +19,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 struct Grab {
   std::vector<int> particles;
@@ -44,7 +44,8 @@ class Hands {
     grabs_ = std::move(grabs);
     model_ = nullptr;
   }
-  void set_target(int grab, const Vec3& target) { grabs_.at(static_cast<std::size_t>(grab)).target = target; }
+  void set_target(int grab, const Vec3& target) { grabs_[grab].target = target; }
+  int size() const { return static_cast<int>(grabs_.size()); }
   bool are_empty() const { return grabs_.empty(); }
   const std::vector<Grab>& grabs() const { return grabs_; }
 
@@ -66,4 +67,4 @@ class Hands {
   double step_ = 0;
 };
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -11,7 +11,7 @@
 #include "weft/forces/membrane.h"
 #include "weft/forces/spring.h"
 
-namespace weft {
+namespace weft::engine {
 
 double compute_kinetic_energy(const ClothModel& model, const ClothState& state) {
   double energy = 0;
@@ -178,4 +178,4 @@ double compute_lowest_y(const ClothState& state) {
   return lowest;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

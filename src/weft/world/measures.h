@@ -7,7 +7,7 @@
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
-namespace weft {
+namespace weft::engine {
 
 double compute_kinetic_energy(const ClothModel& model, const ClothState& state);  // [J]
 
@@ -62,4 +62,4 @@ AreaShare compute_least_area(const ClothModel& model, const ClothState& state);
 
 double compute_lowest_y(const ClothState& state);  // [m]
 
-}  // namespace weft
+}  // namespace weft::engine

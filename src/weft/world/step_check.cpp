@@ -5,7 +5,7 @@
 
 #include "weft/world/measures.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kStretch = 0.08;    // that a spring may gain in a step, over its rest length [1]
@@ -110,4 +110,4 @@ StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, 
   return worst;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

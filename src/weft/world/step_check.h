@@ -11,17 +11,9 @@
 
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
+#include "weft/report.h"
 
-namespace weft {
-
-enum class StepFault {
-  stretch,     // a structural spring has become longer, over its rest length [1]
-  collapse,    // a triangle has lost area: what is left of it, over its area at rest [1]
-  energy,      // kinetic and potential energy have risen without work [J]
-  infeasible,  // prescribed motions left no room for a pair of features
-  skipped,     // cloth moved by more than its own size, and contact was left out
-  non_finite,  // a position or a velocity
-};
+namespace weft::engine {
 
 struct StepCheck {
   StepFault fault = StepFault::stretch;
@@ -44,4 +36,4 @@ struct CheckedCloth {
 /// have done work, so that energy tells nothing.
 StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -14,7 +14,7 @@
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kStep = 1.0 / 60;     // on the stage [s]
@@ -108,7 +108,7 @@ void World::thin_colliders(const Knots& crossed, World& stage) const {
     double depth = kMoreThanDeep * depths[c] + kRoom;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
       const int steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
-      *shape = growing_from(weft::shrink(*full.mesh, radii, depth), full, steps);
+      *shape = growing_from(weft::engine::shrink(*full.mesh, radii, depth), full, steps);
       if (compute_depths(stage.find_knots(), colliders_.size())[c] == 0) break;
     }
   }
@@ -168,4 +168,4 @@ UntangleReport World::untangle() {
   return report;
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -6,9 +6,10 @@
 #include <limits>
 
 #include "weft/core/hash.h"
+#include "weft/world/infeasible_pairs.h"
 #include "weft/world/world_input.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 /// A sum of products with zero: 0 if all values are finite, else not a number.
@@ -56,7 +57,8 @@ std::size_t index_of_id(const Things& things, Id id, std::uint32_t world, std::s
   if (id.world != world) throw InputError("this " + std::string(kind) + " is of another world");
   const int index = find_number(things, id.number);
   if (index >= 0) return static_cast<std::size_t>(index);
-  throw InputError("what this " + std::string(kind) + " (number " + std::to_string(id.number) + ") was of is removed");
+  throw InputError("what this " + std::string(kind) + " (number " + std::to_string(id.number) +
+                   ") was of is removed");
 }
 
 std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key> keys) {
@@ -72,10 +74,9 @@ std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
   return vertices;
 }
 
-void require_for_each_particle(const std::vector<Vec3>& values, const ClothState& state,
-                               const std::string& what) {
-  require(values.size() == state.x.size(),
-          what + " are " + std::to_string(values.size()) + ", particles " + std::to_string(state.x.size()));
+void require_points(const std::vector<Vec3>& values, std::size_t count, const std::string& what) {
+  require(values.size() == count,
+          what + " must be " + std::to_string(count) + ", not " + std::to_string(values.size()));
   require(std::ranges::all_of(values, [](const Vec3& p) { return p.allFinite(); }),
           what + " must be finite numbers");
 }
@@ -87,6 +88,22 @@ constexpr double kFarTooLong = 4;   // severity of a part that is cut in four [1
 constexpr double kCalm = 0.5;       // severity of a part that could have been longer [1]
 
 }  // namespace
+
+Vec3 PointGuide::at(std::size_t point, double time) const {
+  if (time <= start) return from[point];
+  if (time >= end) return to[point];
+  return from[point] + (time - start) / (end - start) * (to[point] - from[point]);
+}
+
+void PointGuide::begin_step(double time, double dt) {
+  if (is_new) {
+    start = time;
+    end = time + dt;
+  } else {
+    from = to;
+  }
+  is_new = false;
+}
 
 World::World() : id_(next_world_id()), integrator_(make_integrator({})), jobs_(make_serial_jobs()) {}
 
@@ -116,16 +133,15 @@ bool World::has_name(const std::string& name) const {
   return std::ranges::any_of(cloths_, is_its) || std::ranges::any_of(colliders_, is_its);
 }
 
-/// The wanted one; if it is empty, a free one by the kind of thing.
-std::string World::find_name(const std::string& wanted, const std::string& kind) const {
+std::string World::free_name(const std::string& wanted, const std::string& kind) const {
   std::string name = wanted.empty() ? kind : wanted;
   for (int n = 2; wanted.empty() && has_name(name); ++n) name = kind + ' ' + std::to_string(n);
   return name;
 }
 
-ClothId World::add_cloth(const ClothDesc& given) {
-  ClothDesc desc = given;
-  desc.name = find_name(given.name, "cloth");
+ClothId World::add_cloth(const ClothParts& given) {
+  ClothParts desc = given;
+  desc.name = free_name(given.name, "cloth");
   require(desc.topology != nullptr, "cloth \"" + desc.name + "\" has no topology");
   require_valid(*desc.topology, desc.name);
   require_valid(desc.material, desc.name);
@@ -144,12 +160,13 @@ ClothId World::add_cloth(const ClothDesc& given) {
           "cloth \"" + desc.name + "\" has a position or a velocity that is not a finite number");
   cloth.is_pinned.assign(positions.size(), 0);
   cloth.number = ++last_number_;
+  last_step_ = 0;
   cloths_.push_back(std::move(cloth));
   return {id_, last_number_};
 }
 
 ColliderId World::add_collider(Collider collider) {
-  collider.name = find_name(collider.name, "collider");
+  collider.name = free_name(collider.name, "collider");
   require_valid(collider);
   colliders_.push_back(std::move(collider));
   guides_.push_back({.number = ++last_number_});
@@ -164,6 +181,7 @@ void World::remove(ClothId id) {
     r.other_cloth -= r.other_cloth > index;
   }
   cloths_.erase(cloths_.begin() + index);
+  last_step_ = 0;
   contact_system_ = {};
 }
 
@@ -295,7 +313,7 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
       require(!is_pinned[i],
               "cloth \"" + cloth.name + "\": particle " + std::to_string(i) + " is pinned twice");
       is_pinned[i] = 1;
-      pinned.push_back({i, p, cloth.state.position(i)});
+      pinned.push_back({i, p, cloth.state.position(i), static_cast<int>(pinned.size())});
     }
   }
   std::sort(pinned.begin(), pinned.end(),
@@ -303,6 +321,53 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
   cloth.pins = std::move(pins);
   cloth.pinned = std::move(pinned);
   cloth.is_pinned = std::move(is_pinned);
+  cloth.pin_guide = {};
+}
+
+void World::move_pins(ClothId id, const std::vector<Vec3>& at_end) {
+  Cloth& cloth = at(id);
+  require_points(at_end, cloth.pinned.size(), "cloth \"" + cloth.name + "\": targets of pins");
+  PointGuide guide{.from = at_end, .to = at_end, .is_new = true};
+  for (const PinnedParticle& p : cloth.pinned) guide.from[p.order] = cloth.state.position(p.particle);
+  cloth.pin_guide = std::move(guide);
+}
+
+void World::move_grabs(ClothId id, const std::vector<Vec3>& at_end) {
+  Cloth& cloth = at(id);
+  require_points(at_end, cloth.hands.grabs().size(), "cloth \"" + cloth.name + "\": targets of grabs");
+  cloth.grab_guide = {.from = {}, .to = at_end, .is_new = true};
+  for (const Grab& grab : cloth.hands.grabs()) cloth.grab_guide.from.push_back(grab.target);
+}
+
+void World::set_grab_target(ClothId id, int grab, const Vec3& target) {
+  Cloth& cloth = at(id);
+  if (grab < 0 || grab >= cloth.hands.size())
+    throw InputError("cloth \"" + cloth.name + "\" has no grab " + std::to_string(grab));
+  if (!target.allFinite()) throw InputError("a grab's target must be finite numbers");
+  cloth.hands.set_target(grab, target);
+  cloth.grab_guide = {};
+}
+
+void World::set_forces(ClothId id, const std::vector<Vec3>& forces) {
+  Cloth& cloth = at(id);
+  if (!forces.empty())
+    require_points(forces, cloth.state.x.size(), "cloth \"" + cloth.name + "\": external forces");
+  cloth.forces = forces;
+  set_acceleration(cloth);
+}
+
+void World::set_acceleration(Cloth& cloth) {
+  cloth.environment.acceleration.clear();
+  for (std::size_t i = 0; i < cloth.forces.size(); ++i)
+    cloth.environment.acceleration.push_back(cloth.forces[i] / cloth.model->mass[i]);
+}
+
+/// Points that the program moves go to their targets in the step that begins, or stay.
+void World::guide_points(double dt) {
+  for (Cloth& cloth : cloths_) {
+    cloth.pin_guide.begin_step(time_, dt);
+    cloth.grab_guide.begin_step(time_, dt);
+  }
 }
 
 void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
@@ -319,25 +384,30 @@ void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
             "a grab's stiffness and damping must be 0 or more");
   }
   cloth.hands.set(std::move(grabs));
+  cloth.grab_guide = {};
 }
 
 void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
   Cloth& cloth = at(id);
-  require_for_each_particle(positions, cloth.state, "cloth \"" + cloth.name + "\": positions");
+  require_points(positions, cloth.state.x.size(), "cloth \"" + cloth.name + "\": positions");
   ClothState state = make_state(positions);  // with an origin near them
   for (std::size_t i = 0; i < positions.size(); ++i) state.v.set(i, cloth.state.v.get(i));
   cloth.state = std::move(state);
+  last_step_ = 0;
   for (PinnedParticle& p : cloth.pinned) {
     const Pin& pin = cloth.pins[p.pin];
     p.anchor = apply_inverse(pin.motion.at(time_), pin.pivot, positions[p.particle]);
+    if (!cloth.pin_guide.is_empty())
+      cloth.pin_guide.from[p.order] = cloth.pin_guide.to[p.order] = positions[p.particle];
   }
 }
 
 void World::set_velocities(ClothId id, const std::vector<Vec3>& velocities) {
   Cloth& cloth = at(id);
-  require_for_each_particle(velocities, cloth.state, "cloth \"" + cloth.name + "\": velocities");
+  require_points(velocities, cloth.state.x.size(), "cloth \"" + cloth.name + "\": velocities");
   for (std::size_t i = 0; i < velocities.size(); ++i) cloth.state.v.set(i, velocities[i]);
   cloth.state.history.step = 0;
+  last_step_ = 0;
 }
 
 void World::teleport(ClothId id, const Pose& pose) {
@@ -353,9 +423,17 @@ void World::teleport(ClothId id, const Pose& pose) {
 }
 
 void World::set_material(ClothId id, const ClothMaterial& material) {
+  const Cloth& cloth = at(id);
+  set_material(id, material, cloth.model->elements);
+}
+
+void World::set_material(ClothId id, const ClothMaterial& material,
+                         std::shared_ptr<const ClothElements> elements) {
   Cloth& cloth = at(id);
   require_valid(material, cloth.name);
-  cloth.model = build_cloth_model(cloth.model->topology, material, cloth.model->elements);
+  if (elements) require_elements_move(integrator_settings_.integrator, cloth.name);
+  cloth.model = build_cloth_model(cloth.model->topology, material, std::move(elements));
+  set_acceleration(cloth);
 }
 
 void World::set_wind(const Wind& wind) {
@@ -377,12 +455,16 @@ ContactSystem::Place World::find_place(const std::string& name) const {
   return found[0];
 }
 
-ContactRule& World::rule_for(const std::string& a, const std::string& b) {
-  ContactSystem::Place cloth = find_place(a), other = find_place(b);
+ContactSystem::Place World::place_of(const BodyId& id) const {
+  if (const ClothId* cloth = std::get_if<ClothId>(&id)) return {static_cast<int>(index_of(*cloth)), -1, 0};
+  return {-1, static_cast<int>(index_of(std::get<ColliderId>(id))), 0};
+}
+
+ContactRule& World::rule_for(ContactSystem::Place cloth, ContactSystem::Place other) {
   if (cloth.cloth < 0) std::swap(cloth, other);
   require(cloth.cloth >= 0,
-          "\"" + a + "\" and \"" + b +
-              "\" are both colliders, which do not touch each other; one of the two must be a cloth");
+          name_of(cloth) + " and " + name_of(other) +
+              " are both colliders, which do not touch each other; one of the two must be a cloth");
   if (other.cloth > cloth.cloth) std::swap(cloth, other);
   const auto is_theirs = [&](const ContactRule& r) {
     return r.cloth == cloth.cloth && r.other_cloth == other.cloth && r.collider == other.collider;
@@ -394,16 +476,29 @@ ContactRule& World::rule_for(const std::string& a, const std::string& b) {
 
 void World::set_friction(const std::string& a, const std::string& b, double friction,
                          double static_friction) {
+  set_friction_at(find_place(a), find_place(b), friction, static_friction);
+}
+
+void World::set_friction(BodyId a, BodyId b, double friction, double static_friction) {
+  set_friction_at(place_of(a), place_of(b), friction, static_friction);
+}
+
+void World::set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
+                            double static_friction) {
   for (const double number : {friction, static_friction})
     require(std::isfinite(number) && number >= 0,
-            "the friction of \"" + a + "\" and \"" + b + "\" must be 0 or more");
+            "the friction of " + name_of(a) + " and " + name_of(b) + " must be 0 or more");
   ContactRule& rule = rule_for(a, b);
   rule.friction = friction;
   rule.static_friction = static_friction;
 }
 
 void World::set_collision(const std::string& a, const std::string& b, bool collide) {
-  rule_for(a, b).collide = collide;
+  rule_for(find_place(a), find_place(b)).collide = collide;
+}
+
+void World::set_collision(BodyId a, BodyId b, bool collide) {
+  rule_for(place_of(a), place_of(b)).collide = collide;
 }
 
 std::vector<std::array<std::string, 2>> World::passing_pairs() const {
@@ -438,7 +533,9 @@ void World::set_environment(Cloth& cloth, double time) {
   for (const Pin& pin : cloth.pins) poses_.push_back(pin.motion.at(time));
   for (const PinnedParticle& p : cloth.pinned) {
     environment.pins.particle.push_back(p.particle);
-    environment.pins.position.push_back(apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor));
+    environment.pins.position.push_back(cloth.pin_guide.is_empty()
+                                            ? apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor)
+                                            : cloth.pin_guide.at(p.order, time));
   }
 }
 
@@ -477,8 +574,10 @@ void World::advance(double time, double dt, StepReport& report) {
   for (Cloth& cloth : cloths_) set_environment(cloth, time);
   // Attachments.
   for (Cloth& cloth : cloths_) {
+    for (std::size_t g = 0; g < cloth.grab_guide.to.size(); ++g)
+      cloth.hands.set_target(static_cast<int>(g), cloth.grab_guide.at(g, time));
     cloth.held_model = &cloth.hands.begin(cloth.model, cloth.is_pinned, gravity_, dt, cloth.state);
-    if (!cloth.hands.are_empty()) cloth.state.history.step = 0;  // its past does not know of the hands
+    cloth.state.history.is_held = !cloth.hands.are_empty();
   }
   // Contact candidates.
   contacts_.clear();
@@ -589,7 +688,9 @@ bool World::is_driven() const {
   return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
          std::any_of(cloths_.begin(), cloths_.end(), [&](const Cloth& cloth) {
-           return !cloth.hands.are_empty() || std::any_of(cloth.pins.begin(), cloth.pins.end(), moves);
+           return !cloth.hands.are_empty() || !cloth.forces.empty() ||
+                  cloth.pin_guide.from != cloth.pin_guide.to ||
+                  std::any_of(cloth.pins.begin(), cloth.pins.end(), moves);
          });
 }
 
@@ -649,6 +750,7 @@ void World::accept(const StepReport& part, StepReport& report) {
 /// As if the step had not been made.
 StepReport World::fail(const StepCheck& check, StepReport report) {
   report.ok = false;
+  last_step_ = 0;
   report.warnings.push_back({WarningCode::non_finite, check.cloth, check.particle});
   time_ = before_step_.time;
   part_ = before_step_.part;
@@ -665,6 +767,7 @@ StepReport World::step(double dt) {
   clock_.start();
   save(before_step_);
   guide_colliders(dt);
+  guide_points(dt);
   for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
   const int most = num_parts_at_most(dt);  // the step's units
   int parts = 1;                           // that it would have at the present length
@@ -716,6 +819,7 @@ StepReport World::step(double dt) {
   if (report.retries > 0) report.fault = worst.fault;
   part_ = parts > 1 ? dt / parts : 0;
   time_ = start + dt;
+  last_step_ = dt;
   report.work = clock_.stop();
   return report;
 }
@@ -731,6 +835,7 @@ void World::save(Snapshot& snapshot) const {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   save(snapshot);
+  for (const Cloth& cloth : cloths_) snapshot.held.push_back(held(cloth));
   snapshot.guides = guides_;
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     snapshot.guides[c].motion = colliders_[c].motion;
@@ -738,6 +843,27 @@ World::Snapshot World::snapshot() const {
       snapshot.guides[c].sequence = shape->sequence;
   }
   return snapshot;
+}
+
+World::Held World::held(const Cloth& cloth) const {
+  Held held{.pins = cloth.pins,
+            .anchors = std::vector<Vec3>(cloth.pinned.size()),
+            .grabs = cloth.hands.grabs(),
+            .pin_guide = cloth.pin_guide,
+            .grab_guide = cloth.grab_guide,
+            .forces = cloth.forces};
+  for (const PinnedParticle& p : cloth.pinned) held.anchors[p.order] = p.anchor;
+  return held;
+}
+
+void World::hold(Held held, Cloth& cloth) {
+  const ClothId id{id_, cloth.number};
+  set_pins(id, std::move(held.pins));
+  for (PinnedParticle& p : cloth.pinned) p.anchor = held.anchors[p.order];
+  set_grabs(id, std::move(held.grabs));
+  cloth.pin_guide = std::move(held.pin_guide);
+  cloth.grab_guide = std::move(held.grab_guide);
+  set_forces(id, held.forces);
 }
 
 void World::restore(const Snapshot& snapshot) {
@@ -752,7 +878,9 @@ void World::restore(const Snapshot& snapshot) {
   time_ = snapshot.time;
   part_ = snapshot.part;
   calm_ = snapshot.calm;
+  last_step_ = 0;
   restore_motion(snapshot);
+  for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(snapshot.held[c], cloths_[c]);
   if (snapshot.guides.empty()) return;
   const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
   if (std::ranges::any_of(guides_, is_by_hand) || std::ranges::any_of(snapshot.guides, is_by_hand))
@@ -778,4 +906,4 @@ std::uint64_t World::state_hash() const {
   return hash.value();
 }
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -9,19 +9,21 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "weft/contact/collider.h"
 #include "weft/contact/contact_system.h"
 #include "weft/core/work_times.h"
+#include "weft/ids.h"
 #include "weft/integrators/integrator.h"
+#include "weft/report.h"
 #include "weft/world/grab.h"
-#include "weft/world/ids.h"
-#include "weft/world/step_warning.h"
+#include "weft/world/step_check.h"
 
-namespace weft {
+namespace weft::engine {
 
-struct ClothDesc {
+struct ClothParts {
   std::string name;                               // for people and rules; empty: "cloth", "cloth 2", …
   std::shared_ptr<const ClothTopology> topology;  // see build_grid_topology, build_mesh_topology
   ClothMaterial material;
@@ -37,39 +39,26 @@ struct Pin {
   Vec3 pivot = Vec3::Zero();  // what the motion turns about [m]
 };
 
-struct StepReport {
-  bool ok = true;                        // false: the step failed, and every cloth is as it was before it
-  std::vector<StepWarning> warnings;     // with ok = true: the step was made, but less exactly than asked for
-  int substeps = 0;                      // of the cloth that needed most [1]
-  int divisions = 1;                     // parts that the step was divided into (StepDivision) [1]
-  int retries = 0;                       // parts that were too long, and were taken again [1]
-  std::optional<StepFault> fault;        // of the worst part that was taken again
-  int iterations = 0;                    // of nonlinear solvers, all cloths [1]
-  std::optional<int> linear_iterations;  // of linear solvers inside them; empty if there are none [1]
-  std::optional<int> guard_events;       // see newton; empty for integrators without a guard [1]
-  int hits = 0;                          // pairs left to the last line of contact (contact/last_line.h) [1]
-  int zones = 0;                         // zones that it moved rigidly [1]
-  std::vector<InfeasiblePair>
-      infeasible;  // what prescribed motions have pushed through each other, each once
-  WorkTimes work;  // of all parts, those that were taken again too
-};
-
-/// Division of steps: a step in contact that comes out stretched, crushed or with more energy than it should
-/// have (step_check.h) is taken again from its start in two parts, and so on. Later steps begin with the
-/// length that was needed, and join again when calm. A step that is not divided is the step that would be
-/// taken without.
-struct StepDivision {
-  std::optional<bool>
-      enabled;  // empty: for `newton`; true: for `implicit_euler` too; others keep their steps
-  double shortest = 1.0 / 960;  // part of a step, > 0; longer is faster and worse in impacts [s]
-};
-
 /// What World::untangle found and did.
 struct UntangleReport {
   int rounds = 0;                    // of repair; 0: nothing crossed [1]
   double farthest = 0;               // that a particle was moved [m]
   std::vector<std::string> crossed;  // what crossed at the start, by name
   std::vector<std::string> left;     // what crosses still, by name: empty if all is well
+};
+
+/// A cloth or a collider.
+using BodyId = std::variant<ClothId, ColliderId>;
+
+/// Points that a program moves: pins or grabs.
+struct PointGuide {
+  std::vector<Vec3> from, to;  // at the start and the end of the passage; empty: not moved by the program [m]
+  double start = 0, end = 0;   // of the passage [s]
+  bool is_new = false;         // the passage is that of the next step
+
+  bool is_empty() const { return to.empty(); }
+  Vec3 at(std::size_t point, double time) const;
+  void begin_step(double time, double dt);
 };
 
 class World {
@@ -84,7 +73,7 @@ class World {
 
   /// Throws InputError if the description does not fit together (sizes, numbers out of range, a fabric's
   /// elements and an integrator that knows springs alone).
-  ClothId add_cloth(const ClothDesc& desc);
+  ClothId add_cloth(const ClothParts& desc);
   /// Throws InputError for shapes that cannot be. An empty name: "collider", "collider
   /// 2", ….
   ColliderId add_collider(Collider collider);
@@ -109,10 +98,17 @@ class World {
   void set_pins(ClothId cloth,
                 std::vector<Pin> pins);  // replaces the cloth's pins; throws InputError for bad indices
   void set_grabs(ClothId cloth, std::vector<Grab> grabs);  // replaces the cloth's; throws InputError likewise
-  void set_grab_target(ClothId cloth, int grab, const Vec3& target) {
-    at(cloth).hands.set_target(grab, target);
-  }
-  void set_material(ClothId cloth, const ClothMaterial& material);
+  void set_grab_target(ClothId cloth, int grab, const Vec3& target);
+  /// Where pinned particles, in the order of the pins' lists, and the targets of grabs are at the end of the
+  /// next step: until then they move evenly, through substeps and parts too. Not given again they stay. In
+  /// place of the pins' motions. Throws InputError for other numbers of points than there are.
+  void move_pins(ClothId cloth, const std::vector<Vec3>& at_end);
+  void move_grabs(ClothId cloth, const std::vector<Vec3>& at_end);
+  void set_forces(ClothId cloth,
+                  const std::vector<Vec3>& forces);  // external (num_particles; empty: none) [N]
+  void set_material(ClothId cloth, const ClothMaterial& material);  // the elements stay
+  void set_material(ClothId cloth, const ClothMaterial& material,
+                    std::shared_ptr<const ClothElements> elements);
   /// Motion from outside (num_particles): nothing is swept on the way. Pins hold where their particles are
   /// put. Throws InputError for other numbers of values, and values that are not finite.
   void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // velocities stay [m]
@@ -127,8 +123,10 @@ class World {
   /// (slower than 1 cm/s), if that is more. Throws InputError for unknown names, for those of several things,
   /// and below 0.
   void set_friction(const std::string& a, const std::string& b, double friction, double static_friction = 0);
+  void set_friction(BodyId a, BodyId b, double friction, double static_friction = 0);
   /// Whether two things, named as above, collide or go through each other.
   void set_collision(const std::string& a, const std::string& b, bool collide);
+  void set_collision(BodyId a, BodyId b, bool collide);
   void track_contacts(bool enabled) {
     tracks_contacts_ = enabled;
   }  // for contact_points(); costs some percent
@@ -157,12 +155,18 @@ class World {
   int num_colliders() const { return static_cast<int>(colliders_.size()); }
   ClothId cloth(int n) const;        // of the n-th, in the order in which they were added
   ColliderId collider(int n) const;  // likewise
+  int index(ClothId cloth) const { return static_cast<int>(index_of(cloth)); }  // the n of cloth(n)
+  int index(ColliderId collider) const { return static_cast<int>(index_of(collider)); }
+  std::uint32_t id() const { return id_; }  // of the world, in the ids of what it holds
+  /// The wanted name; if it is empty, a free one by the kind of thing: "cloth", "cloth 2", ….
+  std::string free_name(const std::string& wanted, const std::string& kind) const;
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
   const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
   const std::vector<Grab>& grabs(ClothId cloth) const { return at(cloth).hands.grabs(); }
   const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
+  const std::vector<Vec3>& forces(ClothId cloth) const { return at(cloth).forces; }  // external [N]
   const Collider& collider(ColliderId collider) const { return colliders_[index_of(collider)]; }
   const std::vector<Collider>& colliders() const { return colliders_; }
   Pose pose(ColliderId collider) const;  // now
@@ -172,12 +176,20 @@ class World {
   /// forces are what cloth's momentum needs; where cloth trembles those of a single step are not its weight.
   std::vector<ContactPoint> contact_points() const;
 
+  /// What each pinned particle is held with, in the order of the pins' lists [N]: m a − F, with the mean
+  /// acceleration of the last step and all other forces at its end, contacts where they are tracked. Zero before
+  /// the first step, and after one that failed.
+  std::vector<Vec3> pin_forces(ClothId cloth) const;
+
   /// Whether something else than gravity may do work on cloth: wind, hands, or pins and colliders that move.
   bool is_driven() const;
 
   /// The names of things that go through each other (pairs).
   std::vector<std::array<std::string, 2>> passing_pairs() const;
 
+  bool has_contact() const { return contact_; }
+  bool tracks_contacts() const { return tracks_contacts_; }
+  const std::vector<ContactRule>& rules() const { return rules_; }  // of friction and collision, one per pair
   const Vec3& gravity() const { return gravity_; }
   const Wind& wind() const { return wind_; }
   const IntegratorSettings& integrator() const { return integrator_settings_; }
@@ -193,10 +205,20 @@ class World {
     std::shared_ptr<const MeshSequence> sequence;         // likewise
   };
 
+  /// What holds and drives a cloth.
+  struct Held {
+    std::vector<Pin> pins;
+    std::vector<Vec3> anchors;  // of each pinned particle, in the order of the pins' lists [m]
+    std::vector<Grab> grabs;
+    PointGuide pin_guide, grab_guide;
+    std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
+  };
+
   /// Everything that moves; restoring it and stepping again gives the same bits again.
   struct Snapshot {
     double time = 0;
     std::vector<ClothState> states;
+    std::vector<Held> held;     // (cloths)
     std::vector<Guide> guides;  // (colliders)
     double part = 0;            // the length that steps are divided into, 0: they are not [s]
     int calm = 0;               // parts in a row that could have been longer
@@ -211,7 +233,8 @@ class World {
  private:
   struct PinnedParticle {
     int particle, pin;
-    Vec3 anchor;  // where it was when pinned [m]
+    Vec3 anchor;    // where it was when pinned [m]
+    int order = 0;  // in the pins' lists
   };
 
   struct Cloth {
@@ -224,6 +247,8 @@ class World {
     Environment environment;             // of a substep
     std::vector<char> is_pinned;         // (num_particles)
     Hands hands;
+    PointGuide pin_guide, grab_guide;        // of pins and hands that the program moves
+    std::vector<Vec3> forces;                // external (num_particles; empty: none) [N]
     const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where hands hold it
     Vec3 grab_impulse = Vec3::Zero();        // of all hands in the last step [N·s]
   };
@@ -231,9 +256,12 @@ class World {
   std::size_t index_of(ClothId id) const;
   std::size_t index_of(ColliderId id) const;
   bool has_name(const std::string& name) const;
-  std::string find_name(const std::string& wanted, const std::string& kind) const;
   MeshShape& mesh_of(ColliderId id, const std::vector<Vec3>& positions);
   void guide_colliders(double dt);
+  void guide_points(double dt);
+  void set_acceleration(Cloth& cloth);
+  Held held(const Cloth& cloth) const;
+  void hold(Held held, Cloth& cloth);
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;
@@ -255,7 +283,10 @@ class World {
   void halt();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
-  ContactRule& rule_for(const std::string& a, const std::string& b);
+  ContactSystem::Place place_of(const BodyId& id) const;
+  ContactRule& rule_for(ContactSystem::Place a, ContactSystem::Place b);
+  void set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
+                       double static_friction);
   void save(Snapshot& snapshot) const;
   void set_environment(Cloth& cloth, double time);
   void solve(double dt, StepReport& report);
@@ -288,8 +319,9 @@ class World {
   std::vector<char> is_wild_;        // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_step_, before_part_;
+  double last_step_ = 0;  // whose start before_step_ is; 0: none, or cloth was changed from outside since [s]
   std::vector<CheckedCloth> checked_;
   std::vector<Vec3> grab_impulses_;  // (cloths) before the part under way
 };
 
-}  // namespace weft
+}  // namespace weft::engine

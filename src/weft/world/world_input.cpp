@@ -5,7 +5,7 @@
 
 #include "weft/integrators/integrator.h"
 
-namespace weft {
+namespace weft::engine {
 namespace {
 
 constexpr double kRounding = 1e-6;  // that unit vectors and rotations may be off by [1]
@@ -147,4 +147,4 @@ void require_elements_move(const std::string& integrator, const std::string& clo
               "spring_bend instead of the fabric");
 }
 
-}  // namespace weft
+}  // namespace weft::engine

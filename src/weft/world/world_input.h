@@ -4,11 +4,11 @@
 #include <string>
 
 #include "weft/contact/collider.h"
-#include "weft/core/error.h"
+#include "weft/error.h"
 #include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"
 
-namespace weft {
+namespace weft::engine {
 
 inline void require(bool condition, const std::string& sentence) {
   if (!condition) throw InputError(sentence);
@@ -26,4 +26,4 @@ void require_valid(const Wind& wind, const std::string& integrator);
 /// An integrator that knows more than springs.
 void require_elements_move(const std::string& integrator, const std::string& cloth);
 
-}  // namespace weft
+}  // namespace weft::engine

@@ -5,7 +5,7 @@
 /// bend_bias is the geometric mean of warp and weft (over the ten fabrics of Wang et al. 2011, the measured
 /// bias is 0.77 to 1.36 times that, median 0.97); damping is Fabric's default.
 
-#include "weft/fabric/fabric.h"
+#include "weft/fabric.h"
 
 namespace weft {
 
@@ -32,7 +32,7 @@ struct KesSheet {
 /// stretch_weft.
 ///
 /// Throws InputError for numbers out of range, or if the fabric is impossible.
-Fabric fabric_from(const KesSheet& sheet);
+WEFT_API Fabric fabric_from(const KesSheet& sheet);
 
 /// Fabric Assurance by Simple Testing (SiroFAST), extensions under 5, 20 and 100 gf/cm.
 /// A. De Boos and D. Tester, SiroFAST: A System for Fabric Objective Measurement, CSIRO report WT92.02, 1994.
@@ -52,7 +52,7 @@ struct FastSheet {
 /// bending = 9.81e-12 W C³ (FAST's own B = 9.81e-6 W C³ µN·m); g = 123/EB5 (FAST's own); c11 and c22 =
 /// 14.7 N/m over the extension between 5 and 20 gf/cm, as in FAST's formability.
 /// Throws InputError for numbers out of range, or if the fabric is impossible.
-Fabric fabric_from(const FastSheet& sheet);
+WEFT_API Fabric fabric_from(const FastSheet& sheet);
 
 /// Physical properties of CLO and Marvelous Designer, in the units that their property editor shows when it
 /// does not show 0 to 99. Gram, millimetre and second: 1 g/s² = 1e-3 N/m, 1 g·mm²/s² = 1e-9 N·m.
@@ -69,6 +69,6 @@ struct CloProperties {
 };
 
 /// Throws InputError if the fabric is impossible. Buckling ratio and stiffness have no counterpart.
-Fabric fabric_from(const CloProperties& properties);
+WEFT_API Fabric fabric_from(const CloProperties& properties);
 
 }  // namespace weft

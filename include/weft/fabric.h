@@ -12,7 +12,10 @@
 /// direction ψ from warp (see bending_rigidity()).
 
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "weft/export.h"
 
 namespace weft {
 
@@ -81,21 +84,21 @@ struct Fabric {
   /// both values and tension over stretch rising; empty: straight lines of slope c11 and c22, which hold in
   /// compression in any case. The membrane stays positive definite: c12² is less than the product of their
   /// least slopes. `springs` do not follow them.
-  std::vector<StretchPoint> stretch_warp, stretch_weft;
+  std::vector<StretchPoint> stretch_warp = {}, stretch_weft = {};
 };
 
 /// What is wrong with one number of a fabric.
 struct FabricMistake {
-  std::string field;   // "c12"
-  std::string reason;  // "must be …, is …"
+  std::string field = {};   // "c12"
+  std::string reason = {};  // "must be …, is …"
 };
 
 /// Everything that makes a fabric impossible: numbers that are not finite or out of the ranges above, a
 /// membrane that is not positive definite, bias bending outside of what is possible, heavier than lead.
-std::vector<FabricMistake> find_mistakes(const Fabric& fabric);
+WEFT_API std::vector<FabricMistake> find_mistakes(const Fabric& fabric);
 
 /// Throws InputError with all mistakes; `name` is how the fabric is called in the message.
-void validate_fabric(const Fabric& fabric, const std::string& name);
+WEFT_API void validate_fabric(const Fabric& fabric, const std::string& name);
 
 /// Rigidity of bending to a cylinder rolled in the direction (c, s) = (cos ψ, sin ψ) from warp [N·m]:
 ///
@@ -103,6 +106,30 @@ void validate_fabric(const Fabric& fabric, const std::string& name);
 ///
 /// This is how every orthotropic plate bends (S. Timoshenko, Theory of Plates and Shells, 1959, §85), and
 /// gives bend_warp, bend_bias and bend_weft exactly at 0°, 45° and 90°.
-double bending_rigidity(const Fabric& fabric, double cos_psi, double sin_psi);
+WEFT_API double bending_rigidity(const Fabric& fabric, double cos_psi, double sin_psi);
+
+/// Where a preset's numbers come from.
+struct FabricSources {
+  std::string density = {}, stretch = {}, shear = {}, bending = {}, damping = {}, thickness = {},
+              friction = {};
+};
+
+struct FabricPreset {
+  std::string name = {};   // "cotton_shirting"
+  std::string title = {};  // one line: what it is
+  Fabric fabric = {};
+  FabricSources sources = {};
+};
+
+/// Five everyday fabrics, then the ten measured by H. Wang, J. O'Brien and R. Ramamoorthi, Data-Driven
+/// Elastic Models for Cloth, ACM Transactions on Graphics 30(4), 2011.
+WEFT_API const std::vector<FabricPreset>& fabric_presets();
+
+/// The preset of this name; letters may be small or capital, "-" and " " stand for "_". Throws InputError
+/// with the nearest name, or all of them.
+WEFT_API const FabricPreset& find_fabric_preset(std::string_view name);
+
+/// Its numbers.
+WEFT_API const Fabric& find_fabric(std::string_view name);
 
 }  // namespace weft

@@ -1,0 +1,48 @@
+#pragma once
+/// Shapes of cloth and of mesh colliders: grids and triangle meshes.
+
+#include <array>
+#include <vector>
+
+#include "weft/vec.h"
+
+namespace weft {
+
+/// Rectangular cloth as a grid of particles.
+///
+/// The grid lies horizontally: corner (0, 0) at the origin, i along +x, j along +z, row by row:
+///
+///     (0,0) --- (1,0) --- (2,0)  → x        index = j * (cells_x + 1) + i
+///       |         |         |
+///     (0,1) --- (1,1) --- (2,1)
+///       ↓ z
+struct Grid {
+  double size_x = 1;  // > 0 [m]
+  double size_z = 1;  // > 0 [m]
+  int cells_x = 32;   // >= 1
+  int cells_z = 32;   // >= 1
+
+  int num_columns() const { return cells_x + 1; }
+  int num_rows() const { return cells_z + 1; }
+  int num_particles() const { return num_columns() * num_rows(); }
+  int index(int i, int j) const { return j * num_columns() + i; }
+  double spacing_x() const { return size_x / cells_x; }
+  double spacing_z() const { return size_z / cells_z; }
+};
+
+using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen from the front
+
+/// Texture coordinates (u, v) of a triangle's corners.
+using CornerUv = std::array<std::array<double, 2>, 3>;
+
+/// Any triangle mesh. Of a cloth its positions are the rest shape.
+struct TriangleMesh {
+  std::vector<Vec3> positions = {};      // (num_vertices), finite [m]
+  std::vector<Triangle> triangles = {};  // (num_triangles), at least one
+  std::vector<CornerUv> uv = {};         // (num_triangles), or empty; says where warp goes: along u
+
+  int num_vertices() const { return static_cast<int>(positions.size()); }
+  int num_triangles() const { return static_cast<int>(triangles.size()); }
+};
+
+}  // namespace weft

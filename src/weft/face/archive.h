@@ -1,0 +1,129 @@
+#pragma once
+/// Private to face/: values as bytes and back, by one description of each type.
+///
+/// describe(archive, value) lists a type's members; a Writer appends them, a Reader fills them in. Numbers are
+/// little-endian, as on every machine that Weft runs on. A Reader never reserves more memory than a small multiple
+/// of the bytes that are left: whatever the bytes say, it ends with a value or with an InputError.
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "weft/error.h"
+
+namespace weft::engine {
+
+static_assert(std::endian::native == std::endian::little);
+
+template <class T>
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+class Writer {
+ public:
+  static constexpr bool kReads = false;
+  std::vector<std::byte> bytes;
+
+  template <Plain T>
+  void plain(const T& value) {
+    const auto* from = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), from, from + sizeof value);
+  }
+};
+
+class Reader {
+ public:
+  static constexpr bool kReads = true;
+
+  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <Plain T>
+  void plain(T& value) {
+    if (left_.size() < sizeof value) fail();
+    if constexpr (std::is_same_v<T, bool>) {
+      value = left_[0] != std::byte{0};
+    } else {
+      std::memcpy(&value, left_.data(), sizeof value);
+    }
+    left_ = left_.subspan(sizeof value);
+  }
+
+  std::size_t left() const { return left_.size(); }
+  [[noreturn]] static void fail() { throw InputError("these bytes are not a saved world: they are damaged"); }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+template <class Archive, Plain T>
+void describe(Archive& archive, T& value) {
+  archive.plain(value);
+}
+
+/// Several members, one after the other.
+template <class Archive, class... Members>
+void members(Archive& archive, Members&... member) {
+  (describe(archive, member), ...);
+}
+
+/// The number of elements of a list; each takes a byte at least.
+template <class Archive>
+std::size_t describe_size(Archive& archive, std::size_t size) {
+  auto count = static_cast<std::uint64_t>(size);
+  archive.plain(count);
+  if constexpr (Archive::kReads) {
+    if (count > archive.left()) archive.fail();
+  }
+  return static_cast<std::size_t>(count);
+}
+
+template <class Archive, class T>
+void describe(Archive& archive, std::vector<T>& values) {
+  const std::size_t count = describe_size(archive, values.size());
+  if constexpr (Archive::kReads) {
+    values.clear();
+    for (std::size_t i = 0; i < count; ++i) describe(archive, values.emplace_back());
+  } else {
+    for (T& value : values) describe(archive, value);
+  }
+}
+
+template <class Archive>
+void describe(Archive& archive, std::string& text) {
+  text.resize(describe_size(archive, text.size()));
+  for (char& c : text) archive.plain(c);
+}
+
+template <class Archive, class T, std::size_t N>
+void describe(Archive& archive, std::array<T, N>& values) {
+  for (T& value : values) describe(archive, value);
+}
+
+template <class Archive, class T>
+void describe(Archive& archive, std::optional<T>& value) {
+  bool is_set = value.has_value();
+  archive.plain(is_set);
+  if constexpr (Archive::kReads) value = is_set ? std::optional<T>(std::in_place) : std::nullopt;
+  if (value) describe(archive, *value);
+}
+
+template <class Archive, class... Types>
+void describe(Archive& archive, std::variant<Types...>& value) {
+  auto index = static_cast<std::uint32_t>(value.index());
+  archive.plain(index);
+  if constexpr (Archive::kReads) {
+    if (index >= sizeof...(Types)) archive.fail();
+    std::uint32_t type = 0;
+    ((index == type++ ? void(value.template emplace<Types>()) : void()), ...);
+  }
+  std::visit([&](auto& held) { describe(archive, held); }, value);
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,201 @@
+#include "weft/face/build_cloth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/error.h"
+#include "weft/face/convert.h"
+#include "weft/mesh/clean.h"
+#include "weft/model/fabric_springs.h"
+
+namespace weft::engine {
+namespace {
+
+/// The axis of a grid that warp goes along, if it is one.
+std::optional<GridWarp> grid_warp(const ClothDesc& desc) {
+  constexpr double kAlong = 0.999999;  // least cosine of the angle between them
+  const Vec3 direction = desc.warp ? to_engine(*desc.warp).normalized() : Vec3(Vec3::UnitX());
+  if (std::abs(direction.x()) > kAlong) return GridWarp::first_axis;
+  if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
+  return {};
+}
+
+CellDiagonals cell_diagonals(SpringModel model) {
+  switch (model) {
+    case SpringModel::basic:
+      return CellDiagonals::both;
+    case SpringModel::alternating:
+      return CellDiagonals::alternating;
+    case SpringModel::simplified:
+      break;
+  }
+  return CellDiagonals::parallel;
+}
+
+/// Whether most of the surface is nearer to upright than to level, at rest.
+bool stands_upright(const TriangleMesh& mesh) {
+  double upright = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 area = (mesh.positions[j] - mesh.positions[i]).cross(mesh.positions[k] - mesh.positions[i]);
+    upright += area.norm() - std::sqrt(2.0) * std::abs(area.y());
+  }
+  return upright > 0;
+}
+
+/// Along the direction that is given, or as the mesh's texture coordinates say; without either, along the
+/// body in what is worn.
+WarpField find_warp(const ClothDesc& desc, const RestShape& rest, const std::string& who,
+                    std::vector<std::string>& warnings) {
+  const TriangleMesh& mesh = rest.topology->mesh;
+  std::optional<Vec3> direction;
+  if (desc.warp) direction = to_engine(*desc.warp);
+  if (!direction && rest.uv.empty()) {
+    const bool stands = stands_upright(mesh);
+    direction = stands ? Vec3::UnitY() : Vec3::UnitX();
+    warnings.push_back(who +
+                       "its mesh has no texture coordinates, which would say where warp goes; it goes " +
+                       (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
+  }
+  WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, rest.uv);
+  if (warp.num_guessed == 0) return warp;
+  warnings.push_back(
+      who + (direction ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
+      std::to_string(warp.num_guessed) + (warp.num_guessed == 1 ? " triangle" : " triangles") +
+      ", which got another axis");
+  return warp;
+}
+
+ClothMaterial make_material(const Springs& s) {
+  return {.density = s.density,
+          .structural = s.structural,
+          .shear = s.shear,
+          .bend = s.bend,
+          .damping = s.damping,
+          .damping_kind = s.damping_kind,
+          .thickness = s.thickness,
+          .friction = s.friction};
+}
+
+ClothMaterial make_material(const Fabric& f) {
+  return {.density = f.density,
+          .structural = 0,
+          .shear = 0,
+          .bend = 0,
+          .thickness = f.thickness,
+          .friction = f.friction};
+}
+
+ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const RestShape& rest,
+                            const std::string& who, std::vector<std::string>& warnings) {
+  ClothMaterial material = make_material(fabric);
+  const auto warn = [&](const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences) warnings.push_back(who + sentence);
+  };
+  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
+    const std::optional<GridWarp> warp = grid_warp(desc);
+    if (!warp)
+      throw InputError(who +
+                       "springs can only have warp along one of the grid's axes, "
+                       "[1, 0, 0] or [0, 0, 1]; use membrane = \"triangle\" for other directions");
+    const GridSprings springs =
+        make_grid_springs(*grid, cell_diagonals(desc.model), *warp, fabric, desc.fabric_name);
+    warn(springs.warnings);
+    set_fabric_springs(springs, fabric, material);
+    return {material, build_grid_bending_elements(*grid, *warp, fabric)};
+  }
+  const ClothTopology& topology = *rest.topology;
+  const WarpField warp = find_warp(desc, rest, who, warnings);
+  const MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric_name);
+  warn(springs.warnings);
+  set_fabric_springs(springs, topology, fabric, material);
+  return {material, build_mesh_bending_elements(topology.mesh, warp, fabric)};
+}
+
+ClothSubstance make_triangles(const ClothDesc& desc, const Fabric& fabric, const RestShape& rest,
+                              const std::string& who, std::vector<std::string>& warnings) {
+  const ClothTopology& topology = *rest.topology;
+  const auto elements =
+      topology.grid ? build_grid_elements(*topology.grid, topology.mesh, *grid_warp(desc), fabric)
+                    : build_mesh_elements(topology.mesh, find_warp(desc, rest, who, warnings), fabric);
+  return {make_material(fabric), elements};
+}
+
+/// At most half of a mean edge, so that few neighbours are nearer than the thickness.
+double fit_thickness(double thickness, const TriangleMesh& mesh) {
+  constexpr double kShareOfEdge = 0.5;
+  const std::vector<Edge> edges = build_edges(mesh);
+  double sum = 0;
+  for (const Edge& e : edges) sum += (mesh.positions[e.b] - mesh.positions[e.a]).norm();
+  return std::min(thickness, kShareOfEdge * sum / static_cast<double>(edges.size()));
+}
+
+RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
+  // A grid whose warp is along neither axis is a mesh like any other.
+  const bool is_mesh = std::holds_alternative<Fabric>(desc.fabric) && !grid_warp(desc);
+  RestShape rest{is_mesh ? build_mesh_topology(build_grid_mesh(grid, diagonals_of(desc.model)))
+                         : build_grid_topology(grid, desc.model),
+                 {}};
+  for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
+  return rest;
+}
+
+RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh, ClothNotes& notes) {
+  if (!mesh.uv.empty() && mesh.uv.size() != mesh.triangles.size())
+    throw InputError("it has texture coordinates of " + std::to_string(mesh.uv.size()) + " triangles, but " +
+                     std::to_string(mesh.triangles.size()) + " triangles");
+  CleanMesh clean =
+      clean_mesh(to_engine(mesh), {.weld_distance = desc.weld.value_or(-1), .sew_distance = desc.sew});
+  RestShape rest;
+  const std::vector<CornerUv> uv = to_engine(mesh.uv);
+  for (std::size_t t = 0; !uv.empty() && t < clean.source_triangle.size(); ++t)
+    rest.uv.push_back(interpolate(uv[clean.source_triangle[t]], clean.corner_weights[t]));
+  rest.topology = build_mesh_topology(std::move(clean.mesh));
+  notes.particle_of_vertex = std::move(clean.vertex_of_source);
+  notes.warnings = std::move(clean.warnings);
+  notes.done = std::move(clean.notes);
+  return rest;
+}
+
+}  // namespace
+
+RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes) {
+  const std::string mesh_who =
+      desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
+  try {
+    if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return build_from_grid(desc, *grid, notes);
+    RestShape rest = build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);
+    for (auto* list : {&notes.warnings, &notes.done}) {
+      for (std::string& sentence : *list) sentence = mesh_who + sentence;
+    }
+    return rest;
+  } catch (const InputError& error) {
+    throw InputError(mesh_who + error.what());
+  }
+}
+
+ClothSubstance build_substance(const ClothDesc& desc, const RestShape& rest, const std::string& who,
+                               std::vector<std::string>& warnings) {
+  ClothSubstance made;
+  if (const Fabric* fabric = std::get_if<Fabric>(&desc.fabric)) {
+    validate_fabric(*fabric, desc.fabric_name);
+    made = desc.membrane == Membrane::springs ? make_springs(desc, *fabric, rest, who, warnings)
+                                              : make_triangles(desc, *fabric, rest, who, warnings);
+  } else {
+    made.material = make_material(std::get<Springs>(desc.fabric));
+  }
+  if (desc.fits_thickness)
+    made.material.thickness = fit_thickness(made.material.thickness, rest.topology->mesh);
+  return made;
+}
+
+void multiply_spring_factors(const ClothTopology& topology, const std::vector<int>& particles, double factor,
+                             std::vector<double>& factors) {
+  factors.resize(topology.springs.size(), 1.0);
+  std::vector<char> is_inside(static_cast<std::size_t>(topology.num_particles()), 0);
+  for (const int p : particles) is_inside[p] = 1;
+  for (std::size_t s = 0; s < topology.springs.size(); ++s) {
+    if (is_inside[topology.springs[s].i] && is_inside[topology.springs[s].j]) factors[s] *= factor;
+  }
+}
+
+}  // namespace weft::engine

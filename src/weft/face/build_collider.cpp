@@ -1,0 +1,145 @@
+#include "weft/face/build_collider.h"
+
+#include "weft/error.h"
+#include "weft/face/convert.h"
+#include "weft/mesh/clean.h"
+#include "weft/mesh/solid.h"
+
+namespace weft::engine {
+namespace {
+
+std::string count_edges(int count) { return std::to_string(count) + (count == 1 ? " edge" : " edges"); }
+
+/// Turns the mesh right side out if it needs that, and says what else is wrong with it as a solid.
+void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  const SurfaceEdges edges = count_surface_edges(mesh);
+  if (edges.non_manifold > 0) {
+    warnings.push_back(count_edges(edges.non_manifold) +
+                       " of more than two triangles (non-manifold): inside and outside may be " +
+                       "mistaken there");
+  }
+  if (edges.twisted > 0) {
+    warnings.push_back(count_edges(edges.twisted) +
+                       " between triangles that face opposite ways: inside and outside may be " +
+                       "mistaken; recalculate the mesh's normals to face outwards");
+  }
+  if (edges.border > 0) {
+    warnings.push_back("has a border of " + count_edges(edges.border) +
+                       ": cloth is held off on both sides, inside is not defined");
+    return;
+  }
+  const Shells shells = turn_shells_outwards(mesh);
+  if (shells.turned == 0) return;
+  const std::string turned = std::to_string(shells.turned) + " of its " + std::to_string(shells.count);
+  warnings.push_back((shells.count == 1
+                          ? "is inside out (its triangles face inwards); it was"
+                          : turned + " shells are inside out (their triangles face inwards); they were") +
+                     std::string(" turned right side out"));
+}
+
+/// Shapes where the pose puts them.
+struct ShapeBuilder {
+  const ColliderDesc& desc;
+  const std::string& who;
+  BuiltCollider& built;
+  Pose pose = to_engine(desc.pose);
+
+  Vec3 place(const weft::Vec3& p) const { return pose.rotation * to_engine(p) + pose.translation; }
+
+  ColliderShape operator()(const weft::Sphere& s) const { return Sphere{place(s.center), s.radius}; }
+  ColliderShape operator()(const weft::Plane& p) const {
+    return Plane{place(p.point), pose.rotation * to_engine(p.normal)};
+  }
+  ColliderShape operator()(const weft::Capsule& c) const { return Capsule{place(c.a), place(c.b), c.radius}; }
+  ColliderShape operator()(const weft::OrientedBox& b) const {
+    return OrientedBox{place(b.center), to_engine(b.half_size), pose.rotation * to_engine(b.rotation)};
+  }
+
+  ColliderShape operator()(const weft::TriangleMesh& given) const {
+    CleanMesh clean = clean_mesh(to_engine(given), {.weld_distance = 0, .is_cloth = false});
+    built.warnings = std::move(clean.warnings);
+    built.vertex_of_source = std::move(clean.vertex_of_source);
+    check_as_solid(clean.mesh, built.warnings);
+    MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
+                    .rotation = pose.rotation,
+                    .translation = pose.translation};
+    if (!desc.frames.empty()) shape.sequence = make_sequence(shape.mesh->num_vertices());
+    return shape;
+  }
+
+  std::shared_ptr<const MeshSequence> make_sequence(int num_vertices) const {
+    std::vector<MeshSequence::Key> keys;
+    for (const MeshFrame& frame : desc.frames) {
+      keys.push_back({frame.time, {}});
+      keys.back().positions.resize(static_cast<std::size_t>(num_vertices));
+      place_vertices(frame.positions, built, keys.back().positions);
+    }
+    return std::make_shared<const MeshSequence>(std::move(keys));
+  }
+
+  static void place_vertices(const std::vector<weft::Vec3>& given, const BuiltCollider& built,
+                             std::vector<Vec3>& positions) {
+    const std::vector<int>& map = built.vertex_of_source;
+    if (given.size() != map.size())
+      throw InputError("it was given " + std::to_string(map.size()) + " vertices, not " +
+                       std::to_string(given.size()));
+    for (std::size_t v = 0; v < map.size(); ++v) {
+      if (map[v] >= 0) positions[map[v]] = to_engine(given[v]);
+    }
+  }
+};
+
+}  // namespace
+
+BuiltCollider build_collider(const ColliderDesc& desc, const std::string& who) {
+  BuiltCollider built;
+  const std::string mesh_who =
+      desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
+  if (!desc.frames.empty() && !std::holds_alternative<weft::TriangleMesh>(desc.shape))
+    throw InputError(who + "only a mesh can have frames");
+  try {
+    built.collider.shape = std::visit(ShapeBuilder{desc, who, built}, desc.shape);
+  } catch (const InputError& error) {
+    throw InputError(mesh_who + error.what());
+  }
+  for (std::string& warning : built.warnings) warning = mesh_who + warning;
+  built.collider.name = desc.name;
+  built.collider.friction = desc.friction;
+  built.collider.static_friction = desc.static_friction;
+  built.collider.motion = RigidMotion(to_engine(desc.motion));
+  return built;
+}
+
+std::vector<Vec3> select_vertices(const std::vector<weft::Vec3>& given, const BuiltCollider& built) {
+  const std::string who = "collider \"" + built.collider.name + "\": ";
+  const MeshShape* shape = std::get_if<MeshShape>(&built.collider.shape);
+  if (shape == nullptr) throw InputError(who + "it is no mesh, and has no vertices");
+  std::vector<Vec3> positions(shape->mesh->positions.size());
+  try {
+    ShapeBuilder::place_vertices(given, built, positions);
+  } catch (const InputError& error) {
+    throw InputError(who + error.what());
+  }
+  return positions;
+}
+
+// With R0, T0 of desc.pose and R, T of the pose, the displacement is R R0ᵀ about the pivot p and
+// (T − R R0ᵀ T0) + (R R0ᵀ p − p): without rounding where nothing turns and T0 is 0.
+
+Pose to_displacement(const weft::Pose& pose, const ColliderDesc& desc, const Vec3& pivot) {
+  const Pose to = to_engine(pose), from = to_engine(desc.pose);
+  Pose result;
+  if (to.rotation != from.rotation) result.rotation = to.rotation * from.rotation.transpose();
+  result.translation =
+      (to.translation - result.rotation * from.translation) + (result.rotation * pivot - pivot);
+  return result;
+}
+
+weft::Pose from_displacement(const Pose& displacement, const ColliderDesc& desc, const Vec3& pivot) {
+  const Pose from = to_engine(desc.pose);
+  const Mat3& r = displacement.rotation;
+  return from_engine(
+      Pose{displacement.translation - (r * pivot - pivot) + r * from.translation, r * from.rotation});
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,422 @@
+/// World::save and World::load: the descriptions that a world was made of, and its state.
+
+#include <algorithm>
+
+#include "weft/core/hash.h"
+#include "weft/face/archive.h"
+#include "weft/face/convert.h"
+#include "weft/face/world_impl.h"
+
+namespace weft {
+
+// Members of each type, in order. A change of any list is a new version of the format.
+
+namespace engine {
+
+template <class Archive>
+void describe(Archive& archive, Vec3& v) {
+  for (int c = 0; c < 3; ++c) archive.plain(v[c]);
+}
+template <class Archive>
+void describe(Archive& archive, Mat3& m) {
+  for (int e = 0; e < 9; ++e) archive.plain(m(e / 3, e % 3));
+}
+template <class Archive>
+void describe(Archive& archive, weft::Vec3& v) {
+  members(archive, v.x, v.y, v.z);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Mat3& m) {
+  members(archive, m.row0, m.row1, m.row2);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Pose& p) {
+  members(archive, p.translation, p.rotation);
+}
+template <class Archive>
+void describe(Archive& archive, Pose& p) {
+  members(archive, p.translation, p.rotation);
+}
+template <class Archive>
+void describe(Archive& archive, weft::KeyFrame& k) {
+  members(archive, k.time, k.translation, k.angles_deg);
+}
+template <class Archive>
+void describe(Archive& archive, KeyFrame& k) {
+  members(archive, k.time, k.translation, k.angles_deg);
+}
+template <class Archive>
+void describe(Archive& archive, MeshFrame& f) {
+  members(archive, f.time, f.positions);
+}
+template <class Archive>
+void describe(Archive& archive, weft::WindKey& k) {
+  members(archive, k.time, k.velocity);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Wind& w) {
+  members(archive, w.velocity, w.keys, w.drag, w.air.density, w.air.drag, w.air.lift, w.gusts.strength,
+          w.gusts.length, w.gusts.time, w.gusts.seed);
+}
+template <class Archive>
+void describe(Archive& archive, Grid& g) {
+  members(archive, g.size_x, g.size_z, g.cells_x, g.cells_z);
+}
+template <class Archive>
+void describe(Archive& archive, weft::TriangleMesh& m) {
+  members(archive, m.positions, m.triangles, m.uv);
+}
+template <class Archive>
+void describe(Archive& archive, StretchPoint& p) {
+  members(archive, p.strain, p.tension);
+}
+template <class Archive>
+void describe(Archive& archive, Fabric& f) {
+  members(archive, f.density, f.c11, f.c22, f.c12, f.g, f.bend_warp, f.bend_weft, f.bend_bias, f.damping,
+          f.thickness, f.friction, f.strain_limit, f.stretch_warp, f.stretch_weft);
+}
+template <class Archive>
+void describe(Archive& archive, Springs& s) {
+  members(archive, s.density, s.structural, s.shear, s.bend, s.damping, s.damping_kind, s.thickness,
+          s.friction);
+}
+template <class Archive>
+void describe(Archive& archive, ClothDesc& d) {
+  members(archive, d.name, d.shape, d.source, d.fabric, d.fabric_name, d.membrane, d.warp, d.model, d.pose,
+          d.velocity, d.weld, d.sew, d.fits_thickness);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Sphere& s) {
+  members(archive, s.center, s.radius);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Plane& p) {
+  members(archive, p.point, p.normal);
+}
+template <class Archive>
+void describe(Archive& archive, weft::Capsule& c) {
+  members(archive, c.a, c.b, c.radius);
+}
+template <class Archive>
+void describe(Archive& archive, weft::OrientedBox& b) {
+  members(archive, b.center, b.half_size, b.rotation);
+}
+template <class Archive>
+void describe(Archive& archive, ColliderDesc& d) {
+  members(archive, d.name, d.shape, d.source, d.pose, d.motion, d.frames, d.friction, d.static_friction);
+}
+template <class Archive>
+void describe(Archive& archive, IntegratorSettings& s) {
+  members(archive, s.integrator, s.explicit_euler.substeps, s.paper.printed_damping_sign,
+          s.implicit_euler.tolerance, s.implicit_euler.iterations, s.newton.iterations, s.newton.quality,
+          s.xpbd.substeps, s.is_double);
+}
+template <class Archive>
+void describe(Archive& archive, ContactRule& r) {
+  members(archive, r.cloth, r.other_cloth, r.collider, r.friction, r.static_friction, r.collide);
+}
+
+template <class Archive>
+void describe(Archive& archive, Vec3Array& values) {
+  values.resize(describe_size(archive, values.size()));
+  for (float* component : {values.x(), values.y(), values.z()}) {
+    for (std::size_t i = 0; i < values.size(); ++i) archive.plain(component[i]);
+  }
+}
+template <class Archive>
+void describe(Archive& archive, ClothState& s) {
+  members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
+          s.history.velocity, s.precise.x, s.precise.v, s.precise.displacement, s.precise.velocity);
+}
+template <class Archive>
+void describe(Archive& archive, RigidMotion::Passage& p) {
+  members(archive, p.start, p.end, p.from, p.to);
+}
+template <class Archive>
+void describe(Archive& archive, RigidMotion& motion) {
+  std::vector<KeyFrame> keys = motion.keys();
+  std::optional<RigidMotion::Passage> passage = motion.passage();
+  members(archive, keys, passage);
+  if constexpr (Archive::kReads) {
+    motion = passage ? RigidMotion(passage->start, passage->from, passage->end, passage->to)
+                     : RigidMotion(std::move(keys));
+  }
+}
+template <class Archive>
+void describe(Archive& archive, MeshSequence::Key& k) {
+  members(archive, k.time, k.positions);
+}
+template <class Archive>
+void describe(Archive& archive, std::shared_ptr<const MeshSequence>& sequence) {
+  std::vector<MeshSequence::Key> keys;
+  if (sequence) keys = sequence->keys();
+  describe(archive, keys);
+  if constexpr (Archive::kReads)
+    sequence = keys.empty() ? nullptr : std::make_shared<const MeshSequence>(std::move(keys));
+}
+template <class Archive>
+void describe(Archive& archive, Pin& p) {
+  members(archive, p.particles, p.motion, p.pivot);
+}
+template <class Archive>
+void describe(Archive& archive, Grab& g) {
+  members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target);
+}
+template <class Archive>
+void describe(Archive& archive, PointGuide& g) {
+  members(archive, g.from, g.to, g.start, g.end, g.is_new);
+}
+template <class Archive>
+void describe(Archive& archive, World::Held& h) {
+  members(archive, h.pins, h.anchors, h.grabs, h.pin_guide, h.grab_guide, h.forces);
+}
+template <class Archive>
+void describe(Archive& archive, World::Guide& g) {
+  members(archive, g.moves_by_hand, g.deforms_by_hand, g.pose, g.vertices, g.motion, g.sequence);
+}
+template <class Archive>
+void describe(Archive& archive, World::Snapshot& s) {
+  members(archive, s.time, s.states, s.held, s.guides, s.part, s.calm);
+}
+
+}  // namespace engine
+
+namespace {
+
+using engine::Reader;
+using engine::Writer;
+
+constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
+constexpr std::uint32_t kVersion = 1;         // of the format
+constexpr std::size_t kChecksum = sizeof(std::uint64_t);
+
+struct Stiffened {
+  std::vector<int> particles;
+  double factor = 1;
+};
+
+/// Everything that decides the future.
+struct SavedCloth {
+  ClothDesc desc;
+  std::vector<Stiffened> stiffened;
+  std::vector<char> is_soft;
+};
+
+struct SavedWorld {
+  Vec3 gravity;
+  Wind wind;
+  IntegratorSettings integrator;
+  StepDivision division;
+  ContactSettings contact;
+  std::vector<ColliderDesc> colliders;
+  std::vector<SavedCloth> cloths;
+  std::vector<engine::ContactRule> rules;
+  engine::World::Snapshot state;
+};
+
+template <class Archive>
+void describe(Archive& archive, Stiffened& s) {
+  engine::members(archive, s.particles, s.factor);
+}
+template <class Archive>
+void describe(Archive& archive, SavedCloth& c) {
+  engine::describe(archive, c.desc);
+  const std::size_t count = engine::describe_size(archive, c.stiffened.size());
+  c.stiffened.resize(count);
+  for (Stiffened& s : c.stiffened) describe(archive, s);
+  engine::describe(archive, c.is_soft);
+}
+template <class Archive>
+void describe(Archive& archive, SavedWorld& w) {
+  engine::members(archive, w.gravity, w.wind, w.integrator, w.division.enabled, w.division.shortest,
+                  w.contact.enabled, w.contact.tracks_points, w.colliders, w.rules);
+  const std::size_t count = engine::describe_size(archive, w.cloths.size());
+  w.cloths.resize(count);
+  for (SavedCloth& c : w.cloths) describe(archive, c);
+  engine::describe(archive, w.state);
+}
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  engine::Hash hash;
+  hash.add(bytes);
+  return hash.value();
+}
+
+void require(bool condition) {
+  if (!condition) Reader::fail();
+}
+
+bool are_finite(const std::vector<engine::Vec3>& points) {
+  return std::ranges::all_of(points, [](const engine::Vec3& p) { return p.allFinite(); });
+}
+
+void check(const engine::Vec3Array& values, std::size_t count) {
+  require(values.size() == count);
+  for (std::size_t i = 0; i < count; ++i) require(values.get(i).allFinite());
+}
+
+void check(const std::vector<engine::Vec3>& values, std::size_t count) {
+  require(values.size() == count && are_finite(values));
+}
+
+void check(const engine::ClothState& state, std::size_t count) {
+  require(state.origin.allFinite() && std::isfinite(state.history.step) && state.history.step >= 0);
+  check(state.x, count);
+  check(state.v, count);
+  for (const auto* values : {&state.history.displacement, &state.history.velocity})
+    check(*values, values->size() == 0 && state.history.step == 0 ? 0 : count);
+  for (const auto* values :
+       {&state.precise.x, &state.precise.v, &state.precise.displacement, &state.precise.velocity})
+    check(*values, values->empty() ? 0 : count);
+}
+
+void check(const engine::PointGuide& guide, std::size_t count) {
+  require(std::isfinite(guide.start) && std::isfinite(guide.end));
+  for (const auto* points : {&guide.from, &guide.to}) check(*points, guide.is_empty() ? 0 : count);
+}
+
+void check(const engine::World::Held& held, std::size_t num_particles, const std::vector<char>& is_soft) {
+  std::size_t pinned = 0;
+  for (const engine::Pin& pin : held.pins) {
+    require(pin.pivot.allFinite());
+    pinned += pin.particles.size();
+  }
+  check(held.anchors, pinned);
+  require(static_cast<std::size_t>(std::ranges::count(is_soft, 0)) == pinned);
+  require(is_soft.size() - pinned == held.grabs.size());
+  for (const engine::Grab& grab : held.grabs) {
+    require(grab.particles.size() == 1 && grab.target.allFinite() && are_finite(grab.offsets));
+    require(std::ranges::all_of(grab.shares, [](double share) { return std::isfinite(share); }));
+  }
+  check(held.pin_guide, pinned);
+  check(held.grab_guide, held.grabs.size());
+  check(held.forces, held.forces.empty() ? 0 : num_particles);
+}
+
+void check(const engine::Pose& pose) {
+  require(pose.translation.allFinite() && pose.rotation.allFinite() &&
+          (pose.rotation.transpose() * pose.rotation - engine::Mat3::Identity()).cwiseAbs().maxCoeff() <
+              1e-6);
+}
+
+void check(const engine::World::Guide& guide, const engine::Collider& collider) {
+  if (guide.pose) check(*guide.pose);
+  if (const auto& passage = guide.motion.passage()) {
+    require(std::isfinite(passage->start) && std::isfinite(passage->end));
+    check(passage->from);
+    check(passage->to);
+  }
+  const auto* mesh = std::get_if<engine::MeshShape>(&collider.shape);
+  require(mesh || (!guide.deforms_by_hand && !guide.vertices && !guide.sequence));
+  if (!mesh) return;
+  const auto count = mesh->mesh->positions.size();
+  require(!guide.deforms_by_hand || guide.sequence || guide.vertices);
+  if (guide.vertices) check(*guide.vertices, count);
+  if (!guide.sequence) return;
+  for (const engine::MeshSequence::Key& key : guide.sequence->keys()) {
+    require(std::isfinite(key.time));
+    check(key.positions, count);
+  }
+}
+
+/// Of lists, so that nothing is built that has no state.
+void check_sizes(const SavedWorld& saved) {
+  const engine::World::Snapshot& state = saved.state;
+  require(state.states.size() == saved.cloths.size() && state.held.size() == saved.cloths.size());
+  require(state.guides.size() == saved.colliders.size());
+  for (std::size_t c = 0; c < saved.cloths.size(); ++c) {
+    const Grid* grid = std::get_if<Grid>(&saved.cloths[c].desc.shape);
+    if (!grid) continue;
+    require(grid->cells_x > 0 && grid->cells_z > 0);
+    require((grid->cells_x + 1.0) * (grid->cells_z + 1.0) == static_cast<double>(state.states[c].x.size()));
+  }
+}
+
+void check(const SavedWorld& saved, const engine::World& world) {
+  const engine::World::Snapshot& state = saved.state;
+  require(std::isfinite(state.time) && std::isfinite(state.part) && state.part >= 0);
+  for (std::size_t c = 0; c < saved.cloths.size(); ++c) {
+    const auto count =
+        static_cast<std::size_t>(world.model(world.cloth(static_cast<int>(c))).num_particles());
+    check(state.states[c], count);
+    check(state.held[c], count, saved.cloths[c].is_soft);
+  }
+  for (std::size_t c = 0; c < saved.colliders.size(); ++c) check(state.guides[c], world.colliders()[c]);
+}
+
+BodyId body(const World& world, int cloth, int collider) {
+  if (cloth >= 0) return world.cloth(cloth);
+  return world.collider(collider);
+}
+
+void apply(const engine::ContactRule& rule, World& world) {
+  const BodyId a = body(world, rule.cloth, -1), b = body(world, rule.other_cloth, rule.collider);
+  if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction.value_or(0));
+  world.set_collision(a, b, rule.collide);
+}
+
+}  // namespace
+
+std::vector<std::byte> World::save() const {
+  const engine::World& world = impl_->world;
+  SavedWorld saved{.gravity = engine::from_engine(world.gravity()),
+                   .wind = impl_->wind,
+                   .integrator = world.integrator(),
+                   .division = world.division(),
+                   .contact = {world.has_contact(), world.tracks_contacts()},
+                   .rules = world.rules(),
+                   .state = world.snapshot()};
+  for (const Impl::Collider& c : impl_->colliders) saved.colliders.push_back(c.desc);
+  for (const Impl::Cloth& c : impl_->cloths) {
+    saved.cloths.push_back({c.desc, {}, c.is_soft});
+    for (const Impl::Stiffening& s : c.stiffened)
+      saved.cloths.back().stiffened.push_back({s.particles, s.factor});
+  }
+  Writer writer;
+  writer.plain(kMagic);
+  writer.plain(kVersion);
+  describe(writer, saved);
+  writer.plain(checksum(writer.bytes));
+  return std::move(writer.bytes);
+}
+
+World World::load(std::span<const std::byte> bytes) {
+  require(bytes.size() > 2 * sizeof(std::uint32_t) + kChecksum);
+  Reader head(bytes);
+  std::uint32_t magic = 0, version = 0;
+  head.plain(magic);
+  head.plain(version);
+  require(magic == kMagic);
+  if (version != kVersion)
+    throw InputError("these bytes are a world saved in version " + std::to_string(version) +
+                     " of the format; this library reads version " + std::to_string(kVersion));
+  std::uint64_t sum = 0;
+  Reader(bytes.last(kChecksum)).plain(sum);
+  require(sum == checksum(bytes.first(bytes.size() - kChecksum)));
+  Reader reader(
+      bytes.subspan(2 * sizeof(std::uint32_t), bytes.size() - 2 * sizeof(std::uint32_t) - kChecksum));
+  SavedWorld saved;
+  describe(reader, saved);
+  require(reader.left() == 0);
+  check_sizes(saved);
+
+  World world;
+  engine::World& inside = world.impl_->world;
+  world.set_gravity(saved.gravity);
+  world.set_integrator(saved.integrator);
+  world.set_division(saved.division);
+  world.set_contact(saved.contact);
+  for (ColliderDesc& desc : saved.colliders) world.impl_->add(std::move(desc));
+  for (SavedCloth& cloth : saved.cloths) {
+    const ClothId id = world.impl_->add(std::move(cloth.desc));
+    for (const Stiffened& s : cloth.stiffened) world.stiffen(id, s.particles, s.factor);
+    world.impl_->cloths.back().is_soft = cloth.is_soft;
+  }
+  for (const engine::ContactRule& rule : saved.rules) apply(rule, world);
+  check(saved, inside);
+  inside.restore(saved.state);
+  world.set_wind(saved.wind);
+  return world;
+}
+
+}  // namespace weft

@@ -1,0 +1,62 @@
+#pragma once
+/// Private to face/: what a public World consists of.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "weft/face/build_cloth.h"
+#include "weft/face/build_collider.h"
+#include "weft/forces/wind.h"
+#include "weft/world.h"
+#include "weft/world/world.h"
+
+namespace weft {
+
+struct World::Impl {
+  /// Springs that are stiffer than the cloth's others, or softer.
+  struct Stiffening {
+    std::vector<int> particles;
+    double factor = 1;
+  };
+
+  struct Cloth {
+    ClothDesc desc;
+    engine::RestShape rest;
+    ClothNotes notes;
+    std::vector<Stiffening> stiffened;
+    std::vector<char> is_soft;  // (pinned particles, in the order of the pins' lists) held by springs
+  };
+
+  struct Collider {
+    ColliderDesc desc;
+    engine::BuiltCollider built;
+  };
+
+  engine::World world;
+  std::vector<Cloth> cloths;        // as in `world`
+  std::vector<Collider> colliders;  // likewise
+  std::vector<engine::WindKey> wind_keys;
+  weft::Wind wind;
+
+  const Cloth& at(ClothId id) const { return cloths[world.index(id)]; }
+  Cloth& at(ClothId id) { return cloths[world.index(id)]; }
+  const Collider& at(ColliderId id) const { return colliders[world.index(id)]; }
+
+  ClothId add(ClothDesc desc);
+  ColliderId add(ColliderDesc desc);
+};
+
+struct Snapshot::Data {
+  std::uint32_t world = 0;  // which; 0: none
+  engine::World::Snapshot state;
+  std::vector<std::vector<char>> is_soft;  // (cloths)
+};
+
+/// The engine inside a World, for the library's other parts.
+struct WorldAccess {
+  static engine::World& engine(World& world) { return world.impl_->world; }
+  static const engine::World& engine(const World& world) { return world.impl_->world; }
+};
+
+}  // namespace weft
