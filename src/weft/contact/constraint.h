@@ -54,14 +54,4 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
                          std::vector<Constraint>& constraints, std::vector<Vec3>& positions,
                          std::vector<int>& near);
 
-/// Takes from the velocities, wherever positions had to be pushed, what still approaches, and slows what
-/// slides by Coulomb's law:
-///
-///     P >= 0,  v_n >= 0,  |T| <= µ P,  T against the slide          (v relative, P and T impulses)
-///
-/// `slowed` (num_vertices) gets the part of each velocity's change that friction made [m/s]; `active` is work
-/// space for the numbers of constraints that had to be pushed.
-void project_velocities(const std::vector<double>& inverse_masses, std::vector<Constraint>& constraints,
-                        std::vector<Vec3>& velocities, std::vector<Vec3>& slowed, std::vector<int>& active);
-
 }  // namespace weft::engine

@@ -512,7 +512,7 @@ void ContactSystem::project(JobSystem& jobs) {
       slowed_[v].setZero();
     }
   }
-  project_velocities(inverse_mass_, constraints_, velocity_, slowed_, near_);
+  velocity_projection_.project(inverse_mass_, constraints_, velocity_, slowed_);
   for (const Constraint& c : constraints_)
     add_touch(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
   if (step_.clock && !is_predicted_)

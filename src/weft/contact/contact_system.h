@@ -15,6 +15,7 @@
 #include "weft/contact/proximity.h"
 #include "weft/contact/shape_clearance.h"
 #include "weft/contact/untangle.h"
+#include "weft/contact/velocity_projection.h"
 #include "weft/core/job_system.h"
 #include "weft/core/work_times.h"
 #include "weft/model/cloth_model.h"
@@ -230,7 +231,8 @@ class ContactSystem {
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
-  std::vector<int> near_;  // of constraints_, for project_positions and project_velocities
+  std::vector<int> near_;  // of constraints_, for project_positions
+  VelocityProjection velocity_projection_;
   std::vector<double> shape_distance_;
   std::vector<int> near_shape_;  // vertices
   std::vector<Separation> separations_;

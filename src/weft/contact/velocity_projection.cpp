@@ -1,0 +1,190 @@
+#include "weft/contact/velocity_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "weft/core/simd.h"
+
+namespace weft::engine {
+namespace {
+
+constexpr double kVelocityTolerance = 1e-4;  // [m/s]
+constexpr int kVelocityPasses = 12;
+constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+
+using Quad = VelocityProjection::Quad;
+using Row = VelocityProjection::Row;
+
+WEFT_ALWAYS_INLINE Quad operator*(double s, const Quad& q) {
+  Quad r;
+  for (int k = 0; k < 4; ++k) r.at[k] = s * q.at[k];
+  return r;
+}
+WEFT_ALWAYS_INLINE Quad operator/(const Quad& q, double s) {
+  Quad r;
+  for (int k = 0; k < 4; ++k) r.at[k] = q.at[k] / s;
+  return r;
+}
+WEFT_ALWAYS_INLINE Quad operator+(const Quad& p, const Quad& q) {
+  Quad r;
+  for (int k = 0; k < 4; ++k) r.at[k] = p.at[k] + q.at[k];
+  return r;
+}
+WEFT_ALWAYS_INLINE Quad operator-(const Quad& p, const Quad& q) {
+  Quad r;
+  for (int k = 0; k < 4; ++k) r.at[k] = p.at[k] - q.at[k];
+  return r;
+}
+WEFT_ALWAYS_INLINE double dot(const Quad& p, const Quad& q) {
+  Quad r;
+  for (int k = 0; k < 4; ++k) r.at[k] = p.at[k] * q.at[k];
+  return r.at[0] + r.at[1] + r.at[2];
+}
+
+Quad to_quad(const Vec3& v) { return {{v.x(), v.y(), v.z(), 0}}; }
+Vec3 to_vec3(const Quad& q) { return {q.at[0], q.at[1], q.at[2]}; }
+
+template <int kVertices>
+WEFT_ALWAYS_INLINE Quad relative_velocity(const Row& row, const Quad* velocities) {
+  Quad sum = row.weight[0] * velocities[row.place[0]];
+  for (int k = 1; k < kVertices; ++k) sum = sum + row.weight[k] * velocities[row.place[k]];
+  return sum - row.surface_velocity;
+}
+
+template <int kVertices>
+WEFT_ALWAYS_INLINE void apply(const Row& row, const Quad& impulse, Quad* values) {
+  for (int k = 0; k < kVertices; ++k) values[row.place[k]] = values[row.place[k]] + row.response[k] * impulse;
+}
+
+/// Makes v_n >= 0; returns the squared change [m²/s²].
+template <int kVertices>
+WEFT_ALWAYS_INLINE double stop_approach(Row& row, Quad* velocities) {
+  const double speed = dot(row.normal, relative_velocity<kVertices>(row, velocities));
+  const double impulse = std::max(0.0, row.impulse - speed / row.inverse_mass);
+  const double change = impulse - row.impulse;
+  if (change == 0) return 0;
+  row.impulse = impulse;
+  apply<kVertices>(row, change * row.normal, velocities);
+  return change * change * (row.inverse_mass * row.inverse_mass);
+}
+
+/// Friction against the slide; returns the squared change [m²/s²].
+template <int kVertices>
+WEFT_ALWAYS_INLINE double slow_slide(Row& row, Quad* velocities, Quad* slowed) {
+  const double most = row.friction * row.impulse;
+  const auto& before = row.friction_impulse.at;
+  if (most == 0 && before[0] == 0 && before[1] == 0 && before[2] == 0) return 0;
+  const Quad relative = relative_velocity<kVertices>(row, velocities);
+  const Quad slide = relative - dot(relative, row.normal) * row.normal;
+  Quad impulse = row.friction_impulse - slide / row.inverse_mass;
+  const double length = std::sqrt(dot(impulse, impulse));
+  // Shortened to µ P if it is longer; without a branch, which no processor could predict.
+  impulse = most / std::max(length, std::max(most, kLeast)) * impulse;
+  const Quad change = impulse - row.friction_impulse;
+  row.friction_impulse = impulse;
+  apply<kVertices>(row, change, velocities);
+  apply<kVertices>(row, change, slowed);
+  return dot(change, change) * (row.inverse_mass * row.inverse_mass);
+}
+
+template <int kVertices>
+WEFT_ALWAYS_INLINE double relax(Row& row, Quad* velocities, Quad* slowed) {
+  const double stopped = stop_approach<kVertices>(row, velocities);
+  return row.friction > 0 ? std::max(stopped, slow_slide<kVertices>(row, velocities, slowed)) : stopped;
+}
+
+/// One pass over all rows; `largest_sq` gets the largest squared change [m²/s²].
+WEFT_ALWAYS_INLINE void relax_all_body(std::span<Row> rows, Quad* velocities, Quad* slowed,
+                                       double& largest_sq) {
+  double largest = 0;
+  for (Row& row : rows) {
+    const double change_sq = row.num_vertices == 1   ? relax<1>(row, velocities, slowed)
+                             : row.num_vertices == 3 ? relax<3>(row, velocities, slowed)
+                                                     : relax<4>(row, velocities, slowed);
+    largest = std::max(largest, change_sq);
+  }
+  largest_sq = largest;
+}
+WEFT_MULTIVERSION(relax_all, (std::span<Row> rows, Quad* velocities, Quad* slowed, double& largest_sq),
+                  (rows, velocities, slowed, largest_sq))
+
+}  // namespace
+
+void VelocityProjection::number_vertices(const Constraint& c) {
+  for (const int v : std::span(c.vertex.data(), c.num_vertices)) {
+    if (place_of_vertex_[v] >= 0) continue;
+    place_of_vertex_[v] = static_cast<int>(vertices_.size());
+    vertices_.push_back(v);
+    next_level_.push_back(0);
+  }
+}
+
+void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
+                                  const std::vector<Constraint>& constraints) {
+  for (auto* numbers : {&active_, &level_, &level_begin_, &vertices_, &next_level_}) numbers->clear();
+  place_of_vertex_.resize(inverse_masses.size(), -1);
+  for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
+    const Constraint& c = constraints[n];
+    if (!c.is_active) continue;
+    number_vertices(c);
+    std::size_t level = 0;
+    const auto next = [&](int k) -> int& { return next_level_[place_of_vertex_[c.vertex[k]]]; };
+    for (int k = 0; k < c.num_vertices; ++k) level = std::max(level, static_cast<std::size_t>(next(k)));
+    for (int k = 0; k < c.num_vertices; ++k) next(k) = static_cast<int>(level + 1);
+    level_begin_.resize(std::max(level_begin_.size(), level + 1), 0);
+    ++level_begin_[level];
+    active_.push_back(n);
+    level_.push_back(static_cast<int>(level));
+  }
+  int begin = 0;
+  for (int& level : level_begin_) level = std::exchange(begin, begin + level);
+  rows_.resize(active_.size());
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const Constraint& c = constraints[active_[a]];
+    Row& row = rows_[level_begin_[level_[a]]++];
+    row.normal = to_quad(c.normal);
+    row.surface_velocity = to_quad(c.surface_velocity);
+    row.friction_impulse = to_quad(c.friction_impulse);
+    row.weight = c.weight;
+    row.num_vertices = c.num_vertices;
+    row.constraint = active_[a];
+    row.inverse_mass = c.inverse_mass;
+    row.friction = c.friction;
+    row.impulse = c.impulse;
+    for (int k = 0; k < c.num_vertices; ++k) {
+      row.place[k] = place_of_vertex_[c.vertex[k]];
+      row.response[k] = c.weight[k] * inverse_masses[c.vertex[k]];
+    }
+  }
+  for (const int v : vertices_) place_of_vertex_[v] = -1;
+}
+
+void VelocityProjection::project(const std::vector<double>& inverse_masses,
+                                 std::vector<Constraint>& constraints, std::vector<Vec3>& velocities,
+                                 std::vector<Vec3>& slowed) {
+  schedule(inverse_masses, constraints);
+  velocities_.resize(vertices_.size());
+  slowed_.resize(vertices_.size());
+  for (std::size_t p = 0; p < vertices_.size(); ++p) {
+    velocities_[p] = to_quad(velocities[vertices_[p]]);
+    slowed_[p] = to_quad(slowed[vertices_[p]]);
+  }
+  for (int pass = 0; pass < kVelocityPasses; ++pass) {
+    double largest_sq = 0;
+    relax_all(rows_, velocities_.data(), slowed_.data(), largest_sq);
+    if (largest_sq < kVelocityTolerance * kVelocityTolerance) break;
+  }
+  for (std::size_t p = 0; p < vertices_.size(); ++p) {
+    velocities[vertices_[p]] = to_vec3(velocities_[p]);
+    slowed[vertices_[p]] = to_vec3(slowed_[p]);
+  }
+  for (const Row& row : rows_) {
+    constraints[row.constraint].impulse = row.impulse;
+    constraints[row.constraint].friction_impulse = to_vec3(row.friction_impulse);
+  }
+}
+
+}  // namespace weft::engine
