@@ -12,6 +12,7 @@
 
 #include "tests/support.h"
 #include "weft/animation/rigid_motion.h"
+#include "weft/contact/cloth_clearance.h"
 #include "weft/geometry/distance.h"
 
 namespace weft::engine {
@@ -445,6 +446,128 @@ TEST(Proximity, ListsTheSameForAnyNumberOfThreads) {
                          b.vertex_triangle().end(), same));
   EXPECT_TRUE(std::equal(a.edge_edge().begin(), a.edge_edge().end(), b.edge_edge().begin(),
                          b.edge_edge().end(), same));
+}
+
+/// The sheets of a scene, as a survey sees them: each as floats from an origin of its own.
+class Survey {
+ public:
+  static constexpr double kSlackOfFew = 0.1 * kHalfThickness, kRoom = 1.1;
+
+  explicit Survey(const Scene& scene) : sheets_(scene.sheets) {
+    std::vector<Grid> grids;
+    for (const Scene::Sheet& sheet : sheets_) grids.push_back(sheet.grid);
+    clearance_.reset(grids);
+  }
+
+  /// Places become such that floats hold them.
+  std::vector<ItemPair> find_uncertain(SurfaceMotion& motion) {
+    std::vector<Vec3Array> starts, ends;
+    std::vector<ClothMotion> motions;
+    for (const Scene::Sheet& sheet : sheets_) {
+      const Vec3 origin = motion.start[sheet.first_vertex].cast<float>().cast<double>();
+      for (auto* moments : {&starts, &ends}) moments->emplace_back(sheet.grid.num_particles());
+      for (int i = 0; i < sheet.grid.num_particles(); ++i) {
+        for (const auto& [x, to] : {std::pair(&motion.start, &starts), std::pair(&motion.end, &ends)}) {
+          Vec3& place = (*x)[sheet.first_vertex + i];
+          to->back().set(i, place - origin);
+          place = origin + to->back().get(i);
+        }
+      }
+      motions.push_back({nullptr, nullptr, origin, kGap});
+    }
+    for (std::size_t c = 0; c < motions.size(); ++c) {
+      motions[c].start = &starts[c];
+      motions[c].end = &ends[c];
+    }
+    std::vector<ItemPair> pairs;
+    is_whole_ = clearance_.find_uncertain(motions, kRoom, 1'000'000, pairs);
+    return pairs;
+  }
+
+  bool is_whole() const { return is_whole_; }  // false: cloth moves against itself too far
+
+ private:
+  std::vector<Scene::Sheet> sheets_;
+  ClothClearance clearance_;
+  bool is_whole_ = false;
+};
+
+std::map<std::string, Scene> make_sheets() {
+  std::map<std::string, Scene> sheets = make_scenes();
+  std::erase_if(sheets, [](const auto& s) {
+    return s.second.are_meshes || s.second.num_cloth_vertices < s.second.surface.num_vertices;
+  });
+  return sheets;
+}
+
+/// Of the pairs that a survey leaves uncertain, the lists must have all that brute force finds anywhere.
+void check_survey(const std::string& name, const Scene& scene, const std::vector<Vec3>& end) {
+  Survey survey(scene);
+  SurfaceMotion motion = scene.motion_to(end);
+  const std::vector<ItemPair> uncertain = survey.find_uncertain(motion);
+  if (!survey.is_whole()) return;
+  Proximity proximity = scene.make_proximity();
+  proximity.update_among(motion, uncertain, Survey::kSlackOfFew, *make_serial_jobs());
+  check(proximity, scene, motion, name, true);
+}
+
+TEST(ClothSurvey, MissesNothingAtRestAndInJumps) {
+  for (const auto& [name, scene] : make_sheets()) {
+    check_survey(name, scene, scene.places);
+    for (const double size : {0.1 * kCell, 0.5 * kCell, 1.5 * kCell}) {
+      Random random(3);
+      for (int s = 0; s < 3; ++s) {
+        std::vector<Vec3> end = scene.places;
+        for (Vec3& p : end) p += test::random_vector(random, size);
+        check_survey(name + ", jumps", scene, end);
+      }
+    }
+  }
+}
+
+TEST(ClothSurvey, MissesNothingWhileASheetRollsUp) {
+  // Turned and thrown as well, in steps that end nearer and nearer to itself.
+  const auto roll = [](const Vec3& p, double radius, double turn) {
+    const Vec3 rolled(radius * std::sin(p.x() / radius), radius * std::cos(p.x() / radius), p.z());
+    return Vec3(rotation_from_angles_deg({turn, 20, turn}) * rolled + Vec3(0.01 * turn, 2, 0));
+  };
+  for (double radius = 0.25; radius > 0.03; radius *= 0.8) {
+    Scene scene;
+    scene.add_sheet(12, [&](const Vec3& p) { return roll(p, radius, 10); });
+    std::vector<Vec3> end;
+    for (const Vec3& p : scene.rest) end.push_back(roll(p, 0.8 * radius, 25));
+    check_survey("radius " + std::to_string(radius), scene, end);
+  }
+}
+
+TEST(ClothSurvey, IsCertainOfAnArcAndOfSheetsOneAboveTheOther) {
+  Scene arc = make_scenes().at("rolled, " + std::to_string(0.12));
+  SurfaceMotion falling = arc.motion_to(arc.places);
+  for (Vec3& p : falling.end) p += Vec3(0.1, -0.3, 0);
+  Survey survey(arc);
+  EXPECT_TRUE(survey.find_uncertain(falling).empty());
+  EXPECT_TRUE(survey.is_whole());
+
+  Scene pile;
+  for (const double height : {0.0, 0.01, 0.02})
+    pile.add_sheet(6, [&](const Vec3& p) { return Vec3(p + Vec3(0, height, 0)); });
+  SurfaceMotion together = pile.motion_to(pile.places);
+  for (Vec3& p : together.end) p += Vec3(0, -0.2, 0);
+  Survey of_pile(pile);
+  EXPECT_TRUE(of_pile.find_uncertain(together).empty());
+  EXPECT_TRUE(of_pile.is_whole());
+}
+
+TEST(ClothSurvey, GivesUpOnClothThatTurnsInsideOut) {
+  const Scene scene = make_sheets().at("coincident");
+  Survey survey(scene);
+  SurfaceMotion motion = scene.motion_to(scene.places);
+  const std::size_t all = survey.find_uncertain(motion).size();
+  EXPECT_GT(all, 0u);
+  EXPECT_TRUE(survey.is_whole());
+  for (Vec3& p : motion.end) p = 3 * (motion.start[0] - p);
+  survey.find_uncertain(motion);
+  EXPECT_FALSE(survey.is_whole());
 }
 
 }  // namespace

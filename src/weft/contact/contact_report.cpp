@@ -114,12 +114,14 @@ std::vector<Vec3> ContactSystem::positions_now() const {
 Knots ContactSystem::find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                                 const ContactStep& now) {
   begin_step(cloths, colliders, now);
+  if (!is_placed_) place();
   return weft::engine::find_knots(make_tangle(), positions_now());
 }
 
 UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
                                        const std::vector<Collider>& colliders, const ContactStep& now) {
   begin_step(cloths, colliders, now);
+  if (!is_placed_) place();
   std::vector<Vec3> positions = positions_now();
   const UntangleResult result = weft::engine::untangle(make_tangle(), positions);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {

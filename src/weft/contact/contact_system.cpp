@@ -67,22 +67,37 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
                        c.motion.at(step.time), weft::engine::pivot(c.shape)});
   }
   proximity_.measure(step.clock);
-  const bool is_new = renumber(colliders);
+  renumber(colliders);
+  is_placed_ = is_surveyed_ = is_clear_ = false;
   thickest_ = 0;
-  double travel_sq = 0;  // since the step before
+  thinnest_ = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    starts_[c] = cloths_[c].state->x;
+    const double half_thickness = cloths_[c].model->material.thickness / 2;
+    thickest_ = std::max(thickest_, half_thickness);
+    thinnest_ = std::min(thinnest_, half_thickness);
+  }
+  if (!may_survey()) place();
+}
+
+/// What the search for contacts needs of the step's start.
+void ContactSystem::place() {
+  is_placed_ = true;
+  double travel_sq = 0;  // since the last step in which contacts were searched
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothModel& model = *cloths_[c].model;
-    thickest_ = std::max(thickest_, model.material.thickness / 2);
+    const Vec3& origin = cloths_[c].state->origin;
     for (int i = 0, v = first_vertex_[c]; i < model.num_particles(); ++i, ++v) {
-      const Vec3 place = cloths_[c].state->position(i);
-      travel_sq = farther_sq(travel_sq, place - motion_.start[v]);
-      motion_.start[v] = place;
+      const Vec3 start = origin + starts_[c].get(i);
+      travel_sq = farther_sq(travel_sq, start - motion_.start[v]);
+      motion_.start[v] = start;
       motion_.half_thickness[v] = model.material.thickness / 2;
       inverse_mass_[v] = (*cloths_[c].is_pinned)[i] ? 0.0 : 1 / model.mass[i];
     }
   }
   const double unknown = std::numeric_limits<double>::infinity();
-  clearance_.begin_step(shapes_, first_vertex_.back(), is_new ? unknown : std::sqrt(travel_sq));
+  clearance_.begin_step(shapes_, first_vertex_.back(), is_clearance_known_ ? std::sqrt(travel_sq) : unknown);
+  is_clearance_known_ = true;
   place_bodies();
   set_laws();
   remember_velocities();
@@ -157,7 +172,7 @@ void ContactSystem::remember_velocities() {
     velocity_before_.push_back(velocity_[v]);
 }
 
-bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
+void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   std::vector<const TriangleMesh*>& meshes = meshes_now_;
   meshes.clear();
   for (const Collider& c : colliders) {
@@ -171,7 +186,7 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
       std::equal(cloths_.begin(), cloths_.end(), numbered_cloths_.begin(), numbered_cloths_.end(),
                  same_cloth) &&
       std::equal(meshes.begin(), meshes.end(), numbered_meshes_.begin(), numbered_meshes_.end(), same_mesh)) {
-    return false;
+    return;
   }
 
   numbered_cloths_.clear();
@@ -181,6 +196,7 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   Surface surface;
   std::vector<Vec3> rest;
   std::vector<int> things;  // (triangles)
+  std::vector<Grid> grids;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Proximity::Slack slack{kInfinity, kInfinity, 0};
   for (const ContactCloth& cloth : cloths_) {
@@ -190,6 +206,7 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
     surface.add(topology.mesh.triangles, topology.num_particles());
     things.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
     rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
+    if (topology.grid) grids.push_back(*topology.grid);
     const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
     slack = {std::min(slack.most, own.most), std::min(slack.least, own.least),
              std::max(slack.narrow, own.narrow)};
@@ -203,6 +220,12 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
     numbered_meshes_.push_back(shape->mesh);
     bodies_.push_back({c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(),
                        is_closed(count_surface_edges(*shape->mesh))});
+    Body& body = bodies_.back();
+    body.min = body.max = shape->mesh->positions[0];
+    for (const Vec3& p : shape->mesh->positions) {
+      body.min = body.min.cwiseMin(p);
+      body.max = body.max.cwiseMax(p);
+    }
     surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
     things.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
   }
@@ -230,7 +253,12 @@ bool ContactSystem::renumber(const std::vector<Collider>& colliders) {
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_things(std::move(things));
-  return true;
+  has_grids_ = grids.size() == cloths_.size();
+  cloth_clearance_.reset(grids);
+  starts_.resize(cloths_.size());
+  ends_.resize(cloths_.size());
+  motions_.resize(cloths_.size());
+  is_clearance_known_ = false;
 }
 
 Patches ContactSystem::build_patches(const Surface& surface, const std::vector<Vec3>& rest) const {
@@ -269,7 +297,7 @@ void ContactSystem::read_ends() {
 }
 
 void ContactSystem::take_solved(std::span<const Contact> contacts) {
-  read_ends();
+  if (is_placed_) read_ends();
   is_solved_.assign(cloths_.size(), is_predicted_);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact& c = contacts[n];
@@ -282,6 +310,13 @@ void ContactSystem::take_solved(std::span<const Contact> contacts) {
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
   is_predicted_ = is_for_solve_ = true;
+  if (!is_placed_) {
+    constraints_.clear();
+    expected_.clear();
+    survey_expected(acceleration, pin_targets);
+    if (is_clear_) return;
+    place();
+  }
   find_candidates(acceleration, pin_targets, jobs);
   expected_.assign(motion_.end.begin(), motion_.end.begin() + first_vertex_.back());
 }
@@ -289,7 +324,7 @@ void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_
 void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets,
                                     JobSystem& jobs) {
   expect_motion(acceleration, pin_targets);
-  proximity_.update(motion_, jobs);
+  update_lists(jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
   // What lies on a shape falls into it, for the solve to lift it out again; on cloth it lies where it is.
@@ -381,7 +416,7 @@ double ContactSystem::depth_at_start(const Constraint& c) const {
 }
 
 int ContactSystem::wild_cloth() const {
-  return proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
+  return is_clear_ || proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
 /// Whether the solve has kept apart all cloths of a constraint.
@@ -407,6 +442,7 @@ bool ContactSystem::mark_unsolved(const Constraint& c) {
 
 /// Whether the solve has kept apart all cloths, and each has gone where contacts were looked for.
 bool ContactSystem::went_as_expected() const {
+  if (expected_.empty()) return false;
   if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
   for (int v = 0; v < first_vertex_.back(); ++v) {
     const double most = 0.5 * kMaxLack * motion_.half_thickness[v];
@@ -433,7 +469,15 @@ void ContactSystem::leave_out_solved() {
 void ContactSystem::hold_off(JobSystem& jobs) {
   is_for_solve_ = is_clear_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
-  proximity_.update(motion_, jobs);
+  if (is_surveyed_ || !is_placed_) {
+    survey_solved();
+    if (is_clear_) return;
+  }
+  if (!is_placed_) {
+    place();
+    read_ends();
+  }
+  update_lists(jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();

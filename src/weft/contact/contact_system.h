@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "weft/contact/cloth_clearance.h"
 #include "weft/contact/collider.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/contact.h"
@@ -110,6 +112,16 @@ class ContactSystem {
     int first_vertex = 0;  // of the common numbering
     int end_vertex = 0;
     bool is_closed = false;
+    Vec3 min = Vec3::Zero(), max = Vec3::Zero();  // of its vertices, in its own coordinates [m]
+
+    /// Bounds of all its vertices.
+    std::pair<Vec3, Vec3> bounds_at(const MeshShape& shape) const;
+  };
+
+  /// A box, and how near to it colliders may matter [m].
+  struct Region {
+    Vec3 min, max;
+    double reach;
   };
 
   struct PairLaw {
@@ -140,7 +152,17 @@ class ContactSystem {
   static Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c);
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
 
-  bool renumber(const std::vector<Collider>& colliders);
+  bool may_survey();
+  void expect_ends(const Vec3& acceleration, std::span<const Vec3> pin_targets);
+  void survey_expected(const Vec3& acceleration, std::span<const Vec3> pin_targets);
+  void survey_solved();
+  void survey(double fall);
+  void update_lists(JobSystem& jobs);
+  Region surveyed_region(double fall) const;
+  bool are_shapes_far(double fall) const;
+  bool are_bodies_far(double fall) const;
+  void place();
+  void renumber(const std::vector<Collider>& colliders);
   Tangle make_tangle() const;
   std::vector<Vec3> positions_now() const;
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
@@ -202,32 +224,43 @@ class ContactSystem {
   std::vector<char> is_solid_;    // (num_vertices) on a closed mesh
   std::vector<char> passes_;      // (things, things) go through each other; empty: none do
   double longest_rest_edge_ = 0;  // of cloth [m]
+  bool has_grids_ = false;        // all cloths are grids
   Proximity proximity_;
+  ClothClearance cloth_clearance_;
   ShapeClearance clearance_;
+  bool is_clearance_known_ = false;  // of clearance_, what was measured in steps before
 
   // The step.
   std::vector<ContactCloth> cloths_;
   std::vector<MovingShape> shapes_;
   ContactStep step_;
-  bool is_predicted_ = false;   // the solve knows of contacts
-  bool is_for_solve_ = false;   // contacts are being predicted
-  bool is_near_shape_ = false;  // some vertex may touch a plain shape
-  bool is_clear_ = false;       // nothing can meet anything on the way that hold_off has seen
-  double pressed_in_ = 0;       // share of the distance to be kept that may lack now [1]
+  bool is_predicted_ = false;      // the solve knows of contacts
+  bool is_for_solve_ = false;      // contacts are being predicted
+  bool is_near_shape_ = false;     // some vertex may touch a plain shape
+  bool is_placed_ = false;         // motion_ and what follows it are this step's
+  bool is_surveyed_ = false;       // only uncertain_ may meet on the way that was surveyed last
+  bool is_clear_ = false;          // nothing can meet anything on the way that hold_off has seen
+  int num_without_ = 0;            // steps to come that are not surveyed
+  double pressed_in_ = 0;          // share of the distance to be kept that may lack now [1]
+  std::vector<Vec3Array> starts_;  // (cloths) offsets of particles
   SurfaceMotion motion_;
-  std::vector<Vec3> expected_;         // (cloth vertices) where contacts for the solve were looked for [m]
-  std::vector<Vec3> fallen_;           // where inertia and all of gravity would take it
-  double thickest_ = 0;                // half the thickness, of the thickest cloth [m]
-  double longest_edge_ = 0;            // of cloth, at most [m]
-  std::vector<double> inverse_mass_;   // (num_vertices) 0 where prescribed [1/kg]
-  std::vector<PairLaw> laws_;          // (cloths, cloths and then colliders)
-  std::vector<Vec3> velocity_before_;  // (num_vertices) [m/s]; empty without static friction
+  std::vector<Vec3> expected_;  // (cloth vertices) where contacts for the solve were looked for; or empty [m]
+  std::vector<Vec3> fallen_;    // where inertia and all of gravity would take it
+  double thinnest_ = 0, thickest_ = 0;  // half the thickness, of the thinnest and the thickest cloth [m]
+  double longest_edge_ = 0;             // of cloth, at most [m]
+  std::vector<double> inverse_mass_;    // (num_vertices) 0 where prescribed [1/kg]
+  std::vector<PairLaw> laws_;           // (cloths, cloths and then colliders)
+  std::vector<Vec3> velocity_before_;   // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
   std::vector<char> is_solved_;  // (cloths) the solve has kept it apart from all that it knew of
   std::vector<int> found_;       // of these, those that find_contacts has given
   std::vector<Touch> touches_;   // in this step
 
   // Work space.
+  std::vector<Vec3Array> ends_;       // (cloths) offsets that are expected
+  AlignedFloats felt_;                // (particles of a cloth)
+  std::vector<ClothMotion> motions_;  // (cloths)
+  std::vector<ItemPair> uncertain_;   // pairs of patches
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;

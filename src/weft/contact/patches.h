@@ -17,21 +17,14 @@
 /// any two of them can come. Along straight lines from one moment to another M(t) is the blend of both, so
 /// σ_min² is at least the smaller of both less ¼ |M₁ − M₀|², and E at most the larger of both.
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
 
 #include "weft/contact/surface.h"
+#include "weft/contact/swept_box.h"
 #include "weft/mesh/grid.h"
 
 namespace weft::engine {
-
-/// A point or a vector in floats; the last component is 0 and only fills the register.
-using Float4 = Eigen::Vector4f;
-
-inline Float4 to_float4(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
-}
 
 /// How a patch is deformed at one moment.
 struct PatchDeformation {

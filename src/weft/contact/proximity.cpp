@@ -141,7 +141,7 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
     if (moved_.empty()) return;
     const bool are_many =
         static_cast<double>(moved_.size()) > kManyMoved * static_cast<double>(motion.end.size());
-    if (are_many || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
+    if (are_many || is_among_ || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
   }
   while (wildest_ < 0 && slack_ < made_with_) rebuild(motion, jobs);
   if (clock_) ++clock_->times.list_renewals;
@@ -239,7 +239,7 @@ void Proximity::find_folded() {
   }
 }
 
-Proximity::SweptBox Proximity::box_of(std::span<const int> vertices) const {
+SweptBox Proximity::box_of(std::span<const int> vertices) const {
   SweptBox box;
   for (const int v : vertices) {
     const Float4 &x = at_start_.x[v], way = at_end_.x[v] - x;
@@ -300,6 +300,7 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   vertex_triangle_.clear();
   edge_edge_.clear();
   patch_pairs_.clear();
+  is_among_ = false;
   wildest_ = find_wildest(motion);
   if (wildest_ >= 0) return made_for_.end.clear();
   made_for_ = motion;
@@ -320,6 +321,50 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   find_folded();
   find_near_patches(AabbTree::Extent::all, jobs);
   find_pairs(jobs);
+}
+
+void Proximity::update_among(const SurfaceMotion& motion, std::span<const ItemPair> patch_pairs, double slack,
+                             JobSystem& jobs) {
+  const WorkScope scope(clock_, &WorkTimes::lists);
+  if (tight_for_ != motion.half_thickness) find_tight(motion.half_thickness, jobs);
+  vertex_triangle_.clear();
+  edge_edge_.clear();
+  patch_pairs_.clear();
+  wildest_ = -1;
+  is_among_ = true;
+  made_for_ = motion;
+  made_with_ = slack;
+  origin_ = motion.start[0];
+  mark_patches(patch_pairs);
+  measure_patches(jobs);
+  is_folded_.assign(patches_.num_cloth(), 0);
+  for (const auto& [a, b] : patch_pairs) {
+    const bool are_neighbours = patches_.are_neighbours(a, b);
+    if (are_neighbours) is_folded_[a] = is_folded_[b] = 1;
+    if (are_neighbours || patch_box_[a].may_meet(patch_box_[b]))
+      patch_pairs_.push_back({a, b, are_neighbours});
+  }
+  std::sort(patch_pairs_.begin(), patch_pairs_.end());
+  find_pairs(jobs);
+  if (clock_) ++clock_->times.list_renewals;
+}
+
+/// The patches are measured, and the vertices around them.
+void Proximity::mark_patches(std::span<const ItemPair> patch_pairs) {
+  is_moved_.assign(surface_.num_vertices, 0);
+  is_near_.assign(surface_.num_vertices, 0);
+  is_renewed_.assign(surface_.triangles.size(), 0);
+  is_renewed_patch_.assign(patches_.size(), 0);
+  for (const auto& [a, b] : patch_pairs) is_renewed_patch_[a] = is_renewed_patch_[b] = 1;
+  for (int p = 0; p < patches_.num_cloth(); ++p) {
+    if (!is_renewed_patch_[p]) continue;
+    for (const int v : patches_.vertices(p)) {
+      is_near_[v] = 1;
+      for (const int t : surface_.triangles_at(v)) {
+        for (const int w : surface_.triangles[t]) is_moved_[w] = 1;
+      }
+    }
+  }
 }
 
 /// Only the pairs of moved_. False if the tree has become loose: everything is to be searched again.

@@ -8,6 +8,7 @@
 
 #include "weft/contact/patches.h"
 #include "weft/contact/surface.h"
+#include "weft/contact/swept_box.h"
 #include "weft/core/job_system.h"
 #include "weft/core/work_times.h"
 #include "weft/geometry/aabb_tree.h"
@@ -59,6 +60,11 @@ class Proximity {
   /// FeaturePair::max_gap.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
 
+  /// The same where only some pairs of cloth's patches may meet, a <= b, each once: all others keep apart by
+  /// more than the sum of half thicknesses and twice the slack [m]. No colliders' meshes are near.
+  void update_among(const SurfaceMotion& motion, std::span<const ItemPair> patch_pairs, double slack,
+                    JobSystem& jobs);
+
   /// From now on updates are measured; null: they are not.
   void measure(WorkClock* clock) { clock_ = clock; }
 
@@ -73,24 +79,6 @@ class Proximity {
   double longest_edge();
 
  private:
-  /// A MovingAabb in registers. By default empty.
-  struct SweptBox {
-    Float4 min = Float4::Constant(Aabb::kInfinity), max = -min;
-    Float4 way_min = min, way_max = max;
-
-    /// As MovingAabb::may_meet.
-    bool may_meet(const SweptBox& other) const {
-      const Float4 towards = (other.way_max - way_min).cwiseMax(0.0f),
-                   away = (way_max - other.way_min).cwiseMax(0.0f);
-      return ((min - other.max).array() <= towards.array()).all() &&
-             ((other.min - max).array() <= away.array()).all();
-    }
-    MovingAabb to_aabb() const {
-      return {{{min[0], min[1], min[2]}, {max[0], max[1], max[2]}},
-              {{way_min[0], way_min[1], way_min[2]}, {way_max[0], way_max[1], way_max[2]}}};
-    }
-  };
-
   /// Two patches that may meet, or one twice.
   struct PatchPair {
     int a = 0, b = 0;  // a <= b
@@ -122,6 +110,7 @@ class Proximity {
   void find_drift(const SurfaceMotion& motion);
   void choose_slack();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
+  void mark_patches(std::span<const ItemPair> patch_pairs);
   bool pass(int triangle, int other) const;
   bool renew(const SurfaceMotion& motion, JobSystem& jobs);
   void mark_moved(const SurfaceMotion& motion);
@@ -167,9 +156,10 @@ class Proximity {
   std::vector<char> passes_;
   std::size_t num_things_ = 0;
   Slack slacks_;
-  double slack_ = 0;      // for the next lists [m]
-  double made_with_ = 0;  // for those at hand [m]
-  int num_calm_ = 0;      // searches in a row that have found few pairs
+  double slack_ = 0;       // for the next lists [m]
+  double made_with_ = 0;   // for those at hand [m]
+  bool is_among_ = false;  // those at hand are of some patches, and no others are measured
+  int num_calm_ = 0;       // searches in a row that have found few pairs
 
   Patches patches_;
   AabbTree cloth_tree_, body_tree_;  // of patches

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "weft/geometry/shape_distance.h"
+
 namespace weft::engine {
 namespace {
 
@@ -32,7 +34,28 @@ double difference(const ColliderShape& a, const ColliderShape& b) {
   return std::visit([](const auto& x, const auto& y) { return difference(x, y); }, a, b);
 }
 
+/// No point of the box is nearer to the shape [m].
+double box_distance(const Sphere& s, const Vec3& min, const Vec3& max) {
+  return (s.center - s.center.cwiseMax(min).cwiseMin(max)).norm() - s.radius;
+}
+double box_distance(const Plane& p, const Vec3& min, const Vec3& max) {
+  return p.normal.dot(0.5 * (min + max) - p.point) - 0.5 * p.normal.cwiseAbs().dot(max - min);
+}
+double box_distance(const Capsule& c, const Vec3& min, const Vec3& max) {
+  return boxes_distance(c.a.cwiseMin(c.b), c.a.cwiseMax(c.b), min, max) - c.radius;
+}
+double box_distance(const OrientedBox& b, const Vec3& min, const Vec3& max) {
+  const Vec3 half = b.rotation.cwiseAbs() * b.half_size;
+  return boxes_distance(b.center - half, b.center + half, min, max);
+}
+double box_distance(const MeshShape&, const Vec3&, const Vec3&) { return -kInfinity; }
+
 }  // namespace
+
+double least_distance(const MovingShape& shape, const Vec3& min, const Vec3& max) {
+  const double at_end = std::visit([&](const auto& s) { return box_distance(s, min, max); }, shape.after);
+  return at_end - difference(shape.before, shape.after);
+}
 
 double farthest_way(const SurfaceMotion& motion, int num_vertices) {
   double way_sq = 0;

@@ -25,6 +25,10 @@ inline double farther_sq(double length_sq, const Vec3& v) {
 /// How far any of the first `num_vertices` vertices moves from start to end [m].
 double farthest_way(const SurfaceMotion& motion, int num_vertices);
 
+/// No point of the axis-aligned box from `min` to `max` comes nearer to a plain shape during the step; may be
+/// less than it is [m].
+double least_distance(const MovingShape& shape, const Vec3& min, const Vec3& max);
+
 class ShapeClearance {
  public:
   /// A step begins. Each of `num_vertices` vertices starts it within `travel` of where it started the step

@@ -22,11 +22,6 @@ Vec3 across(const Vec3& axis) {
   return up.squaredNorm() > 1e-20 ? Vec3(up.normalized()) : Vec3::UnitX();
 }
 
-/// How far two axis-aligned boxes are apart, given by their corners: never more than what is in them.
-double boxes_distance(const Vec3& min_a, const Vec3& max_a, const Vec3& min_b, const Vec3& max_b) {
-  return (min_a - max_b).cwiseMax(min_b - max_a).cwiseMax(0.0).norm();
-}
-
 // --- Boxes, in their own frame: the box is |p_k| <= h_k. ---
 
 /// Signed distance to the box: max_k |p_k| − h_k inside, the length of what is beyond h outside.
@@ -187,6 +182,10 @@ Vec3 shortest_way_out(const BoxSearch& search, const Vec3& p) {
 }
 
 }  // namespace
+
+double boxes_distance(const Vec3& min_a, const Vec3& max_a, const Vec3& min_b, const Vec3& max_b) {
+  return (min_a - max_b).cwiseMax(min_b - max_a).cwiseMax(0.0).norm();
+}
 
 SignedDistance signed_distance(const Sphere& sphere, const Vec3& p) {
   const Vec3 offset = p - sphere.center;

@@ -72,6 +72,9 @@ TriangleSignedDistance signed_distance(const Capsule& capsule, const Vec3& a, co
 TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
+/// How far two axis-aligned boxes, given by their corners, are apart; 0 if they meet [m].
+double boxes_distance(const Vec3& min_a, const Vec3& max_a, const Vec3& min_b, const Vec3& max_b);
+
 /// The largest normal · p of all points p of the shape, which lies behind that plane [m].
 double support(const Sphere& sphere, const Vec3& normal);
 double support(const Capsule& capsule, const Vec3& normal);

@@ -1,0 +1,51 @@
+#pragma once
+/// Private to contact/: a box of moving points in registers.
+
+#include <Eigen/Core>
+
+#include "weft/core/vec.h"
+#include "weft/geometry/aabb.h"
+
+namespace weft::engine {
+
+/// A point or a vector in floats; the last component is 0 and only fills the register.
+using Float4 = Eigen::Vector4f;
+
+inline Float4 to_float4(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
+}
+
+/// A MovingAabb in registers: where points are at the start, and how far they move [m]. By default empty.
+struct SweptBox {
+  Float4 min = Float4::Constant(Aabb::kInfinity), max = -min;
+  Float4 way_min = min, way_max = max;
+
+  /// As MovingAabb::may_meet.
+  bool may_meet(const SweptBox& other) const {
+    const Float4 towards = (other.way_max - way_min).cwiseMax(0.0f),
+                 away = (way_max - other.way_min).cwiseMax(0.0f);
+    return ((min - other.max).array() <= towards.array()).all() &&
+           ((other.min - max).array() <= away.array()).all();
+  }
+
+  void add(const Float4& place, const Float4& way) {
+    min = min.cwiseMin(place);
+    max = max.cwiseMax(place);
+    way_min = way_min.cwiseMin(way);
+    way_max = way_max.cwiseMax(way);
+  }
+
+  void merge(const SweptBox& other) {
+    min = min.cwiseMin(other.min);
+    max = max.cwiseMax(other.max);
+    way_min = way_min.cwiseMin(other.way_min);
+    way_max = way_max.cwiseMax(other.way_max);
+  }
+
+  MovingAabb to_aabb() const {
+    return {{{min[0], min[1], min[2]}, {max[0], max[1], max[2]}},
+            {{way_min[0], way_min[1], way_min[2]}, {way_max[0], way_max[1], way_max[2]}}};
+  }
+};
+
+}  // namespace weft::engine
