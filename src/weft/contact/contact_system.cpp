@@ -169,7 +169,7 @@ void ContactSystem::remember_velocities() {
     for (int i = 0; i < cloth.model->num_particles(); ++i) velocity_before_.push_back(cloth.state->v.get(i));
   }
   for (std::size_t v = velocity_before_.size(); v < motion_.start.size(); ++v)
-    velocity_before_.push_back(velocity_[v]);
+    velocity_before_.push_back(velocity_[v].to_vec3());
 }
 
 void ContactSystem::renumber(const std::vector<Collider>& colliders) {
@@ -240,8 +240,8 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   motion_.end.assign(n, Vec3::Zero());
   motion_.half_thickness.assign(n, 0.0);
   inverse_mass_.assign(n, 0.0);
-  velocity_.assign(n, Vec3::Zero());
-  slowed_.assign(n, Vec3::Zero());
+  velocity_.assign(n, {});
+  slowed_.assign(n, {});
   near_.reserve(n);
   near_shape_.reserve(num_cloth_vertices);
   is_touched_.assign(n, 0);
@@ -284,7 +284,7 @@ void ContactSystem::place_bodies() {
     for (int v = body.first_vertex; v < body.end_vertex; ++v) {
       motion_.start[v] = before.vertex(v - body.first_vertex);
       motion_.end[v] = after.vertex(v - body.first_vertex);
-      velocity_[v] = (motion_.end[v] - motion_.start[v]) / step_.step;
+      velocity_[v] = to_quad((motion_.end[v] - motion_.start[v]) / step_.step);
     }
   }
 }
@@ -552,8 +552,8 @@ void ContactSystem::project(JobSystem& jobs) {
   settle_positions();
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
-      velocity_[v] = cloths_[c].state->v.get(v - first_vertex_[c]);
-      slowed_[v].setZero();
+      velocity_[v] = to_quad(cloths_[c].state->v.get(v - first_vertex_[c]));
+      slowed_[v] = {};
     }
   }
   velocity_projection_.project(inverse_mass_, constraints_, velocity_, slowed_);
@@ -592,7 +592,7 @@ bool ContactSystem::has_left_reach() const {
 void ContactSystem::take_back_slides() {
   mark_touched();
   for (int v = 0; v < first_vertex_.back(); ++v) {
-    if (is_touched_[v]) motion_.end[v] += step_.step * slowed_[v];
+    if (is_touched_[v]) motion_.end[v] += step_.step * slowed_[v].to_vec3();
   }
 }
 
@@ -609,7 +609,7 @@ void ContactSystem::store_touched() {
       if (!is_touched_[v] || inverse_mass_[v] == 0) continue;
       cloths_[c].state->history.had_contact = true;
       cloths_[c].state->set_position(v - first_vertex_[c], motion_.end[v]);
-      cloths_[c].state->v.set(v - first_vertex_[c], velocity_[v]);
+      cloths_[c].state->v.set(v - first_vertex_[c], velocity_[v].to_vec3());
     }
   }
   std::fill(is_touched_.begin(), is_touched_.end(), char{0});

@@ -269,7 +269,7 @@ class ContactSystem {
   std::vector<double> shape_distance_;
   std::vector<int> near_shape_;  // vertices
   std::vector<Separation> separations_;
-  std::vector<Vec3> velocity_, slowed_;
+  std::vector<Quad> velocity_, slowed_;
   LastLine last_line_;
   std::vector<Vec3> origins_;  // (cloths)
   std::vector<Vec3> arrived_;  // where contacts were last looked for

@@ -15,7 +15,6 @@ constexpr double kVelocityTolerance = 1e-4;  // [m/s]
 constexpr int kVelocityPasses = 12;
 constexpr double kLeast = std::numeric_limits<double>::denorm_min();
 
-using Quad = VelocityProjection::Quad;
 using Row = VelocityProjection::Row;
 
 WEFT_ALWAYS_INLINE Quad operator*(double s, const Quad& q) {
@@ -44,19 +43,17 @@ WEFT_ALWAYS_INLINE double dot(const Quad& p, const Quad& q) {
   return r.at[0] + r.at[1] + r.at[2];
 }
 
-Quad to_quad(const Vec3& v) { return {{v.x(), v.y(), v.z(), 0}}; }
-Vec3 to_vec3(const Quad& q) { return {q.at[0], q.at[1], q.at[2]}; }
-
 template <int kVertices>
 WEFT_ALWAYS_INLINE Quad relative_velocity(const Row& row, const Quad* velocities) {
-  Quad sum = row.weight[0] * velocities[row.place[0]];
-  for (int k = 1; k < kVertices; ++k) sum = sum + row.weight[k] * velocities[row.place[k]];
+  Quad sum = row.weight[0] * velocities[row.vertex[0]];
+  for (int k = 1; k < kVertices; ++k) sum = sum + row.weight[k] * velocities[row.vertex[k]];
   return sum - row.surface_velocity;
 }
 
 template <int kVertices>
 WEFT_ALWAYS_INLINE void apply(const Row& row, const Quad& impulse, Quad* values) {
-  for (int k = 0; k < kVertices; ++k) values[row.place[k]] = values[row.place[k]] + row.response[k] * impulse;
+  for (int k = 0; k < kVertices; ++k)
+    values[row.vertex[k]] = values[row.vertex[k]] + row.response[k] * impulse;
 }
 
 /// Makes v_n >= 0; returns the squared change [m²/s²].
@@ -81,8 +78,11 @@ WEFT_ALWAYS_INLINE double slow_slide(Row& row, Quad* velocities, Quad* slowed) {
   const Quad slide = relative - dot(relative, row.normal) * row.normal;
   Quad impulse = row.friction_impulse - slide / row.inverse_mass;
   const double length = std::sqrt(dot(impulse, impulse));
-  // Shortened to µ P if it is longer; without a branch, which no processor could predict.
-  impulse = most / std::max(length, std::max(most, kLeast)) * impulse;
+  // Shortened to µ P if it is longer; of several vertices without a branch, which no processor could predict.
+  if (kVertices > 1)
+    impulse = most / std::max(length, std::max(most, kLeast)) * impulse;
+  else if (length > most)
+    impulse = most / length * impulse;
   const Quad change = impulse - row.friction_impulse;
   row.friction_impulse = impulse;
   apply<kVertices>(row, change, velocities);
@@ -113,31 +113,23 @@ WEFT_MULTIVERSION(relax_all, (std::span<Row> rows, Quad* velocities, Quad* slowe
 
 }  // namespace
 
-void VelocityProjection::number_vertices(const Constraint& c) {
-  for (const int v : std::span(c.vertex.data(), c.num_vertices)) {
-    if (place_of_vertex_[v] >= 0) continue;
-    place_of_vertex_[v] = static_cast<int>(vertices_.size());
-    vertices_.push_back(v);
-    next_level_.push_back(0);
-  }
-}
-
 void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
                                   const std::vector<Constraint>& constraints) {
-  for (auto* numbers : {&active_, &level_, &level_begin_, &vertices_, &next_level_}) numbers->clear();
-  place_of_vertex_.resize(inverse_masses.size(), -1);
+  active_.clear();
+  level_.clear();
+  level_begin_.clear();
+  next_level_.resize(inverse_masses.size(), 0);
   for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
     const Constraint& c = constraints[n];
     if (!c.is_active) continue;
-    number_vertices(c);
-    std::size_t level = 0;
-    const auto next = [&](int k) -> int& { return next_level_[place_of_vertex_[c.vertex[k]]]; };
-    for (int k = 0; k < c.num_vertices; ++k) level = std::max(level, static_cast<std::size_t>(next(k)));
-    for (int k = 0; k < c.num_vertices; ++k) next(k) = static_cast<int>(level + 1);
-    level_begin_.resize(std::max(level_begin_.size(), level + 1), 0);
+    const std::span vertices(c.vertex.data(), c.num_vertices);
+    int level = 0;
+    for (const int v : vertices) level = std::max(level, next_level_[v]);
+    for (const int v : vertices) next_level_[v] = level + 1;
+    if (level == static_cast<int>(level_begin_.size())) level_begin_.push_back(0);
     ++level_begin_[level];
     active_.push_back(n);
-    level_.push_back(static_cast<int>(level));
+    level_.push_back(level);
   }
   int begin = 0;
   for (int& level : level_begin_) level = std::exchange(begin, begin + level);
@@ -149,41 +141,31 @@ void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
     row.surface_velocity = to_quad(c.surface_velocity);
     row.friction_impulse = to_quad(c.friction_impulse);
     row.weight = c.weight;
+    row.vertex = c.vertex;
     row.num_vertices = c.num_vertices;
     row.constraint = active_[a];
     row.inverse_mass = c.inverse_mass;
     row.friction = c.friction;
     row.impulse = c.impulse;
     for (int k = 0; k < c.num_vertices; ++k) {
-      row.place[k] = place_of_vertex_[c.vertex[k]];
       row.response[k] = c.weight[k] * inverse_masses[c.vertex[k]];
+      next_level_[c.vertex[k]] = 0;
     }
   }
-  for (const int v : vertices_) place_of_vertex_[v] = -1;
 }
 
 void VelocityProjection::project(const std::vector<double>& inverse_masses,
-                                 std::vector<Constraint>& constraints, std::vector<Vec3>& velocities,
-                                 std::vector<Vec3>& slowed) {
+                                 std::vector<Constraint>& constraints, std::vector<Quad>& velocities,
+                                 std::vector<Quad>& slowed) {
   schedule(inverse_masses, constraints);
-  velocities_.resize(vertices_.size());
-  slowed_.resize(vertices_.size());
-  for (std::size_t p = 0; p < vertices_.size(); ++p) {
-    velocities_[p] = to_quad(velocities[vertices_[p]]);
-    slowed_[p] = to_quad(slowed[vertices_[p]]);
-  }
   for (int pass = 0; pass < kVelocityPasses; ++pass) {
     double largest_sq = 0;
-    relax_all(rows_, velocities_.data(), slowed_.data(), largest_sq);
+    relax_all(rows_, velocities.data(), slowed.data(), largest_sq);
     if (largest_sq < kVelocityTolerance * kVelocityTolerance) break;
-  }
-  for (std::size_t p = 0; p < vertices_.size(); ++p) {
-    velocities[vertices_[p]] = to_vec3(velocities_[p]);
-    slowed[vertices_[p]] = to_vec3(slowed_[p]);
   }
   for (const Row& row : rows_) {
     constraints[row.constraint].impulse = row.impulse;
-    constraints[row.constraint].friction_impulse = to_vec3(row.friction_impulse);
+    constraints[row.constraint].friction_impulse = row.friction_impulse.to_vec3();
   }
 }
 
