@@ -14,7 +14,8 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kFlatness = 0.02;
+
+constexpr double kFlatness = SliverLimits{}.flatness;
 
 double least_height_share(const TriangleMesh& mesh) {
   double least = 1;
@@ -63,7 +64,7 @@ void expect_corners_in_place(const TriangleMesh& source, const DerivedMesh& deri
 TEST(Slivers, DividesWhatIsBehindACap) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.4, 0, -1e-4}, {0.5, 0, 1}, {0.4, 0, -1}},
                           {{0, 2, 1}, {0, 1, 3}, {0, 4, 2}, {2, 4, 1}}};
-  const MeshWithoutSlivers result = remove_slivers(mesh, kFlatness);
+  const MeshWithoutSlivers result = remove_slivers(mesh);
   EXPECT_EQ(result.num_divided, 1);
   EXPECT_EQ(result.num_collapsed, 0);
   EXPECT_EQ(result.mesh.positions, mesh.positions);
@@ -75,7 +76,7 @@ TEST(Slivers, DividesWhatIsBehindACap) {
 TEST(Slivers, DropsACapAtTheBorder) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.4, 0, -1e-4}, {0.4, 0, -1}},
                           {{0, 2, 1}, {0, 3, 2}, {2, 3, 1}}};
-  const MeshWithoutSlivers result = remove_slivers(mesh, kFlatness);
+  const MeshWithoutSlivers result = remove_slivers(mesh);
   EXPECT_EQ(result.mesh.triangles, (std::vector<Triangle>{{0, 3, 2}, {2, 3, 1}}));
   EXPECT_EQ(result.mesh.num_vertices(), 4);
 }
@@ -84,7 +85,7 @@ TEST(Slivers, CollapsesANeedleAndKeepsTheBorder) {
   // Vertex 4 is 1 mm beside vertex 2, which is on the border.
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, 0, 1}, {0.5, 0, 0.3}, {0.5005, 0, 0.999}, {0, 0, 1}},
                           {{0, 1, 3}, {0, 3, 5}, {1, 2, 4}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}}};
-  const MeshWithoutSlivers result = remove_slivers(mesh, kFlatness);
+  const MeshWithoutSlivers result = remove_slivers(mesh);
   EXPECT_EQ(result.num_collapsed, 1);
   EXPECT_EQ(result.mesh.num_triangles(), 4);
   EXPECT_EQ(result.vertex_of_source[4], result.vertex_of_source[2]);
@@ -98,16 +99,55 @@ TEST(Slivers, LeavesARibbonAsItIs) {
     const TriangleMesh mesh = build_grid_mesh(
         {.size_x = 10.0 * cells, .size_z = 0.05, .cells_x = cells, .cells_z = 1}, GridDiagonals::alternating);
     ASSERT_LT(least_height_share(mesh), kFlatness);
-    EXPECT_EQ(remove_slivers(mesh, kFlatness).mesh.triangles, mesh.triangles) << cells;
+    EXPECT_EQ(remove_slivers(mesh).mesh.triangles, mesh.triangles) << cells;
   }
 }
 
 TEST(Slivers, LeavesWellShapedMeshesAsTheyAre) {
   const TriangleMesh mesh = build_random_mesh({.size_x = 1, .size_z = 1, .cells_x = 30, .cells_z = 30}, 2);
-  const MeshWithoutSlivers result = remove_slivers(mesh, kFlatness);
+  const MeshWithoutSlivers result = remove_slivers(mesh);
   EXPECT_EQ(result.num_collapsed + result.num_divided, 0);
   EXPECT_EQ(result.mesh.triangles, mesh.triangles);
   EXPECT_EQ(result.mesh.positions, mesh.positions);
+}
+
+double shortest_edge(const TriangleMesh& mesh) {
+  double shortest = 1;
+  for (const Edge& e : build_edges(mesh))
+    shortest = std::min(shortest, (mesh.positions[e.a] - mesh.positions[e.b]).norm());
+  return shortest;
+}
+
+auto count_edges_below(double length, const TriangleMesh& mesh) {
+  return std::ranges::count_if(build_edges(mesh), [&](const Edge& e) {
+    return (mesh.positions[e.a] - mesh.positions[e.b]).norm() < length;
+  });
+}
+
+/// Cells of 1 cm, and a last row of 0.3 mm, as a cut through a mesh leaves it.
+TriangleMesh sheet_with_a_narrow_row() {
+  TriangleMesh mesh = build_grid_mesh({.size_x = 0.1, .size_z = 0.11, .cells_x = 10, .cells_z = 11},
+                                      GridDiagonals::alternating);
+  for (Vec3& p : mesh.positions) p.z() = p.z() > 0.105 ? 0.1003 : p.z();
+  return mesh;
+}
+
+TEST(Slivers, AreNeedlesWithAShortEdgeIfThatIsAsked) {
+  const TriangleMesh mesh = sheet_with_a_narrow_row();
+  ASSERT_GT(least_height_share(mesh), kFlatness);
+  EXPECT_EQ(remove_slivers(mesh).num_collapsed, 0);
+  const MeshWithoutSlivers result = remove_slivers(mesh, {.short_edge = 2e-3});
+  EXPECT_EQ(result.num_divided, 0);
+  EXPECT_EQ(count_edges_below(2e-3, result.mesh), 0);
+  EXPECT_NEAR(area_of(result.mesh), area_of(mesh), 5e-6) << "the border stays where it is, but for two ears";
+  expect_corners_in_place(mesh, result, 4e-4);
+}
+
+TEST(Slivers, AreNoSmallTrianglesAmongOthersOfTheirSize) {
+  const TriangleMesh mesh =
+      build_random_mesh({.size_x = 0.02, .size_z = 0.02, .cells_x = 30, .cells_z = 30}, 2);
+  ASSERT_LT(shortest_edge(mesh), 1e-3);
+  EXPECT_EQ(remove_slivers(mesh, {.short_edge = 2e-3}).mesh.triangles, mesh.triangles);
 }
 
 TEST(Slivers, AreRemovedWhereverTheyAre) {
@@ -141,14 +181,14 @@ TEST(Slivers, AreRemovedWhereverTheyAre) {
       }
     }
     ASSERT_LT(least_height_share(mesh), 1e-3);
-    const MeshWithoutSlivers result = remove_slivers(mesh, kFlatness);
+    const MeshWithoutSlivers result = remove_slivers(mesh);
     EXPECT_GT(least_height_share(result.mesh), kFlatness) << seed;
     EXPECT_EQ(euler_of(result.mesh), euler_of(whole)) << seed;
     EXPECT_EQ(max_triangles_at_an_edge(result.mesh), 2) << seed;
     EXPECT_EQ(count_surface_edges(result.mesh).border > 0, seed % 2 == 1) << seed;
     EXPECT_NEAR(area_of(result.mesh), area_of(whole), 0.01 * area_of(whole)) << seed;
     expect_corners_in_place(mesh, result, 0.02);
-    const MeshWithoutSlivers again = remove_slivers(result.mesh, kFlatness);
+    const MeshWithoutSlivers again = remove_slivers(result.mesh);
     EXPECT_EQ(again.num_collapsed + again.num_divided, 0);
   }
 }

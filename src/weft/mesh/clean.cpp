@@ -19,9 +19,6 @@ constexpr double kMinThinness = 1e-10;
 /// Borders of different pieces that run within this distance of each other look like an open seam [m].
 constexpr double kMaxOpenSeam = 0.005;
 
-/// Triangles lower than this, over their longest edge, are slivers [1].
-constexpr double kFlatness = 0.02;
-
 std::string number(long long n) { return std::to_string(n); }
 
 /// For each vertex the lowest-numbered vertex that it is sewn to: closer than `distance`, directly or through
@@ -105,11 +102,15 @@ void sew(CleanMesh& clean, double distance) {
                         " vertices, " + counted(sewn.num_divided, "edge") + " divided");
 }
 
-void remove_slivers(CleanMesh& clean) {
-  MeshWithoutSlivers without = remove_slivers(clean.mesh, kFlatness);
+void remove_slivers(CleanMesh& clean, double short_edge) {
+  const SliverLimits limits{.short_edge = short_edge};
+  MeshWithoutSlivers without = remove_slivers(clean.mesh, limits);
   const int count = without.num_collapsed + without.num_divided;
   if (count == 0) return;
-  clean.warnings.push_back(counted(count, "sliver") + " lower than 2 % of the longest edge removed: " +
+  clean.warnings.push_back(counted(count, "sliver") + " removed (lower than 2 % of the longest edge" +
+                           (short_edge > 0 ? ", or with an edge below 15 % of the longest around and " +
+                                                 in_digits(1000 * short_edge, "%.3g") + " mm): "
+                                           : "): ") +
                            counted(without.num_collapsed, "short edge") + " collapsed, " +
                            counted(without.num_divided, "long edge") + " divided");
   static_cast<DerivedMesh&>(clean) = compose(clean, std::move(without));
@@ -214,7 +215,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   result.corner_weights.assign(mesh.triangles.size(), make_whole_weights());
   if (options.sew_distance > 0) sew(result, options.sew_distance);
   if (!options.is_cloth) return result;
-  remove_slivers(result);
+  remove_slivers(result, options.short_edge);
   warn_about_topology(mesh, warnings);
   warn_about_open_seams(mesh, warnings);
   return result;

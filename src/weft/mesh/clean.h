@@ -14,6 +14,8 @@ struct CleanOptions {
   /// Borders of pieces within this distance are sewn, vertex on vertex or not (see sew.h) [m]; 0 sews
   /// nothing.
   double sew_distance = 0;
+  /// Edges of cloth that are shorter than this are slivers too, among long ones (see slivers.h) [m].
+  double short_edge = 0;
   bool is_cloth = true;  // whether to remove slivers, and to warn of unsewn seams and of edges without
                          // bending springs
 };

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMaxPasses = 20;
 constexpr double kNeedle = 2.5;       // times flatness: edges shorter than that are collapsed [1]
+constexpr double kShort = 0.15;       // share of the longest edge around that a short one is below [1]
 constexpr double kLeastCosine = 0.2;  // between a triangle's normals before and after [1]
 
 /// A flat triangle, its corners as places in it: a–b is its longest edge.
@@ -55,9 +56,9 @@ Triangle with(Triangle t, int old_vertex, int new_vertex) {
 /// Slivers removed one after the other, as long as they have no neighbour in common.
 class Pass {
  public:
-  Pass(const TriangleMesh& mesh, double flatness)
+  Pass(const TriangleMesh& mesh, const SliverLimits& limits)
       : mesh_(mesh),
-        flatness_(flatness),
+        limits_(limits),
         around_(mesh.positions.size()),
         is_touched_(mesh.positions.size(), 0),
         is_dropped_(mesh.triangles.size(), 0),
@@ -70,7 +71,11 @@ class Pass {
 
   void run() {
     for (int t = 0; t < mesh_.num_triangles(); ++t) {
-      const std::optional<Sliver> sliver = look_at(mesh_, t, flatness_);
+      if (collapse_short_edge(t)) {
+        ++num_collapsed_;
+        continue;
+      }
+      const std::optional<Sliver> sliver = look_at(mesh_, t, limits_.flatness);
       if (!sliver || is_touched(*sliver)) continue;
       if (sliver->twin >= 0) {
         num_collapsed_ += collapse(sliver->apex, sliver->twin);
@@ -132,11 +137,35 @@ class Pass {
     return before.dot(after) <= kLeastCosine * before.norm() * after.norm();
   }
 
+  double length(int a, int b) const { return (mesh_.positions[b] - mesh_.positions[a]).norm(); }
+
+  /// Of the triangles at a vertex.
+  double longest_edge_at(int vertex) const {
+    double longest = 0;
+    for (const int t : around_[vertex]) {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      longest = std::max({longest, length(a, b), length(b, c), length(c, a)});
+    }
+    return longest;
+  }
+
+  bool is_short(int a, int b) const {
+    const double edge = length(a, b);
+    return edge < limits_.short_edge && edge < kShort * std::max(longest_edge_at(a), longest_edge_at(b));
+  }
+
+  bool collapse_short_edge(int triangle);
+  bool is_sliver(int triangle) const {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    return is_short(a, b) || is_short(b, c) || is_short(c, a) || look_at(mesh_, triangle, limits_.flatness);
+  }
+
   bool collapse(int a, int b);
+  bool drop_ear(int tip, int twin);
   bool divide(const Sliver& s);
 
   const TriangleMesh& mesh_;
-  double flatness_;
+  SliverLimits limits_;
   std::vector<std::vector<int>> around_;  // triangles by vertex
   std::vector<char> is_touched_, is_dropped_;
   std::vector<int> stands_for_;  // (vertices) itself, or what it was collapsed into
@@ -144,10 +173,35 @@ class Pass {
   int num_collapsed_ = 0, num_divided_ = 0;
 };
 
-/// By the link condition: what both ends are joined to must be the corners opposite to the edge. And not at
-/// corners of the border, from which on a ribbon would be eaten up.
+/// The shortest that can be.
+bool Pass::collapse_short_edge(int triangle) {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  if (is_touched_[a] || is_touched_[b] || is_touched_[c]) return false;
+  std::array<std::array<int, 2>, 3> edges = {{{a, b}, {b, c}, {c, a}}};
+  std::ranges::stable_sort(edges, {}, [&](const auto& e) { return length(e[0], e[1]); });
+  return std::ranges::any_of(edges,
+                             [&](const auto& e) { return is_short(e[0], e[1]) && collapse(e[0], e[1]); });
+}
+
+/// A tip that only one triangle has. Not where what is behind it is a sliver too: a ribbon would be eaten up.
+bool Pass::drop_ear(int tip, int twin) {
+  const int ear = around_[tip][0];
+  const auto& [a, b, c] = mesh_.triangles[ear];
+  const int p = tip == a ? b : a, q = tip == c ? b : c;
+  for (const int t : triangles_at(p, q)) {
+    if (t == ear || is_sliver(t)) continue;
+    touch(tip);
+    stands_for_[tip] = twin;
+    is_dropped_[ear] = 1;
+    return true;
+  }
+  return false;
+}
+
+/// By the link condition: what both ends are joined to must be the corners opposite to the edge.
 bool Pass::collapse(int a, int b) {
-  if (around_[a].size() == 1 || around_[b].size() == 1) return false;
+  if (around_[a].size() == 1) return drop_ear(a, b);
+  if (around_[b].size() == 1) return drop_ear(b, a);
   const std::vector<int> at_edge = triangles_at(a, b);
   const bool border_a = is_on_border(a), border_b = is_on_border(b);
   if (at_edge.size() > 2 || (border_a && border_b && at_edge.size() == 2)) return false;
@@ -230,10 +284,10 @@ DerivedMesh make_derived(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshWithoutSlivers remove_slivers(const TriangleMesh& mesh, double flatness) {
+MeshWithoutSlivers remove_slivers(const TriangleMesh& mesh, const SliverLimits& limits) {
   MeshWithoutSlivers result{make_derived(mesh)};
   for (int pass_number = 0; pass_number < kMaxPasses; ++pass_number) {
-    Pass pass(result.mesh, flatness);
+    Pass pass(result.mesh, limits);
     pass.run();
     if (pass.num_collapsed() + pass.num_divided() == 0) break;
     result.num_collapsed += pass.num_collapsed();
