@@ -96,6 +96,7 @@ TEST(WindingNumbers, AgreeWithTheSphere) {
     if (r > 0.498 && r < 0.5)
       continue;  // between the sphere and its flat triangles: sagitta 0.5 (1 - cos 4.5°)
     EXPECT_EQ(winding[i], r < 0.5 ? 1 : 0) << points[i].transpose();
+    EXPECT_EQ(compute_winding_number(mesh.triangles, mesh.positions, points[i]), winding[i]);
     num_inside += winding[i];
   }
   EXPECT_GT(num_inside, 400);

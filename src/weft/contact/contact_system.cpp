@@ -193,6 +193,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   numbered_meshes_.clear();
   first_vertex_.clear();
   bodies_.clear();
+  closed_meshes_.clear();
   Surface surface;
   std::vector<Vec3> rest;
   std::vector<int> things;  // (triangles)
@@ -226,7 +227,12 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
       body.min = body.min.cwiseMin(p);
       body.max = body.max.cwiseMax(p);
     }
+    const int first_triangle = static_cast<int>(surface.triangles.size());
     surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
+    if (body.is_closed) {
+      closed_meshes_.push_back(
+          {body.first_vertex, body.end_vertex, first_triangle, static_cast<int>(surface.triangles.size())});
+    }
     things.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
   }
   surface.build_fans();
@@ -245,11 +251,6 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   near_.reserve(n);
   near_shape_.reserve(num_cloth_vertices);
   is_touched_.assign(n, 0);
-  is_solid_.assign(n, 0);
-  for (const Body& body : bodies_) {
-    if (body.is_closed)
-      std::fill(&is_solid_[body.first_vertex], &is_solid_[body.end_vertex - 1] + 1, char{1});
-  }
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_things(std::move(things));
@@ -501,8 +502,8 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   const WorkScope scope(step_.clock, &WorkTimes::ccd);
   find_separations();
   const LastLineReport report =
-      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &is_solid_, &passes_, &clearance_,
-                       thickest_, separations_, step_.clock},
+      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &closed_meshes_, &passes_,
+                       &clearance_, thickest_, separations_, step_.clock},
                       proximity_, motion_, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);

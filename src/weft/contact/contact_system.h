@@ -221,7 +221,7 @@ class ContactSystem {
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
-  std::vector<char> is_solid_;    // (num_vertices) on a closed mesh
+  std::vector<ClosedMesh> closed_meshes_;
   std::vector<char> passes_;      // (things, things) go through each other; empty: none do
   double longest_rest_edge_ = 0;  // of cloth [m]
   bool has_grids_ = false;        // all cloths are grids

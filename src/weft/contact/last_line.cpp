@@ -7,6 +7,7 @@
 
 #include "weft/contact/collect.h"
 #include "weft/geometry/distance.h"
+#include "weft/mesh/solid.h"
 
 namespace weft::engine {
 namespace {
@@ -118,9 +119,9 @@ void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   }
   std::fill(is_moved_.begin(), is_moved_.end(), char{0});
   only_moved_ = true;
-  // What has crossed before, and what nobody may move.
+  // What has crossed before, what leaves a closed mesh, and what nobody may move.
   std::erase_if(hits_, [&](const Hit& hit) {
-    if (is_tangled(hit)) return true;
+    if (is_tangled(hit) || comes_from_inside(hit.constraint)) return true;
     if (hit.constraint.inverse_mass > 0) return false;
     add_infeasible(hit, report);
     return true;
@@ -157,27 +158,14 @@ ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
 
 bool LastLine::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
   const auto [i, j, k] = proximity_->surface().triangles[pair.b];
-  const std::array<int, 4> vertex = {i, j, k, pair.a};
-  if (!test_pair(pair, vertex, find_vertex_triangle_impact, hit)) return false;
   hit.is_edge_edge = false;
-  const std::vector<Vec3>& x = motion_->start;
-  if ((*step_.is_solid)[i]) return (x[j] - x[i]).cross(x[k] - x[i]).dot(x[pair.a] - x[i]) >= 0;
-  if (!(*step_.is_solid)[pair.a]) return true;
-  const PointTriangleDistance d = point_triangle_distance(x[pair.a], x[i], x[j], x[k]);
-  return !is_behind_faces(pair.a, pair.a, point_at(d.weights, x[i], x[j], x[k]) - x[pair.a]);
+  return test_pair(pair, {i, j, k, pair.a}, find_vertex_triangle_impact, hit);
 }
 
 bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
   const std::array<int, 2>&a = proximity_->surface().edges[pair.a], &b = proximity_->surface().edges[pair.b];
-  const std::array<int, 4> vertex = {a[0], a[1], b[0], b[1]};
-  if (!test_pair(pair, vertex, find_edge_edge_impact, hit)) return false;
   hit.is_edge_edge = true;
-  const bool is_a = (*step_.is_solid)[a[0]], is_b = (*step_.is_solid)[b[0]];
-  if (!is_a && !is_b) return true;
-  const std::vector<Vec3>& x = motion_->start;
-  const EdgeEdgeDistance d = edge_edge_distance(x[a[0]], x[a[1]], x[b[0]], x[b[1]]);
-  const Vec3 b_to_a = x[a[0]] + d.s * (x[a[1]] - x[a[0]]) - x[b[0]] - d.t * (x[b[1]] - x[b[0]]);
-  return is_a ? !is_behind_faces(a[0], a[1], -b_to_a) : !is_behind_faces(b[0], b[1], b_to_a);
+  return test_pair(pair, {a[0], a[1], b[0], b[1]}, find_edge_edge_impact, hit);
 }
 
 /// Whether triangles at the one feature cross triangles at the other at the start. What has gone through each
@@ -208,16 +196,23 @@ bool LastLine::is_tangled(const Hit& hit) const {
   return is_pierced;
 }
 
-/// Whether what lies in this direction is behind all faces that have both vertices: inside of a closed mesh.
-bool LastLine::is_behind_faces(int v, int w, const Vec3& direction) const {
-  const Surface& surface = proximity_->surface();
-  const std::vector<Vec3>& x = motion_->start;
-  bool is_behind = true;
-  surface.for_triangles_with(std::array{v, w}, [&](int t) {
-    const auto [i, j, k] = surface.triangles[t];
-    is_behind &= (x[j] - x[i]).cross(x[k] - x[i]).dot(direction) < 0;
-  });
-  return is_behind;
+/// Winding number: whether the point of cloth that meets a closed mesh is inside of it at the start. On which
+/// side of the faces it meets it starts does not tell: those of a mesh that turns come from far, and a point
+/// behind a face's plane may be outside, beyond the face's border.
+bool LastLine::comes_from_inside(const Constraint& c) const {
+  if (c.shape >= 0) return false;
+  const int of_mesh = std::max(c.vertex[0], c.vertex[3]);
+  const auto mesh =
+      std::find_if(step_.closed_meshes->begin(), step_.closed_meshes->end(),
+                   [&](const ClosedMesh& m) { return of_mesh >= m.first_vertex && of_mesh < m.end_vertex; });
+  if (mesh == step_.closed_meshes->end()) return false;
+  Vec3 point = Vec3::Zero();
+  for (int k = 0; k < c.num_vertices; ++k) {
+    if (c.vertex[k] < num_cloth_vertices()) point += std::abs(c.weight[k]) * motion_->start[c.vertex[k]];
+  }
+  const std::span triangles = std::span(proximity_->surface().triangles)
+                                  .subspan(mesh->first_triangle, mesh->end_triangle - mesh->first_triangle);
+  return compute_winding_number(triangles, motion_->start, point) > 0;
 }
 
 template <class Find>

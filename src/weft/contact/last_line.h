@@ -47,13 +47,19 @@ struct Separation {
   Vec3 normal = Vec3::UnitY();  // unit length
 };
 
+/// A closed mesh of a collider, under the common numbering.
+struct ClosedMesh {
+  int first_vertex = 0, end_vertex = 0;
+  int first_triangle = 0, end_triangle = 0;
+};
+
 /// What it must know of a step, besides the motion.
 struct LastLineStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
   const std::vector<MovingShape>* shapes = nullptr;   // those that are meshes are looked at as vertices
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
-  const std::vector<Vec3>* origins = nullptr;   // (cloths) of which positions are stored as float offsets
-  const std::vector<char>* is_solid = nullptr;  // (num_vertices) on a closed mesh
+  const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
+  const std::vector<ClosedMesh>* closed_meshes = nullptr;
   const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) go through each other; or empty
   const ShapeClearance* clearance = nullptr;  // of cloth from plain shapes
   double thickest = 0;                        // half the thickness, of the thickest cloth [m]
@@ -96,7 +102,7 @@ class LastLine {
   bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
   bool is_tangled(const Hit& hit) const;
-  bool is_behind_faces(int v, int w, const Vec3& direction) const;
+  bool comes_from_inside(const Constraint& c) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;
   bool test_edge_edge(const FeaturePair& pair, Hit& hit) const;

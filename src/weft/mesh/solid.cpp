@@ -10,9 +10,9 @@ namespace {
 /// Seen from above, whether p lies to the left of the line from vertex a to vertex b. Of an edge's two
 /// triangles one asks for a–b and the other for b–a: they get opposite answers. A point on the line is moved
 /// by (ε, ε²) along x and z, so that one right below a vertex or an edge still belongs to one triangle.
-bool is_left_of(const TriangleMesh& mesh, int a, int b, const Vec3& p) {
-  if (a > b) return !is_left_of(mesh, b, a, p);
-  const Vec3 along = mesh.positions[b] - mesh.positions[a], to_p = p - mesh.positions[a];
+bool is_left_of(const std::vector<Vec3>& x, int a, int b, const Vec3& p) {
+  if (a > b) return !is_left_of(x, b, a, p);
+  const Vec3 along = x[b] - x[a], to_p = p - x[a];
   const double cross = along.z() * to_p.x() - along.x() * to_p.z();
   if (cross != 0) return cross > 0;
   return along.z() != 0 ? along.z() > 0 : along.x() < 0;
@@ -20,11 +20,13 @@ bool is_left_of(const TriangleMesh& mesh, int a, int b, const Vec3& p) {
 
 /// 1 if the ray from p upwards leaves through the triangle's front, -1 if it enters through it, 0 if it
 /// misses.
-int cross_upwards(const TriangleMesh& mesh, const Triangle& tri, const Vec3& p) {
+int cross_upwards(const std::vector<Vec3>& x, const Triangle& tri, const Vec3& p) {
   const auto& [a, b, c] = tri;
-  const bool left = is_left_of(mesh, a, b, p);
-  if (is_left_of(mesh, b, c, p) != left || is_left_of(mesh, c, a, p) != left) return 0;
-  const auto& x = mesh.positions;
+  const Vec3 low = x[a].cwiseMin(x[b]).cwiseMin(x[c]), high = x[a].cwiseMax(x[b]).cwiseMax(x[c]);
+  if (p.x() < low.x() || p.x() > high.x() || p.z() < low.z() || p.z() > high.z() || p.y() > high.y())
+    return 0;
+  const bool left = is_left_of(x, a, b, p);
+  if (is_left_of(x, b, c, p) != left || is_left_of(x, c, a, p) != left) return 0;
   const Vec3 normal = (x[b] - x[a]).cross(x[c] - x[a]);
   const double above = normal.dot(x[a] - p);  // (height of the triangle over p) · normal.y
   if (normal.y() > 0) return above > 0 ? 1 : 0;
@@ -135,17 +137,19 @@ std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::ve
   });
   std::vector<int> winding(points.size(), 0);
   for (const Triangle& tri : mesh.triangles) {
-    const auto& [a, b, c] = tri;
     const auto& x = mesh.positions;
-    const Vec3 low = x[a].cwiseMin(x[b]).cwiseMin(x[c]), high = x[a].cwiseMax(x[b]).cwiseMax(x[c]);
-    auto p = std::lower_bound(order.begin(), order.end(), low.x(),
+    const auto [low, high] = std::minmax({x[tri[0]].x(), x[tri[1]].x(), x[tri[2]].x()});
+    auto p = std::lower_bound(order.begin(), order.end(), low,
                               [&](int i, double limit) { return points[i].x() < limit; });
-    for (; p != order.end() && points[*p].x() <= high.x(); ++p) {
-      const Vec3& q = points[*p];
-      if (q.z() >= low.z() && q.z() <= high.z() && q.y() <= high.y())
-        winding[*p] += cross_upwards(mesh, tri, q);
-    }
+    for (; p != order.end() && points[*p].x() <= high; ++p) winding[*p] += cross_upwards(x, tri, points[*p]);
   }
+  return winding;
+}
+
+int compute_winding_number(std::span<const Triangle> triangles, const std::vector<Vec3>& positions,
+                           const Vec3& point) {
+  int winding = 0;
+  for (const Triangle& t : triangles) winding += cross_upwards(positions, t, point);
   return winding;
 }
 

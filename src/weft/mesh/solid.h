@@ -1,6 +1,7 @@
 #pragma once
 /// Triangle meshes as surfaces of solids: whether they close, which way they face, what is inside.
 
+#include <span>
 #include <vector>
 
 #include "weft/mesh/triangle_mesh.h"
@@ -44,5 +45,9 @@ Shells turn_shells_outwards(TriangleMesh& mesh);
 /// it faces inwards, 0 outside and in hollows, 2 where two parts overlap. Found by the triangles above the
 /// point; an edge that two of them share is counted for exactly one. Points on the surface may go either way.
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points);
+
+/// The same of one point; `triangles` are those of the mesh, `positions` may hold more than its vertices.
+int compute_winding_number(std::span<const Triangle> triangles, const std::vector<Vec3>& positions,
+                           const Vec3& point);
 
 }  // namespace weft::engine
