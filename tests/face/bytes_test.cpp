@@ -55,7 +55,7 @@ std::uint64_t hash_after(World& world, int steps) {
   return world.state_hash();
 }
 
-TEST(SavedWorlds, GoOnWithTheSameBits) {
+TEST(SavedWorlds, ContinueBitForBit) {
   for (const char* integrator : {"newton", "explicit"}) {
     World world = make_busy_world(integrator);
     World loaded = World::load(world.save());
