@@ -42,7 +42,7 @@ trap 'rm -rf "$wardrobe" "$films"' EXIT
 "$(dirname "$weft")/../tools/film_examples" "$films" > /dev/null
 film() { "$weft" render "$films/$1.glb" --frames "$2" --columns 4 --size 320x260 "${@:3}" --out "$images/example_$1.jpg"; }
 film hello_cloth 15,40,70,119
-film gripper 15,75,130,239 --camera 30,18,1.4
+film gripper 15,75,130,239
 film cape 30,60,90,119 --camera 150,8
 film game_loop 20,60,90,118
 film contact_forces 5,20,60,239
