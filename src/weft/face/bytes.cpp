@@ -190,15 +190,10 @@ constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
 constexpr std::uint32_t kVersion = 1;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
-struct Stiffened {
-  std::vector<int> particles;
-  double factor = 1;
-};
-
 /// Everything that decides the future.
 struct SavedCloth {
   ClothDesc desc;
-  std::vector<Stiffened> stiffened;
+  std::vector<Stiffening> stiffened;
   std::vector<char> is_soft;
 };
 
@@ -215,7 +210,7 @@ struct SavedWorld {
 };
 
 template <class Archive>
-void describe(Archive& archive, Stiffened& s) {
+void describe(Archive& archive, Stiffening& s) {
   engine::members(archive, s.particles, s.factor);
 }
 template <class Archive>
@@ -223,7 +218,7 @@ void describe(Archive& archive, SavedCloth& c) {
   engine::describe(archive, c.desc);
   const std::size_t count = engine::describe_size(archive, c.stiffened.size());
   c.stiffened.resize(count);
-  for (Stiffened& s : c.stiffened) describe(archive, s);
+  for (Stiffening& s : c.stiffened) describe(archive, s);
   engine::describe(archive, c.is_soft);
 }
 template <class Archive>
@@ -368,9 +363,7 @@ std::vector<std::byte> World::save() const {
                    .state = world.snapshot()};
   for (const Impl::Collider& c : impl_->colliders) saved.colliders.push_back(c.desc);
   for (const Impl::Cloth& c : impl_->cloths) {
-    saved.cloths.push_back({c.desc, {}, c.is_soft});
-    for (const Impl::Stiffening& s : c.stiffened)
-      saved.cloths.back().stiffened.push_back({s.particles, s.factor});
+    saved.cloths.push_back({c.desc, c.stiffened, c.is_soft});
   }
   Writer writer;
   writer.plain(kMagic);
@@ -409,7 +402,7 @@ World World::load(std::span<const std::byte> bytes) {
   for (ColliderDesc& desc : saved.colliders) world.impl_->add(std::move(desc));
   for (SavedCloth& cloth : saved.cloths) {
     const ClothId id = world.impl_->add(std::move(cloth.desc));
-    for (const Stiffened& s : cloth.stiffened) world.stiffen(id, s.particles, s.factor);
+    for (const Stiffening& s : cloth.stiffened) world.stiffen(id, s.particles, s.factor);
     world.impl_->cloths.back().is_soft = cloth.is_soft;
   }
   for (const engine::ContactRule& rule : saved.rules) apply(rule, world);

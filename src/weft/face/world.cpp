@@ -218,7 +218,7 @@ void World::set_fabric(ClothId cloth, const std::variant<Fabric, Springs>& fabri
   desc.fabric = fabric;
   std::vector<std::string> warnings;
   engine::ClothSubstance made = engine::build_substance(desc, own.rest, who("cloth", desc.name), warnings);
-  for (const Impl::Stiffening& s : own.stiffened)
+  for (const Stiffening& s : own.stiffened)
     engine::multiply_spring_factors(*own.rest.topology, s.particles, s.factor, made.material.spring_factors);
   impl_->world.set_material(cloth, made.material, made.elements);
   own.desc = std::move(desc);

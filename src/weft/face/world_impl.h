@@ -13,13 +13,13 @@
 
 namespace weft {
 
-struct World::Impl {
-  /// Springs that are stiffer than the cloth's others, or softer.
-  struct Stiffening {
-    std::vector<int> particles;
-    double factor = 1;
-  };
+/// Springs that are stiffer than a cloth's others, or softer.
+struct Stiffening {
+  std::vector<int> particles;
+  double factor = 1;
+};
 
+struct World::Impl {
   struct Cloth {
     ClothDesc desc;
     engine::RestShape rest;
