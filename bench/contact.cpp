@@ -10,7 +10,7 @@
 
 #include "bench/machine.h"
 #include "weft/lab/contact_experiments.h"
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -43,14 +43,13 @@ RunReport bench_scene(const std::string& name, int frames, int threads) {
   FrameTimes times;
   double spent = 0;
   const RunOptions options{.frames = frames > 0 ? std::min(frames, scene.num_frames()) : scene.num_frames(),
-                           .threads = threads,
-                           .record_animation = false};
-  const RunReport report = run_scene(scene, options, [&](const Progress& progress) {
-                             times.worst = std::max(times.worst, 1000 * (progress.seconds_spent - spent));
-                             spent = progress.seconds_spent;
-                             times.mean = 1000 * spent / progress.frame;
-                             return true;
-                           }).report;
+                           .threads = threads};
+  const RunReport report = run_scene(scene, options, {}, [&](const Progress& progress) {
+    times.worst = std::max(times.worst, 1000 * (progress.seconds_spent - spent));
+    spent = progress.seconds_spent;
+    times.mean = 1000 * spent / progress.frame;
+    return true;
+  });
   const std::string depth =
       report.penetration_max ? fmt::format("{:.2g}", *report.penetration_max) : std::string("–");
   fmt::print("| {} | {} | {} | {} | {:.1f} | {:.1f} | {} | {} | {} | {} | {} | {} |\n", name,
@@ -348,11 +347,11 @@ EnergyRise find_energy_rise(const RunReport& report) {
 /// `frames` 0: all.
 void bench_energy_of(const char* name, const char* damping, const Overrides& overrides, int frames) {
   SceneDesc scene = read_scene(find_scene(name), overrides);
-  const RunOptions options{.frames = frames > 0 ? frames : scene.num_frames(), .record_animation = false};
+  const RunOptions options{.frames = frames > 0 ? frames : scene.num_frames()};
   scene.steps_per_frame = 1;
-  const RunReport coarse = run_scene(scene, options).report;
+  const RunReport coarse = run_scene(scene, options);
   scene.steps_per_frame = kFineSteps;
-  const RunReport fine = run_scene(scene, options).report;
+  const RunReport fine = run_scene(scene, options);
   const EnergyRise worst = find_energy_rise(coarse);
   fmt::print("| {} | {} | {} | {:.3g} | {} | {:.2f} % | {:+.1f} % | {:+.1f} % |\n", name, damping,
              coarse.frames, worst.rise, worst.frame, worst.fallen > 0 ? 100 * worst.rise / worst.fallen : 0.0,

@@ -6,7 +6,7 @@
 
 #include "tools/wardrobe/wardrobe.h"
 #include "weft/error.h"
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine::bench {
@@ -38,11 +38,9 @@ double mean(const std::vector<int>& values) {
 bool add_row(const std::string& name, const std::filesystem::path& file, const GarmentBenchOptions& options) {
   RunReport report;
   try {
-    report = run_scene(read_scene(file), {.frames = options.frames,
-                                          .threads = options.threads,
-                                          .record_animation = false,
-                                          .check_passages = false})
-                 .report;
+    report = run_scene(
+        read_scene(file),
+        {.frames = options.frames, .threads = options.threads, .check_passages = false});
   } catch (const InputError& error) {
     std::string why = error.what();
     std::replace(why.begin(), why.end(), '\n', ' ');

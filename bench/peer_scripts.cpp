@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "weft/scene/scene_library.h"
+
 namespace weft::engine::bench {
 namespace {
 
@@ -27,7 +29,7 @@ std::string program_of(const char* variable, const char* usual) {
 }
 
 std::string command_of(const PeerScript& script) {
-  const std::string file = quote(std::string(WEFT_PEERS) + "/" + script.file);
+  const std::string file = quote((scene_folder().parent_path() / "tools" / "peers" / script.file).string());
   if (script.interpreter == Interpreter::python) return program_of("WEFT_PYTHON", "python3") + " " + file;
   return program_of("WEFT_BLENDER", "blender") +
          " --background --factory-startup --threads 1 --python-exit-code 1 --python " + file + " --";

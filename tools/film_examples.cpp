@@ -23,21 +23,21 @@ class Recorder {
     if (filmed_ == nullptr) {
       filmed_ = &world;
       scene_.cloths.resize(static_cast<std::size_t>(world.num_cloths()));
-      film_ = std::make_unique<weft::engine::Film>(scene_, weft::WorldAccess::engine(world));
+      animation_ = weft::engine::make_animation(scene_, weft::WorldAccess::engine(world));
     }
-    if (&world == filmed_) film_->add_frame();
+    if (&world == filmed_)
+      weft::engine::append_frame(weft::engine::capture_frame(weft::WorldAccess::engine(world)), animation_);
   }
 
   void write(const std::filesystem::path& file) {
-    weft::engine::write_glb(file, film_->take());
-    film_.reset();
+    weft::engine::write_glb(file, animation_);
     filmed_ = nullptr;
   }
 
  private:
   weft::engine::SceneDesc scene_;
   const weft::World* filmed_ = nullptr;
-  std::unique_ptr<weft::engine::Film> film_;
+  weft::engine::Animation animation_;
 } recorder;
 
 class RecordedWorld : public weft::World {

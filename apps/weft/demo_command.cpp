@@ -8,6 +8,7 @@
 #include "run_command.h"
 #include "summary.h"
 #include "view_command.h"
+#include "weft/run/film.h"
 #include "weft/render/video.h"
 
 namespace weft::engine::app {
@@ -21,13 +22,12 @@ const std::vector<std::string> kScenes = {
     "paper/fig5_falling",    "paper/fig5_falling_real",    "paper/fig6_ball",     "paper/fig6_ball_real",
 };
 
-const PictureSize kSize{640, 360};
+const PictureSize kSize{1280, 720};
 constexpr int kEvery = 2;  // frames of the videos
 
-/// A picture of the last frame and a video beside the animation.
-void paint(const FinishedRun& run) {
-  const fs::path folder = run.animation_file.parent_path();
-  Painter painter(run.animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
+/// A picture of the last frame and a video, in the run's folder.
+void paint(const Animation& animation, const fs::path& folder) {
+  Painter painter(animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
   painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
   const fs::path video = folder / "video.mp4";
   require_ffmpeg(video);
@@ -37,10 +37,10 @@ void paint(const FinishedRun& run) {
 /// Pictures are no reason to stop: what prevents them is said once.
 class Pictures {
  public:
-  void paint(const FinishedRun& run) {
+  void paint(const Animation& animation, const fs::path& folder) {
     if (!trouble_.empty()) return;
     try {
-      app::paint(run);
+      app::paint(animation, folder);
     } catch (const std::runtime_error& error) {
       trouble_ = error.what();
     }
@@ -71,13 +71,14 @@ int run_demo(const fs::path& out) {
   fmt::print("The paper's four scenes, and each again with real fabric (_real).\n\n{}", table_head());
   Pictures pictures;
   for (const std::string& scene : kScenes) {
-    const FinishedRun run = run_to_files({.scene = scene, .out = out / scene});
+    FilmSink film;
+    const FinishedRun run = run_to_files({.scene = scene, .out = out / scene}, {&film});
     fmt::print("{}", table_line(run.report));
     std::fflush(stdout);
     for (const std::string& warning : run.report.warnings) fmt::print("  warning: {}\n", warning);
     if (run.report.outcome == RunOutcome::failed) fmt::print("  failed at {}\n", run.report.failure);
     if (run.report.outcome != RunOutcome::done) return exit_code_of(run.report.outcome);
-    pictures.paint(run);
+    pictures.paint(film.animation(), out / scene);
     if (interrupted()) return kInterrupted;
   }
   fmt::print(

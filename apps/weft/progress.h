@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 
 namespace weft::engine::app {
 

@@ -13,7 +13,8 @@
 #include "weft/core/staged_file.h"
 #include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
-#include "weft/run/runner.h"
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -68,14 +69,15 @@ class Source {
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
     if (options.frames == 0) options.frames = 1;
     ProgressBar bar(scene_->name);
-    RunResult result = run_scene(*scene_, options, [&](const Progress& progress) {
+    FilmSink film;
+    const RunReport report = run_scene(*scene_, options, {&film}, [&](const Progress& progress) {
       bar.update(progress);
       return !interrupted();
     });
     bar.clear();
-    for (const std::string& warning : result.report.warnings) say("warning: " + warning);
-    if (result.report.outcome == RunOutcome::failed) say("the simulation failed at " + result.report.failure);
-    return {std::move(result.animation), result.report.outcome};
+    for (const std::string& warning : report.warnings) say("warning: " + warning);
+    if (report.outcome == RunOutcome::failed) say("the simulation failed at " + report.failure);
+    return {film.animation(), report.outcome};
   }
 
   std::vector<SpringsToDraw> springs() const {

@@ -5,32 +5,33 @@
 #include <optional>
 #include <string>
 
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine::app {
 
 struct RunRequest {
   std::string scene;             // a file, or the name of a shipped scene
-  std::filesystem::path out;     // folder for animation.glb and report.json; empty: out/ and the scene's name
+  std::filesystem::path out;     // folder of the results; empty: out/ and the scene's name
   std::filesystem::path report;  // a second copy of the report; empty: none
   std::optional<int> frames;
   int threads = 0;             // 0: all processors
   bool audit = false;          // of energy, in the report
   bool strict = false;         // problems are an error
   bool check_passages = true;  // within steps
+  bool glb = true, obj = false;  // animation.glb; the folder obj, a file per cloth and frame
   Overrides overrides;
 };
 
 struct FinishedRun {
   RunReport report;
-  Animation animation;
-  std::filesystem::path animation_file, report_file;
+  std::vector<std::filesystem::path> files;  // that were written, the report last
 };
 
 /// Reads, simulates with a progress bar, replaces the results of an earlier run. Throws InputError for bad
 /// input and unwritable places, before simulating where it can; then the earlier results stay.
-FinishedRun run_to_files(const RunRequest& request);
+/// `sinks` get the frames too.
+FinishedRun run_to_files(const RunRequest& request, const std::vector<FrameSink*>& sinks = {});
 
 /// The exit code that an outcome deserves.
 int exit_code_of(RunOutcome outcome);

@@ -25,15 +25,10 @@ ViewSide::ViewSide(const SceneDesc& scene, int threads)
 
 bool ViewSide::update() {
   if (!live_.take_newest(frame_)) return false;
-  for (std::size_t c = 0; c < frame_.cloths.size(); ++c) {
-    AnimatedMesh& cloth = animation_.cloths[c];
-    cloth.frames[0] = frame_.cloths[c];
-    cloth.triangles = frame_.topologies[c]->mesh.triangles;
-  }
-  for (std::size_t b = 0; b < frame_.bodies.size(); ++b) {
-    animation_.bodies[b].poses = {frame_.bodies[b]};
-    animation_.bodies[b].frames = frame_.body_frames[b];
-  }
+  animation_ = without_frames(animation_);
+  append_frame(frame_.meshes, animation_);
+  for (std::size_t c = 0; c < frame_.topologies.size(); ++c)
+    animation_.cloths[c].triangles = frame_.topologies[c]->mesh.triangles;
   return true;
 }
 
@@ -53,12 +48,12 @@ std::optional<ViewSide::ClothHit> ViewSide::pick(const Ray& ray) const {
   // Cloths come first among the meshes.
   const Picture picture = ScenePictures(animation_, {.ground = ground_}).at(0, {});
   const std::optional<Hit> hit = find_first_hit(picture.meshes, ray);
-  if (!hit || hit->mesh >= static_cast<int>(frame_.cloths.size())) return std::nullopt;
+  if (!hit || hit->mesh >= static_cast<int>(frame_.meshes.cloths.size())) return std::nullopt;
   return ClothHit{{hit->mesh, hit->triangle, hit->weights}, hit->point};
 }
 
 Vec3 ViewSide::center() const {
-  const std::vector<float>& positions = frame_.cloths[0];
+  const std::vector<float>& positions = frame_.meshes.cloths[0];
   const Eigen::Map<const Eigen::Matrix3Xf> points(positions.data(), 3,
                                                   static_cast<Eigen::Index>(positions.size() / 3));
   return points.cast<double>().rowwise().mean();

@@ -9,7 +9,7 @@
 
 #include "tests/app/background.h"
 #include "tests/app/program.h"
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 
 namespace weft::engine {
 namespace {

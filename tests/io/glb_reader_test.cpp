@@ -1,5 +1,7 @@
 #include "weft/io/glb_reader.h"
 
+#include "weft/io/glb_writer.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

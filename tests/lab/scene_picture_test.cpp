@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/run/runner.h"
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -14,7 +15,9 @@ Animation simulate(const char* scene, int frames) {
   const SceneDesc desc =
       read_scene(find_scene(scene),
                  {"cloth[0].grid.cells=[6, 6]", "solver.steps_per_frame=2", "solver.integrator=paper_fixed"});
-  return run_scene(desc, {.frames = frames}).animation;
+  FilmSink film;
+  run_scene(desc, {.frames = frames}, {&film});
+  return film.animation();
 }
 
 TEST(ScenePictures, ShowClothAndBodies) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
@@ -28,7 +28,7 @@ SceneDesc silk_on_a_ball() {
 }
 
 TEST(Collapse, SilkOnABallKeepsItsTrianglesWide) {
-  const RunReport report = run_scene(silk_on_a_ball(), {.frames = 40, .record_animation = false}).report;
+  const RunReport report = run_scene(silk_on_a_ball(), {.frames = 40});
   EXPECT_EQ(report.outcome, RunOutcome::done);
   EXPECT_EQ(report.intersections, 0);
   ASSERT_EQ(report.min_stretch.size(), 40u);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
@@ -13,7 +13,7 @@ namespace {
 void expect_held(const std::string& name, int frames, const Overrides& overrides) {
   const SceneDesc scene =
       read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/contact/" + name + ".toml", overrides);
-  const RunReport report = run_scene(scene, {.frames = frames, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = frames});
   EXPECT_EQ(report.outcome, RunOutcome::done);
   EXPECT_EQ(report.frames, frames);
   EXPECT_EQ(report.intersections, 0);

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "weft/error.h"
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
@@ -39,14 +39,14 @@ LiveFrame wait_for_steps(LiveSimulation& live, std::int64_t steps) {
 }
 
 std::uint64_t hash_of_run(const SceneDesc& scene, int frames) {
-  const RunResult result = run_scene(scene, {.frames = frames, .record_animation = false});
-  return std::stoull(result.report.state_hash, nullptr, 16);
+  const RunReport report = run_scene(scene, {.frames = frames});
+  return std::stoull(report.state_hash, nullptr, 16);
 }
 
 double mean_height(const LiveFrame& frame) {
   double sum = 0;
-  for (std::size_t i = 1; i < frame.cloths[0].size(); i += 3) sum += frame.cloths[0][i];
-  return 3 * sum / static_cast<double>(frame.cloths[0].size());
+  for (std::size_t i = 1; i < frame.meshes.cloths[0].size(); i += 3) sum += frame.meshes.cloths[0][i];
+  return 3 * sum / static_cast<double>(frame.meshes.cloths[0].size());
 }
 
 TEST(Live, PlaysInRealTimeAndHasTheBitsOfARunHoweverOftenItIsPausedAndLookedAt) {
@@ -73,9 +73,9 @@ TEST(Live, StandsStillUntilToldToPlay) {
   const LiveFrame frame = wait_for(live, [](const LiveFrame&) { return true; });
   EXPECT_EQ(frame.status.steps, 0);
   EXPECT_FALSE(frame.status.playing);
-  EXPECT_EQ(frame.cloths[0].size(), 3u * 13 * 13);
-  EXPECT_EQ(frame.bodies.size(), 1u);
-  EXPECT_EQ(live.start().cloths[0].frames[0], frame.cloths[0]);
+  EXPECT_EQ(frame.meshes.cloths[0].size(), 3u * 13 * 13);
+  EXPECT_EQ(frame.meshes.poses.size(), 1u);
+  EXPECT_EQ(live.start().cloths[0].frames[0], frame.meshes.cloths[0]);
 }
 
 TEST(Live, MakesSingleStepsAndPausesForThem) {
@@ -126,7 +126,7 @@ TEST(Live, SpringModelsChangeWhereTheClothIs) {
   EXPECT_EQ(before.status.model, "simplified");
   live.set_model(SpringModel::basic);
   const LiveFrame after = wait_for(live, [](const LiveFrame& f) { return f.status.model == "basic"; });
-  EXPECT_EQ(after.cloths, before.cloths);
+  EXPECT_EQ(after.meshes.cloths, before.meshes.cloths);
   EXPECT_GT(after.topologies[0]->springs.size(), before.topologies[0]->springs.size());
   live.step(30);
   EXPECT_EQ(wait_for_steps(live, 60).status.failure, "");
@@ -143,7 +143,7 @@ TEST(Live, WindBlowsWhileItIsSet) {
   const LiveFrame blown = wait_for_steps(live, 60);
   EXPECT_EQ(blown.status.wind.velocity.x(), 4);
   EXPECT_GT(blown.status.wind.drag, 0) << "the scene has no drag of its own";
-  EXPECT_GT(blown.cloths[0][0], live.start().cloths[0].frames[0][0]);
+  EXPECT_GT(blown.meshes.cloths[0][0], live.start().cloths[0].frames[0][0]);
   live.set_wind(std::nullopt);
   live.step();
   EXPECT_EQ(wait_for_steps(live, 61).status.wind.drag, 0);
@@ -175,7 +175,7 @@ TEST(Live, AStepThatFailsPausesTellsWhyAndKeepsTheLastGoodState) {
   EXPECT_FALSE(frame.status.playing);
   EXPECT_NE(frame.status.failure.find("sail"), std::string::npos);
   EXPECT_NE(frame.status.failure.find("substeps"), std::string::npos);
-  for (const float x : frame.cloths[0]) ASSERT_TRUE(std::isfinite(x));
+  for (const float x : frame.meshes.cloths[0]) ASSERT_TRUE(std::isfinite(x));
   // Another integrator goes on from there.
   live.set_integrator("implicit_euler");
   live.reset();

@@ -11,6 +11,8 @@
 namespace weft::engine {
 namespace {
 
+namespace fs = std::filesystem;
+
 const std::filesystem::path kScenes = WEFT_SOURCE_DIR "/scenes";
 
 /// $WEFT_SCENES while the test runs.
@@ -79,6 +81,46 @@ TEST(NearestName, KeepsSilentWhereNothingIsNear) {
   EXPECT_EQ(find_nearest("colour", names), "color");
   EXPECT_EQ(find_nearest("h", names), "");
   EXPECT_EQ(find_nearest("elephant", names), "");
+}
+
+/// Folders and empty files below a test's own folder.
+class SceneFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+
+  fs::path folder(const char* name) const {
+    fs::create_directories(root_ / name);
+    return root_ / name;
+  }
+
+  fs::path file(const char* name) const {
+    fs::create_directories((root_ / name).parent_path());
+    std::ofstream(root_ / name) << ' ';
+    return root_ / name;
+  }
+
+  const fs::path root_ = fs::path(WEFT_OUTPUT_DIR) / "scene_folder";
+};
+
+TEST_F(SceneFolder, IsBesideTheLibraryBeforeTheProgram) {
+  const fs::path library = file("a/lib/x86_64-linux-gnu/libweft.so"), program = file("b/bin/app");
+  const fs::path of_program = folder("b/share/weft/scenes");
+  EXPECT_EQ(find_scene_folder(library, program), of_program);
+  const fs::path of_library = folder("a/share/weft/scenes");
+  EXPECT_EQ(find_scene_folder(library, program), of_library);
+  EXPECT_EQ(find_scene_folder({}, program), of_program);
+}
+
+TEST_F(SceneFolder, OfTheSourceTreeIsTheLastResort) {
+  const fs::path program = file("tree/build/release/bin/weft");
+  folder("tree/scenes");
+  file("tree/include/weft/weft.h");
+  EXPECT_EQ(find_scene_folder(program, program), root_ / "tree/scenes");
+  folder("tree/build/share/weft/scenes");
+  EXPECT_EQ(find_scene_folder(program, program), root_ / "tree/build/share/weft/scenes");
 }
 
 }  // namespace

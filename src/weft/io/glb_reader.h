@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 
 namespace weft::engine {
 

@@ -7,8 +7,11 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
+#include "weft/core/spool_file.h"
 #include "weft/error.h"
 #include "weft/mesh/vertex_normals.h"
 
@@ -31,14 +34,6 @@ constexpr Layout kTimes{TINYGLTF_TYPE_SCALAR, 1, 0, true};
 constexpr Layout kWeights{TINYGLTF_TYPE_SCALAR, 1, 0, false};
 constexpr Layout kTranslations{TINYGLTF_TYPE_VEC3, 3, 0, false};
 constexpr Layout kRotations{TINYGLTF_TYPE_VEC4, 4, 0, false};
-
-size_t num_frames(const Animation& animation) {
-  size_t count = 1;
-  for (const AnimatedMesh& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
-  for (const RigidMesh& body : animation.bodies)
-    count = std::max({count, body.poses.size(), body.frames.size()});
-  return count;
-}
 
 // ---- Checks ----
 
@@ -65,43 +60,20 @@ void require_finite(const std::string& name, size_t frame, std::span<const float
                    std::to_string(frame));
 }
 
-void require_valid(const AnimatedMesh& cloth, size_t frames) {
-  require_count(cloth.name, "frames", cloth.frames.size(), frames);
-  const size_t num_floats = cloth.frames[0].size();
-  for (size_t k = 0; k < frames; ++k) {
-    require_count(cloth.name, "coordinates in a frame", cloth.frames[k].size(), num_floats);
-    require_finite(cloth.name, k, cloth.frames[k]);
-  }
-  require_triangles(cloth.name, cloth.triangles, num_floats / 3);
-  if (cloth.fabric_coordinates.empty()) return;
-  require_count(cloth.name, "fabric coordinates", cloth.fabric_coordinates.size(), num_floats / 3 * 2);
-  require_finite(cloth.name, 0, cloth.fabric_coordinates);
+void require_valid(const RigidMesh::Pose& pose, const std::string& name, size_t frame) {
+  if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) return;
+  throw InputError("body '" + name + "' has a pose that is not finite in frame " + std::to_string(frame));
 }
 
-void require_valid(const RigidMesh& body, size_t frames) {
-  if (body.poses.size() != 1) require_count(body.name, "poses", body.poses.size(), frames);
-  require_triangles(body.name, body.mesh.triangles, body.mesh.positions.size());
-  if (!body.frames.empty()) require_count(body.name, "frames", body.frames.size(), frames);
-  for (size_t k = 0; k < body.frames.size(); ++k) {
-    require_count(body.name, "coordinates in a frame", body.frames[k].size(), 3 * body.mesh.positions.size());
-    require_finite(body.name, k, body.frames[k]);
+/// Every mesh has all frames, or a body one pose.
+void require_equal_counts(const Animation& animation) {
+  const size_t frames = count_frames(animation);
+  for (const AnimatedMesh& cloth : animation.cloths)
+    require_count(cloth.name, "frames", cloth.frames.size(), frames);
+  for (const RigidMesh& body : animation.bodies) {
+    if (body.poses.size() != 1) require_count(body.name, "poses", body.poses.size(), frames);
+    if (!body.frames.empty()) require_count(body.name, "frames", body.frames.size(), frames);
   }
-  for (size_t k = 0; k < body.poses.size(); ++k) {
-    const auto& [translation, rotation] = body.poses[k];
-    if (!translation.allFinite() || !rotation.coeffs().allFinite()) {
-      throw InputError("body '" + body.name + "' has a pose that is not finite in frame " +
-                       std::to_string(k));
-    }
-  }
-}
-
-void require_valid(const Animation& animation) {
-  if (animation.cloths.empty() && animation.bodies.empty()) throw InputError("the animation has no meshes");
-  if (!(animation.frames_per_second > 0))
-    throw InputError("the animation needs more than 0 frames per second");
-  const size_t frames = num_frames(animation);
-  for (const AnimatedMesh& cloth : animation.cloths) require_valid(cloth, frames);
-  for (const RigidMesh& body : animation.bodies) require_valid(body, frames);
 }
 
 // ---- Geometry ----
@@ -172,148 +144,223 @@ tinygltf::Value extras_of(const RigidMesh& body) {
   return tinygltf::Value(Extras{{"weft", tinygltf::Value(std::move(weft))}});
 }
 
-// ---- The glTF document ----
+}  // namespace
 
-class GlbBuilder {
+/// Builds the document while the bytes of its buffer go to disk.
+class GlbWriter::Builder {
  public:
-  explicit GlbBuilder(const Animation& animation)
-      : animation_(animation), num_frames_(num_frames(animation)) {}
-
-  tinygltf::Model build() {
+  Builder(StagedFile& file, const Animation& meshes)
+      : file_(file), meshes_(without_frames(meshes)), bytes_(file.file().parent_path()) {
+    if (meshes_.cloths.empty() && meshes_.bodies.empty()) throw InputError("the animation has no meshes");
+    if (!(meshes_.frames_per_second > 0))
+      throw InputError("the animation needs more than 0 frames per second");
     model_.asset.version = "2.0";
     model_.asset.generator = "Weft";
+    model_.asset.extras = asset_extras();
     model_.buffers.emplace_back();
-    model_.buffers[0].data.reserve(estimate_size());
-    add_scene();
-    add_clock();
-    for (const AnimatedMesh& cloth : animation_.cloths) add_cloth(cloth);
-    for (const RigidMesh& body : animation_.bodies) add_body(body);
-    if (is_moving()) model_.animations.push_back(std::move(motion_));
-    return std::move(model_);
+    model_.scenes.emplace_back().name = meshes_.title;
+    model_.defaultScene = 0;
+    poses_.resize(meshes_.bodies.size());
+  }
+
+  void add_frame(const AnimationFrame& frame) {
+    for (size_t c = 0; c < meshes_.cloths.size(); ++c) {
+      if (num_frames_ == 0) add_cloth(meshes_.cloths[c], frame.cloths[c]);
+      add_vertices(meshes_.cloths[c].name, meshes_.cloths[c].triangles, frame.cloths[c], meshes_in_file_[c]);
+    }
+    for (size_t b = 0; b < meshes_.bodies.size(); ++b) {
+      const RigidMesh& body = meshes_.bodies[b];
+      const std::vector<float>& moved = frame.body_vertices[b];
+      MeshInFile& own = num_frames_ == 0 ? add_body(body, !moved.empty()) : meshes_in_file_[num_cloths() + b];
+      require_valid(frame.poses[b], body.name, num_frames_);
+      poses_[b].push_back(frame.poses[b]);
+      if (own.is_moving)
+        add_vertices(body.name, body.mesh.triangles, moved, own);
+      else if (num_frames_ == 0)
+        add_vertices(body.name, body.mesh.triangles, flatten(body.mesh.positions), own);
+    }
+    ++num_frames_;
+    require_space();
+  }
+
+  void finish() {
+    if (num_frames_ == 0) throw InputError("the animation has no frames");
+    add_motion();
+    require_space();
+    write_document();
+    file_.finish();
   }
 
  private:
-  bool is_moving() const { return num_frames_ > 1; }
+  /// A mesh of the document, and what its further frames are compared with.
+  struct MeshInFile {
+    int mesh = -1, node = -1;
+    bool is_moving = false;  // a frame is a morph target
+    std::vector<float> base, normals;
+  };
 
-  /// The bytes of the frames, which are nearly all of the file.
-  size_t estimate_size() const {
-    size_t num_floats = num_frames_ * num_frames_;
-    for (const AnimatedMesh& cloth : animation_.cloths) {
-      num_floats += 2 * num_frames_ * cloth.frames[0].size() + 3 * cloth.triangles.size();
-    }
-    return num_floats * sizeof(float);
-  }
-
-  void add_scene() {
-    tinygltf::Scene scene;
-    if (!animation_.title.empty()) {
-      scene.name = animation_.title;
-    }
-    model_.asset.extras = asset_extras();
-    model_.scenes.push_back(std::move(scene));
-    model_.defaultScene = 0;
-  }
+  size_t num_cloths() const { return meshes_.cloths.size(); }
 
   tinygltf::Value asset_extras() const {
     Extras extras;
-    if (!animation_.title.empty()) extras["title"] = tinygltf::Value(animation_.title);
+    if (!meshes_.title.empty()) extras["title"] = tinygltf::Value(meshes_.title);
     tinygltf::Value::Array pairs;
-    for (const auto& [a, b] : animation_.passing)
+    for (const auto& [a, b] : meshes_.passing)
       pairs.emplace_back(tinygltf::Value::Array{tinygltf::Value(a), tinygltf::Value(b)});
     if (!pairs.empty()) extras["passing"] = tinygltf::Value(std::move(pairs));
     return extras.empty() ? tinygltf::Value() : tinygltf::Value(std::move(extras));
   }
 
-  /// The key times, and the weights that all cloths share: frame k shows morph target k - 1 and no other.
-  void add_clock() {
-    if (!is_moving()) return;
-    std::vector<float> times(num_frames_);
-    for (size_t k = 0; k < num_frames_; ++k) {
-      times[k] = static_cast<float>(static_cast<double>(k) / animation_.frames_per_second);
-    }
-    times_ = add_floats(times, kTimes);
-    const bool is_any_deforming =
-        !animation_.cloths.empty() || std::any_of(animation_.bodies.begin(), animation_.bodies.end(),
-                                                  [](const RigidMesh& body) { return !body.frames.empty(); });
-    if (!is_any_deforming) return;
-    const size_t num_targets = num_frames_ - 1;
-    std::vector<float> weights(num_frames_ * num_targets, 0.0f);
-    for (size_t k = 1; k < num_frames_; ++k) weights[k * num_targets + k - 1] = 1;
-    weights_sampler_ = add_sampler(add_floats(weights, kWeights));
+  void add_cloth(const AnimatedMesh& cloth, const std::vector<float>& positions) {
+    require_triangles(cloth.name, cloth.triangles, positions.size() / 3);
+    MeshInFile& own = add_mesh(cloth.name, cloth.triangles, cloth.color, extras_of(cloth));
+    own.is_moving = true;
+    if (cloth.fabric_coordinates.empty()) return;
+    require_count(cloth.name, "fabric coordinates", cloth.fabric_coordinates.size(),
+                  positions.size() / 3 * 2);
+    require_finite(cloth.name, 0, cloth.fabric_coordinates);
+    primitive(own).attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
   }
 
-  void add_cloth(const AnimatedMesh& cloth) {
-    tinygltf::Mesh mesh;
-    tinygltf::Primitive primitive = make_primitive(cloth.triangles, add_material(cloth.name, cloth.color));
-    add_frames(cloth.triangles, cloth.frames, primitive);
-    if (!cloth.fabric_coordinates.empty())
-      primitive.attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
-    mesh.weights.assign(num_frames_ - 1, 0.0);
-    mesh.primitives.push_back(std::move(primitive));
-    const int node = add_node(cloth.name, std::move(mesh));
-    model_.nodes[node].extras = extras_of(cloth);
-    if (is_moving()) add_channel(node, "weights", weights_sampler_);
+  MeshInFile& add_body(const RigidMesh& body, bool is_deforming) {
+    require_triangles(body.name, body.mesh.triangles, body.mesh.positions.size());
+    MeshInFile& own = add_mesh(body.name, body.mesh.triangles, body.color, extras_of(body));
+    own.is_moving = is_deforming;
+    return own;
   }
 
   /// The first frame as the vertices, the others as morph targets.
-  void add_frames(const std::vector<Triangle>& triangles, const std::vector<std::vector<float>>& frames,
-                  tinygltf::Primitive& primitive) {
-    const auto& base = frames[0];
-    const auto base_normals = compute_vertex_normals(triangles, base);
-    primitive.attributes = add_vertices(base, base_normals);
-    for (size_t k = 1; k < num_frames_; ++k) {
-      const auto normals = compute_vertex_normals(triangles, frames[k]);
-      primitive.targets.push_back(
-          add_vertices(difference(frames[k], base), difference(normals, base_normals)));
+  void add_vertices(const std::string& name, const std::vector<Triangle>& triangles,
+                    const std::vector<float>& positions, MeshInFile& own) {
+    require_finite(name, num_frames_, positions);
+    std::vector<float> normals = compute_vertex_normals(triangles, positions);
+    if (num_frames_ == 0) {
+      primitive(own).attributes.merge(write_vertices(positions, normals));
+      own.base = positions;
+      own.normals = std::move(normals);
+      return;
+    }
+    require_count(name, "coordinates in a frame", positions.size(), own.base.size());
+    primitive(own).targets.push_back(
+        write_vertices(difference(positions, own.base), difference(normals, own.normals)));
+  }
+
+  // ---- The end ----
+
+  bool is_animated() const { return num_frames_ > 1; }
+
+  void add_motion() {
+    if (is_animated()) {
+      std::vector<float> times(num_frames_);
+      for (size_t k = 0; k < num_frames_; ++k)
+        times[k] = static_cast<float>(static_cast<double>(k) / meshes_.frames_per_second);
+      times_ = add_floats(times, kTimes);
+    }
+    add_weights();
+    for (size_t b = 0; b < meshes_.bodies.size(); ++b) add_poses(meshes_in_file_[num_cloths() + b], poses_[b]);
+    if (is_animated()) model_.animations.push_back(std::move(motion_));
+  }
+
+  /// Of morph targets, for all meshes in common: frame k shows target k − 1 and no other.
+  void add_weights() {
+    const size_t num_targets = num_frames_ - 1;
+    const bool has_targets =
+        std::any_of(meshes_in_file_.begin(), meshes_in_file_.end(), [](const auto& m) { return m.is_moving; });
+    if (!has_targets || !is_animated()) return;
+    std::vector<float> row(num_targets);
+    const size_t begin = bytes_.size();
+    for (size_t k = 0; k < num_frames_; ++k) {
+      if (k > 0) row[k - 1] = 1;
+      bytes_.append(row.data(), num_targets * sizeof(float));
+      if (k > 0) row[k - 1] = 0;
+    }
+    const int sampler = add_sampler(add_accessor(begin, num_frames_ * num_targets, kWeights));
+    for (const MeshInFile& own : meshes_in_file_) {
+      if (!own.is_moving) continue;
+      model_.meshes[own.mesh].weights.assign(num_targets, 0.0);
+      add_channel(own.node, "weights", sampler);
     }
   }
 
-  void add_body(const RigidMesh& body) {
-    tinygltf::Mesh mesh;
-    mesh.primitives.push_back(make_primitive(body.mesh.triangles, add_material(body.name, body.color)));
-    if (body.frames.empty()) {
-      const auto positions = flatten(body.mesh.positions);
-      require_finite(body.name, 0, positions);
-      mesh.primitives[0].attributes =
-          add_vertices(positions, compute_vertex_normals(body.mesh.triangles, positions));
-    } else {
-      add_frames(body.mesh.triangles, body.frames, mesh.primitives[0]);
-      mesh.weights.assign(num_frames_ - 1, 0.0);
-    }
-    const int node = add_node(body.name, std::move(mesh));
-    model_.nodes[node].extras = extras_of(body);
-    if (!body.frames.empty() && is_moving()) add_channel(node, "weights", weights_sampler_);
-    const auto& [translation, rotation] = body.poses[0];
-    const Eigen::Vector4d xyzw = rotation.normalized().coeffs();
-    model_.nodes[node].translation.assign(translation.begin(), translation.end());
-    model_.nodes[node].rotation.assign(xyzw.begin(), xyzw.end());
-    if (body.poses.size() > 1) add_poses(node, body.poses);
-  }
-
-  void add_poses(int node, const std::vector<RigidMesh::Pose>& poses) {
+  /// A body that stands still has its pose in its node alone.
+  void add_poses(const MeshInFile& own, const std::vector<RigidMesh::Pose>& poses) {
+    const auto& [translation, rotation] = poses[0];
+    const Eigen::Vector4d first = rotation.normalized().coeffs();
+    model_.nodes[own.node].translation.assign(translation.begin(), translation.end());
+    model_.nodes[own.node].rotation.assign(first.begin(), first.end());
+    if (std::all_of(poses.begin(), poses.end(), [&](const auto& pose) { return pose == poses[0]; })) return;
     std::vector<float> translations, rotations;
-    for (const auto& [translation, rotation] : poses) {
-      const Eigen::Vector4d xyzw = rotation.normalized().coeffs();
-      for (const double t : translation) translations.push_back(static_cast<float>(t));
+    for (const auto& [moved, turned] : poses) {
+      const Eigen::Vector4d xyzw = turned.normalized().coeffs();
+      for (const double t : moved) translations.push_back(static_cast<float>(t));
       for (const double q : xyzw) rotations.push_back(static_cast<float>(q));
     }
-    add_channel(node, "translation", add_sampler(add_floats(translations, kTranslations)));
-    add_channel(node, "rotation", add_sampler(add_floats(rotations, kRotations)));
+    add_channel(own.node, "translation", add_sampler(add_floats(translations, kTranslations)));
+    add_channel(own.node, "rotation", add_sampler(add_floats(rotations, kRotations)));
   }
 
-  // Parts of the document; each add_ function returns the index of the new part.
+  void require_space() const {
+    if (bytes_.size() <= max_glb_size()) return;
+    throw InputError(file_.file().string() + " cannot be written: " + std::to_string(num_frames_) +
+                     " frames are more than the 4 GiB that glTF allows; write fewer frames");
+  }
 
-  int add_node(const std::string& name, tinygltf::Mesh mesh) {
+  /// A header, the JSON chunk and the binary chunk: glTF 2.0, section 4.4.
+  void write_document() {
+    std::ostringstream alone;  // tinygltf's own file, whose buffer is empty
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, alone, false, true);
+    const std::string file = std::move(alone).str();
+    std::uint32_t length = 0;
+    constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
+    std::memcpy(&length, file.data() + kLengthAt, sizeof length);
+    nlohmann::json document = nlohmann::json::parse(file.begin() + kJsonAt, file.begin() + kJsonAt + length);
+    document["buffers"][0]["byteLength"] = bytes_.size();
+    std::string json = document.dump();
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+    const auto json_size = static_cast<std::uint32_t>(json.size()),
+               binary_size = static_cast<std::uint32_t>(bytes_.size());
+    const std::array<std::uint32_t, 5> header = {kMagic, kVersion, 28 + json_size + binary_size, json_size,
+                                                 kJson};
+    const std::array<std::uint32_t, 2> chunk = {binary_size, kBinary};
+    file_.out().write(reinterpret_cast<const char*>(header.data()), sizeof header);
+    file_.out() << json;
+    file_.out().write(reinterpret_cast<const char*>(chunk.data()), sizeof chunk);
+    bytes_.copy_to(file_.out());
+  }
+
+  // ---- Parts of the document; an add_ function returns the index of the new part ----
+
+  MeshInFile& add_mesh(const std::string& name, const std::vector<Triangle>& triangles,
+                       const std::array<double, 3>& color, tinygltf::Value extras) {
+    static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
+    tinygltf::Accessor indices;
+    indices.bufferView = add_bytes(triangles.data(), triangles.size() * sizeof(Triangle),
+                                   TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    indices.type = TINYGLTF_TYPE_SCALAR;
+    indices.count = 3 * triangles.size();
+    model_.accessors.push_back(std::move(indices));
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    primitive.material = add_material(name, color);
+    primitive.indices = static_cast<int>(model_.accessors.size()) - 1;
+    tinygltf::Mesh mesh;
     mesh.name = name;
+    mesh.primitives.push_back(std::move(primitive));
     model_.meshes.push_back(std::move(mesh));
     tinygltf::Node node;
     node.name = name;
     node.mesh = static_cast<int>(model_.meshes.size()) - 1;
+    node.extras = std::move(extras);
     model_.nodes.push_back(std::move(node));
     const int index = static_cast<int>(model_.nodes.size()) - 1;
     model_.scenes[0].nodes.push_back(index);
-    return index;
+    return meshes_in_file_.emplace_back(
+        MeshInFile{.mesh = static_cast<int>(model_.meshes.size()) - 1, .node = index, .base = {}, .normals = {}});
   }
+
+  tinygltf::Primitive& primitive(const MeshInFile& own) { return model_.meshes[own.mesh].primitives[0]; }
 
   int add_material(const std::string& name, const std::array<double, 3>& color) {
     tinygltf::Material material;
@@ -326,34 +373,27 @@ class GlbBuilder {
     return static_cast<int>(model_.materials.size()) - 1;
   }
 
-  tinygltf::Primitive make_primitive(const std::vector<Triangle>& triangles, int material) {
-    static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = material;
-    tinygltf::Accessor accessor;
-    accessor.bufferView = add_bytes(triangles.data(), triangles.size() * sizeof(Triangle),
-                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    accessor.type = TINYGLTF_TYPE_SCALAR;
-    accessor.count = 3 * triangles.size();
-    model_.accessors.push_back(std::move(accessor));
-    primitive.indices = static_cast<int>(model_.accessors.size()) - 1;
-    return primitive;
-  }
-
-  std::map<std::string, int> add_vertices(std::span<const float> positions, std::span<const float> normals) {
+  std::map<std::string, int> write_vertices(std::span<const float> positions,
+                                            std::span<const float> normals) {
     const int position_accessor = add_floats(positions, kPositions);
     return {{"POSITION", position_accessor}, {"NORMAL", add_floats(normals, kNormals)}};
   }
 
   int add_floats(std::span<const float> numbers, const Layout& layout) {
+    const size_t begin = bytes_.size();
+    bytes_.append(numbers.data(), numbers.size_bytes());
+    const int index = add_accessor(begin, numbers.size(), layout);
+    if (layout.has_bounds) set_bounds(model_.accessors[index], numbers, layout.num_components);
+    return index;
+  }
+
+  /// Of floats that are written already, from byte `begin` on.
+  int add_accessor(size_t begin, size_t num_floats, const Layout& layout) {
     tinygltf::Accessor accessor;
-    accessor.bufferView = add_bytes(numbers.data(), numbers.size_bytes(), layout.target);
+    accessor.bufferView = add_view(begin, num_floats * sizeof(float), layout.target);
     accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
     accessor.type = layout.type;
-    accessor.count = numbers.size() / layout.num_components;
-    if (layout.has_bounds) set_bounds(accessor, numbers, layout.num_components);
+    accessor.count = num_floats / layout.num_components;
     model_.accessors.push_back(std::move(accessor));
     return static_cast<int>(model_.accessors.size()) - 1;
   }
@@ -369,16 +409,19 @@ class GlbBuilder {
     }
   }
 
-  /// Every accessor has a view of its own: no strides, and four-byte numbers keep all of them aligned.
   int add_bytes(const void* data, size_t num_bytes, int target) {
-    auto& bytes = model_.buffers[0].data;
+    const size_t begin = bytes_.size();
+    bytes_.append(data, num_bytes);
+    return add_view(begin, num_bytes, target);
+  }
+
+  /// Every accessor has its own view: no strides, and four-byte numbers keep all of them aligned.
+  int add_view(size_t begin, size_t num_bytes, int target) {
     tinygltf::BufferView view;
     view.buffer = 0;
-    view.byteOffset = bytes.size();
+    view.byteOffset = begin;
     view.byteLength = num_bytes;
     view.target = target;
-    const auto* begin = static_cast<const unsigned char*>(data);
-    bytes.insert(bytes.end(), begin, begin + num_bytes);
     model_.bufferViews.push_back(std::move(view));
     return static_cast<int>(model_.bufferViews.size()) - 1;
   }
@@ -400,40 +443,41 @@ class GlbBuilder {
     motion_.channels.push_back(std::move(channel));
   }
 
-  const Animation& animation_;
-  const size_t num_frames_;
+  StagedFile& file_;
+  Animation meshes_;
+  SpoolFile bytes_;  // of the document's buffer
   tinygltf::Model model_;
   tinygltf::Animation motion_;
-  int times_ = -1;            // accessor of the key times
-  int weights_sampler_ = -1;  // sampler of the weights
+  std::vector<MeshInFile> meshes_in_file_;             // (cloths, then bodies)
+  std::vector<std::vector<RigidMesh::Pose>> poses_;    // (bodies) of (num_frames)
+  size_t num_frames_ = 0;
+  int times_ = -1;  // accessor of the key times
 };
 
-// ---- The file ----
+GlbWriter::GlbWriter(StagedFile& file, const Animation& meshes)
+    : builder_(std::make_unique<Builder>(file, meshes)) {}
+GlbWriter::~GlbWriter() = default;
+void GlbWriter::add_frame(const AnimationFrame& frame) { builder_->add_frame(frame); }
+void GlbWriter::finish() { builder_->finish(); }
 
-/// The file's lengths have 32 bits.
-void require_size(const std::filesystem::path& file, const tinygltf::Model& model) {
+size_t max_glb_size() {
   constexpr size_t kRoomForJson = size_t{1} << 28;
-  constexpr size_t kLargest = std::numeric_limits<uint32_t>::max() - kRoomForJson;
-  const size_t size = model.buffers[0].data.size();
-  if (size > kLargest) {
-    throw InputError(file.string() + " cannot be written: " + std::to_string(size) +
-                     " bytes of frames are too many for glTF; write fewer frames");
-  }
+  return std::numeric_limits<uint32_t>::max() - kRoomForJson;
 }
 
-}  // namespace
-
-void write_glb(StagedFile& file, const Animation& animation) {
-  require_valid(animation);
-  tinygltf::Model model = GlbBuilder(animation).build();
-  require_size(file.file(), model);
-  tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, file.out(), false, true);
-  file.finish();
+size_t glb_size(const Animation& meshes, size_t num_vertices, size_t num_frames) {
+  constexpr size_t kBytesPerVertex = 6 * sizeof(float);  // position and normal
+  size_t size = num_frames * num_vertices * kBytesPerVertex + num_frames * num_frames * sizeof(float);
+  for (const AnimatedMesh& cloth : meshes.cloths) size += cloth.triangles.size() * sizeof(Triangle);
+  return size;
 }
 
 void write_glb(const std::filesystem::path& file, const Animation& animation) {
+  require_equal_counts(animation);
   StagedFile staged(file);
-  write_glb(staged, animation);
+  GlbWriter writer(staged, animation);
+  for (size_t k = 0; k < count_frames(animation); ++k) writer.add_frame(get_frame(animation, k));
+  writer.finish();
   staged.replace();
 }
 

@@ -8,7 +8,8 @@
 #include "weft/lab/chapters.h"
 #include "weft/lab/contest.h"
 #include "weft/lab/plot.h"
-#include "weft/run/runner.h"
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/world/measures.h"
@@ -364,17 +365,18 @@ Claim drape_on_ball(const ChapterOptions& options) {
     const SceneDesc scene =
         read_scene(find_scene("drape_sphere"),
                    {"solver.integrator=" + run.name, fmt::format("solver.steps_per_frame={}", run.steps)});
-    const RunResult result = run_scene(scene, {.frames = frames});
-    const std::vector<float>& end = result.animation.cloths.at(0).frames.back();
+    FilmSink film;
+    const RunReport report = run_scene(scene, {.frames = frames}, {&film});
+    const std::vector<float>& end = film.animation().cloths.at(0).frames.back();
     double height = 0;
     for (std::size_t i = 1; i < end.size(); i += 3) height += 3.0 * end[i] / static_cast<double>(end.size());
     heights.push_back(height);
-    crossings = std::max(crossings, result.report.intersections.value_or(0));
+    crossings = std::max(crossings, report.intersections.value_or(0));
     claim.tables[0].rows.push_back({"`" + run.name + "`", fmt::format("{}", run.steps),
                                     fmt::format("{:.4f}", height),
-                                    fmt::format("{:.1f}", 100 * result.report.max_strain),
-                                    fmt::format("{}", result.report.intersections.value_or(0)),
-                                    fmt::format("{:.1f}", result.report.cpu_ms_per_frame)});
+                                    fmt::format("{:.1f}", 100 * report.max_strain),
+                                    fmt::format("{}", report.intersections.value_or(0)),
+                                    fmt::format("{:.1f}", report.cpu_ms_per_frame)});
   }
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
   claim.figures = {{"drape_height_spread", 1000 * (*high - *low), "mm", "0", 0},

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 #include "weft/lab/chapter.h"
 #include "weft/model/cloth_model.h"
 

@@ -7,7 +7,7 @@
 
 #include "weft/lab/chapters.h"
 #include "weft/lab/contact_experiments.h"
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 
@@ -35,9 +35,7 @@ Claim nothing_crosses(const ChapterOptions& options) {
     options.tell(shipped.name);
     const SceneDesc scene = read_scene(shipped.file);
     const RunReport r = run_scene(scene, {.frames = std::min(most_frames, scene.num_frames()),
-                                          .threads = options.threads,
-                                          .record_animation = false})
-                            .report;
+                                          .threads = options.threads});
     const std::size_t impossible = r.infeasible ? r.infeasible->size() : 0;
     crossings += r.intersections.value_or(0);
     deepest = std::max(deepest, r.penetration_max.value_or(0));

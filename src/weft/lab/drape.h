@@ -1,7 +1,7 @@
 #pragma once
 /// One specimen of the drape test, and the measures that are taken of it.
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 #include "weft/lab/specimen.h"
 
 namespace weft::engine {

@@ -10,7 +10,7 @@
 #include "weft/lab/paper_study.h"
 #include "weft/lab/plot.h"
 #include "weft/run/film.h"
-#include "weft/run/runner.h"
+#include "weft/run/scene_run.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
@@ -350,9 +350,9 @@ Claim real_time(const ChapterOptions& options) {
   for (const ShippedScene& shipped : list_scenes()) {
     if (!shipped.name.starts_with("paper/")) continue;
     options.tell(shipped.name);
-    RunOptions run{.record_animation = false};
+    RunOptions run;
     if (options.quick) run.frames = 15;
-    const RunReport report = run_scene(read_scene(shipped.file), run).report;
+    const RunReport report = run_scene(read_scene(shipped.file), run);
     const double rate = 1000 / report.ms_per_frame_median;
     if (!shipped.name.ends_with("_real")) slowest = std::min(slowest, rate);
     claim.tables[0].rows.push_back({"`" + shipped.name + "`", "`" + report.integrator + "`",
@@ -418,19 +418,20 @@ Claim figures_remade(const ChapterOptions& options) {
     const SceneDesc scene = read_scene(find_scene("paper/fig3_horizontal"),
                                        {"cloth[0].model=" + model, "cloth[0].grid.cells=[6, 6]"});
     const SceneWorld built = build_world(scene, make_serial_jobs());
-    Film film(scene, built.world);
-    film.add_frame();
+    Animation start = make_animation(scene, built.world);
+    append_frame(capture_frame(built.world), start);
     const std::string file = "paper_" + model + ".jpg";
-    options.paint(file, film.animation(), {0}, built.world.model(built.world.cloth(0)).topology);
+    options.paint(file, start, {0}, built.world.model(built.world.cloth(0)).topology);
     claim.pictures.push_back({file, "The " + model + " model.", ""});
   }
   for (const std::string name : {"fig3_horizontal", "fig4_vertical", "fig5_falling", "fig6_ball"}) {
     options.tell("painting " + name);
     RunOptions run;
     run.frames = options.quick ? 30 : 90;
-    const RunResult result = run_scene(read_scene(find_scene("paper/" + name)), run);
+    FilmSink film;
+    run_scene(read_scene(find_scene("paper/" + name)), run, {&film});
     const std::string file = "paper_" + name + ".jpg";
-    options.paint(file, result.animation, {0, *run.frames / 3, *run.frames}, nullptr);
+    options.paint(file, film.animation(), {0, *run.frames / 3, *run.frames}, nullptr);
     claim.pictures.push_back(
         {file, fmt::format("`paper/{}`: frames 0, {} and {}.", name, *run.frames / 3, *run.frames), ""});
   }

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 #include "weft/model/cloth_model.h"
 #include "weft/render/picture.h"
 

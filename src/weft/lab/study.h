@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 #include "weft/lab/plot.h"
 
 namespace weft::engine {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "weft/run/scene_run.h"
+
 namespace weft::engine {
 namespace {
 
@@ -71,21 +73,14 @@ std::vector<float> positions(const ClothState& state) {
   return values;
 }
 
-/// Of a mesh that has not been deformed yet.
-std::vector<float> rest_positions(const TriangleMesh& mesh) {
-  std::vector<float> values;
-  for (const Vec3& p : mesh.positions) {
-    for (const double c : p) values.push_back(static_cast<float>(c));
-  }
-  return values;
-}
-
 }  // namespace
 
-Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
-  animation_.title = scene.name;
-  animation_.frames_per_second = scene.fps;
-  animation_.passing = world.passing_pairs();
+Animation make_animation(const SceneDesc& scene, const World& world) {
+  Animation animation{.title = scene.name,
+                      .frames_per_second = scene.fps,
+                      .cloths = {},
+                      .bodies = {},
+                      .passing = world.passing_pairs()};
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothTopology& topology = *world.model(world.cloth(c)).topology;
     AnimatedMesh mesh;
@@ -93,38 +88,33 @@ Film::Film(const SceneDesc& scene, const World& world) : world_(world) {
     mesh.triangles = topology.mesh.triangles;
     mesh.color = scene.cloths[c].color;
     mesh.fabric_coordinates = make_fabric_coordinates(topology);
-    animation_.cloths.push_back(std::move(mesh));
+    animation.cloths.push_back(std::move(mesh));
   }
-  for (const Collider& collider : world.colliders()) animation_.bodies.push_back(show(collider));
+  for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
+  return animation;
 }
 
-void Film::add_frame() {
-  for (int c = 0; c < world_.num_cloths(); ++c)
-    animation_.cloths[c].frames.push_back(positions(world_.state(world_.cloth(c))));
-  const std::size_t num_before = num_frames_++;
-  for (std::size_t b = 0; b < animation_.bodies.size(); ++b) {
-    const Collider& collider = world_.colliders()[b];
-    RigidMesh& body = animation_.bodies[b];
+AnimationFrame capture_frame(const World& world) {
+  AnimationFrame frame;
+  for (int c = 0; c < world.num_cloths(); ++c)
+    frame.cloths.push_back(positions(world.state(world.cloth(c))));
+  for (const Collider& collider : world.colliders()) {
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
-    if (mesh && mesh->sequence) {
-      body.frames.resize(num_before, rest_positions(body.mesh));
-      body.frames.push_back(positions(*mesh, world_.time()));
-    }
-    const Pose pose = collider.motion.at(world_.time());
-    const RigidMesh::Pose now{pivot(collider.shape) + pose.translation, Eigen::Quaterniond(pose.rotation)};
-    if (body.poses.size() == 1 && body.poses[0] == now) continue;  // it has stood still so far
-    if (!body.poses.empty()) body.poses.resize(num_before, body.poses[0]);
-    body.poses.push_back(now);
+    frame.body_vertices.push_back(mesh && mesh->sequence ? positions(*mesh, world.time())
+                                                         : std::vector<float>());
+    const Pose pose = collider.motion.at(world.time());
+    frame.poses.push_back({pivot(collider.shape) + pose.translation, Eigen::Quaterniond(pose.rotation)});
   }
+  return frame;
 }
 
-void Film::clear() {
-  num_frames_ = 0;
-  for (AnimatedMesh& cloth : animation_.cloths) cloth.frames.clear();
-  for (RigidMesh& body : animation_.bodies) {
-    body.poses.clear();
-    body.frames.clear();
-  }
+void FilmSink::begin(SceneRun& run, RunReport&) {
+  animation_ = make_animation(run.scene(), run.world());
+  append_frame(capture_frame(run.world()), animation_);
+}
+
+void FilmSink::add_frame(const SceneRun& run, RunReport&) {
+  append_frame(capture_frame(run.world()), animation_);
 }
 
 }  // namespace weft::engine

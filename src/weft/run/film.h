@@ -1,30 +1,29 @@
 #pragma once
-/// Worlds as animations: what a run writes to its file, and what pictures are made of.
+/// Worlds as animations: for files, and for pictures.
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
+#include "weft/run/frame_sink.h"
 #include "weft/scene/scene_desc.h"
 #include "weft/world/world.h"
 
 namespace weft::engine {
 
-/// Films a world that was built from a scene. The world must outlive the film.
-class Film {
+/// The meshes of a world that was built from a scene, without frames.
+Animation make_animation(const SceneDesc& scene, const World& world);
+
+/// The world as it is now.
+AnimationFrame capture_frame(const World& world);
+
+/// Keeps every frame in memory, the start too: for pictures of short runs.
+class FilmSink : public FrameSink {
  public:
-  Film(const SceneDesc& scene, const World& world);
-
-  /// The world as it is now becomes the next frame.
-  void add_frame();
-
-  /// Throws the frames away, to film on.
-  void clear();
+  void begin(SceneRun& run, RunReport& report) override;
+  void add_frame(const SceneRun& run, RunReport& report) override;
 
   const Animation& animation() const { return animation_; }
-  Animation take() { return std::move(animation_); }
 
  private:
-  const World& world_;
   Animation animation_;
-  std::size_t num_frames_ = 0;
 };
 
 }  // namespace weft::engine

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "weft/io/glb_writer.h"
+#include "weft/io/animation.h"
 #include "weft/verify/checker.h"
 #include "weft/world/world.h"
 

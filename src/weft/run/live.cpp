@@ -4,9 +4,9 @@
 #include <future>
 
 #include "weft/error.h"
+#include "weft/face/convert.h"
 #include "weft/run/reach.h"
 #include "weft/run/report.h"
-#include "weft/run/runner.h"
 #include "weft/run/warnings.h"
 
 namespace weft::engine {
@@ -35,18 +35,17 @@ std::string name_of_model(const SceneDesc& scene) {
 
 LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
     : start_scene_(std::move(scene)),
-      scene_(start_scene_),
       jobs_(make_jobs(settings.threads)),
-      built_(build_world(scene_, jobs_)),
-      snapshot_(built_.world.snapshot()) {
-  warnings_ = built_.warnings;
-  reach_ = find_reach(built_.world);
-  film_.emplace(scene_, built_.world);
-  film_->add_frame();
-  start_ = film_->animation();
+      run_(std::make_unique<SceneRun>(start_scene_, jobs_)),
+      solver_(start_scene_.solver),
+      snapshot_(world().snapshot()) {
+  warnings_ = run_->notes().warnings;
+  reach_ = find_reach(world());
+  start_ = make_animation(start_scene_, world());
+  append_frame(capture_frame(world()), start_);
   status_.playing = settings.playing;
-  status_.integrator = scene_.solver.integrator;
-  status_.model = name_of_model(scene_);
+  status_.integrator = solver_.integrator;
+  status_.model = name_of_model(start_scene_);
   judge_solver();
   publish();
   thread_ = std::thread([this] { run(); });
@@ -95,7 +94,8 @@ void LiveSimulation::reset() {
   post([this] {
     held_.reset();
     hold();
-    built_.world.restore(snapshot_);
+    world().restore(snapshot_);
+    apply_wind();
     status_.steps = status_.frames = 0;
     status_.failure.clear();
     status_.troubles.clear();
@@ -108,13 +108,14 @@ void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
     const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-    if (!moves_elements(name) && std::any_of(scene_.cloths.begin(), scene_.cloths.end(), is_fabric)) {
+    if (!moves_elements(name) &&
+        std::any_of(start_scene_.cloths.begin(), start_scene_.cloths.end(), is_fabric)) {
       status_.warnings = {name + " knows springs alone, and this scene has a fabric: still " +
                           status_.integrator};
       return;
     }
-    scene_.solver.integrator = name;
-    built_.world.set_integrator(scene_.solver);
+    solver_.integrator = name;
+    world().set_integrator(solver_);
     status_.integrator = name;
     judge_solver();
   });
@@ -125,7 +126,10 @@ void LiveSimulation::set_model(SpringModel model) {
 }
 
 void LiveSimulation::set_wind(std::optional<Vec3> velocity) {
-  post([this, velocity] { wind_ = velocity; });
+  post([this, velocity] {
+    wind_ = velocity;
+    apply_wind();
+  });
 }
 
 void LiveSimulation::grab(const ClothPoint& point) {
@@ -137,7 +141,7 @@ void LiveSimulation::grab(const ClothPoint& point) {
 
 void LiveSimulation::move_grab(const Vec3& target) {
   post([this, target] {
-    if (held_) built_.world.set_grab_target(built_.world.cloth(held_->cloth), 0, target);
+    if (held_) world().set_grab_target(world().cloth(held_->cloth), 0, target);
   });
 }
 
@@ -158,11 +162,11 @@ bool LiveSimulation::take_newest(LiveFrame& frame) {
 
 std::uint64_t LiveSimulation::state_hash() {
   std::promise<std::uint64_t> answer;
-  post([&] { answer.set_value(built_.world.state_hash()); });
+  post([&] { answer.set_value(world().state_hash()); });
   return answer.get_future().get();
 }
 
-bool LiveSimulation::is_between_frames() const { return status_.steps % scene_.steps_per_frame == 0; }
+bool LiveSimulation::is_between_frames() const { return status_.steps % scene_now().steps_per_frame == 0; }
 
 /// Waits for something to do. False: the end.
 bool LiveSimulation::run_commands() {
@@ -195,7 +199,7 @@ void LiveSimulation::run() {
   while (run_commands()) {
     if (steps_to_make_ > 0) {
       --steps_to_make_;
-      if (take_step() && is_between_frames()) status_.frames = status_.steps / scene_.steps_per_frame;
+      if (take_step() && is_between_frames()) status_.frames = status_.steps / scene_now().steps_per_frame;
       publish();
     } else if (status_.playing) {
       start_pace();
@@ -210,18 +214,11 @@ void LiveSimulation::run() {
 
 /// Makes a step. False: it failed, and everything is as before.
 bool LiveSimulation::take_step() {
-  World& world = built_.world;
-  Wind wind = wind_at(scene_.wind, world.time());
-  if (wind_) {
-    wind.velocity = *wind_;
-    if (wind.drag == 0 && wind.air.density == 0) wind.drag = kDrag;
-  }
-  world.set_wind(wind);
-  status_.wind = wind;
   const Clock::time_point start = Clock::now();
-  const StepReport report = world.step(1 / (scene_.fps * scene_.steps_per_frame));
+  const StepReport report = run_->step();
   step_ms_.push_back(1000 * seconds(Clock::now() - start));
   if (step_ms_.size() > kSteps) step_ms_.pop_front();
+  status_.wind = world().wind();
   tell(report);
   return report.ok;
 }
@@ -232,7 +229,7 @@ void LiveSimulation::tell(const StepReport& report) {
   status_.failure.clear();
   status_.divisions = report.divisions;
   for (const StepWarning& warning : report.warnings) {
-    const std::string sentence = describe(built_.world, warning);
+    const std::string sentence = describe(world(), warning);
     if (!report.ok) {
       status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + sentence;
       continue;
@@ -255,30 +252,41 @@ void LiveSimulation::start_pace() {
   is_paced_ = true;
   due_ = Clock::now();
   milestones_.clear();
-  milestones_.push_back({due_, status_.steps, built_.world.time()});
+  milestones_.push_back({due_, status_.steps, world().time()});
 }
 
 /// Lets the next frame be due one frame's time after this one was; time slows when play has fallen behind.
 void LiveSimulation::end_frame() {
-  status_.frames = status_.steps / scene_.steps_per_frame;
+  status_.frames = status_.steps / scene_now().steps_per_frame;
   const Clock::time_point now = Clock::now();
-  due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / scene_.fps));
+  due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / scene_now().fps));
   if (seconds(now - due_) > kPatience) due_ = now;
-  milestones_.push_back({now, status_.steps, built_.world.time()});
+  milestones_.push_back({now, status_.steps, world().time()});
   while (milestones_.size() > 2 && seconds(now - milestones_[1].wall) > kWindow) milestones_.pop_front();
   publish();
 }
 
+/// The scene's wind, or what has been set instead of its velocity.
+void LiveSimulation::apply_wind() {
+  weft::Wind wind = describe_wind(start_scene_.wind);
+  if (wind_) {
+    wind.keys.clear();
+    wind.velocity = from_engine(*wind_);
+    if (wind.drag == 0 && wind.air.density == 0) wind.drag = kDrag;
+  }
+  run_->public_world().set_wind(wind);
+}
+
 void LiveSimulation::change_model(SpringModel model) {
   if (status_.model == kNoModel) return;
-  SceneDesc scene = scene_;
+  SceneDesc scene = scene_now();
+  scene.solver = solver_;
   for (ClothSceneDesc& cloth : scene.cloths) cloth.model = model;
   // Pins hang on the start, so the new world is built there, and then taken to where the old one is.
-  const World::Snapshot now = built_.world.snapshot();
-  built_ = build_world(scene, jobs_);
-  scene_ = std::move(scene);
-  built_.world.restore(now);
-  film_.emplace(scene_, built_.world);
+  const World::Snapshot now = world().snapshot();
+  run_ = std::make_unique<SceneRun>(std::move(scene), jobs_);
+  world().restore(now);
+  apply_wind();
   hold();
   status_.model = to_string(model);
   judge_solver();
@@ -286,8 +294,9 @@ void LiveSimulation::change_model(SpringModel model) {
 
 /// Something else computes the steps from now on: what was said of the last ones is no longer true.
 void LiveSimulation::judge_solver() {
-  status_.warnings.clear();
-  warn_about_paper(scene_, built_.world, status_.warnings);
+  SceneDesc now = scene_now();
+  now.solver = solver_;
+  status_.warnings = check_paper(now, world());
   status_.failure.clear();
   status_.troubles.clear();
   step_ms_.clear();
@@ -296,18 +305,16 @@ void LiveSimulation::judge_solver() {
 
 /// Takes hold of what is to be held, where it is, and of nothing else.
 void LiveSimulation::hold() {
-  World& world = built_.world;
-  for (int c = 0; c < world.num_cloths(); ++c) world.set_grabs(world.cloth(c), {});
+  World& held = world();
+  for (int c = 0; c < held.num_cloths(); ++c) held.set_grabs(held.cloth(c), {});
   if (!held_) return;
-  const ClothId cloth = built_.world.cloth(held_->cloth);
-  world.set_grabs(cloth,
-                  {make_grab(world.model(cloth), world.state(cloth), held_->triangle, held_->weights)});
+  const ClothId cloth = held.cloth(held_->cloth);
+  held.set_grabs(cloth, {make_grab(held.model(cloth), held.state(cloth), held_->triangle, held_->weights)});
 }
 
 LiveStatus LiveSimulation::measure() const {
   LiveStatus status = status_;
-  const World& world = built_.world;
-  status.time = world.time();
+  status.time = world().time();
   const std::vector<double> ms(step_ms_.begin(), step_ms_.end());
   status.ms_per_step = quantile(ms, 0.5);
   status.ms_per_step_p95 = quantile(ms, 0.95);
@@ -319,33 +326,22 @@ LiveStatus LiveSimulation::measure() const {
     status.too_heavy = status.playing && wall > kWindow / 2 && status.simulated_per_second < kSlow;
   }
   if (held_) {
-    const ClothId cloth = built_.world.cloth(held_->cloth);
-    const Triangle& t = world.model(cloth).topology->mesh.triangles[held_->triangle];
+    const ClothId cloth = world().cloth(held_->cloth);
+    const Triangle& t = world().model(cloth).topology->mesh.triangles[held_->triangle];
     Vec3 point = Vec3::Zero();
     for (int corner = 0; corner < 3; ++corner)
-      point += held_->weights[corner] * world.state(cloth).position(t[corner]);
+      point += held_->weights[corner] * world().state(cloth).position(t[corner]);
     status.held = point;
   }
   return status;
 }
 
 void LiveSimulation::publish() {
-  film_->clear();
-  film_->add_frame();
-  const Animation& now = film_->animation();
   next_.status = measure();
-  next_.cloths.resize(now.cloths.size());
-  next_.topologies.resize(now.cloths.size());
-  for (std::size_t c = 0; c < now.cloths.size(); ++c) {
-    next_.cloths[c] = now.cloths[c].frames[0];
-    next_.topologies[c] = built_.world.model(built_.world.cloth(static_cast<int>(c))).topology;
-  }
-  next_.bodies.clear();
-  next_.body_frames.clear();
-  for (const RigidMesh& body : now.bodies) {
-    next_.bodies.push_back(body.poses[0]);
-    next_.body_frames.push_back(body.frames);
-  }
+  next_.meshes = capture_frame(world());
+  next_.topologies.clear();
+  for (int c = 0; c < world().num_cloths(); ++c)
+    next_.topologies.push_back(world().model(world().cloth(c)).topology);
   const std::lock_guard lock(frame_mutex_);
   std::swap(next_, frame_);
   is_fresh_ = true;

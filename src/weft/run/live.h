@@ -5,7 +5,7 @@
 ///     play, pause, grab, set_wind, … ──queue──>  between two steps
 ///     newest() <──one lock for a swap of vectors──  after each frame of the scene
 ///
-/// Neither side waits for the other. Steps are those of run_scene: same scene, same commands before the same
+/// Neither side waits for the other. Steps are those of SceneRun: same scene, same commands before the same
 /// steps, same bits, however often somebody looks or pauses. Cloth that is too heavy for real time slows its
 /// time down; nothing is skipped and nothing piles up.
 
@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "weft/run/film.h"
-#include "weft/scene/scene_world.h"
+#include "weft/run/scene_run.h"
 
 namespace weft::engine {
 
@@ -61,15 +61,13 @@ struct LiveStatus {
 /// Everything at one moment.
 struct LiveFrame {
   LiveStatus status;
-  std::vector<std::vector<float>> cloths;                    // (num_cloths) of (num_particles x 3) [m]
-  std::vector<RigidMesh::Pose> bodies;                       // (num_bodies)
-  std::vector<std::vector<std::vector<float>>> body_frames;  // (num_bodies) as RigidMesh::frames: one or none
+  AnimationFrame meshes;
   std::vector<std::shared_ptr<const ClothTopology>> topologies;  // (num_cloths)
 };
 
 class LiveSimulation {
  public:
-  /// Throws InputError as build_world does.
+  /// Throws InputError as build_scene does.
   explicit LiveSimulation(SceneDesc scene, const LiveSettings& settings = {});
   ~LiveSimulation();
 
@@ -112,6 +110,9 @@ class LiveSimulation {
     double time;
   };
 
+  const SceneDesc& scene_now() const { return run_->scene(); }
+  World& world() { return run_->world(); }
+  const World& world() const { return run_->world(); }
   void post(std::function<void()> command);
   bool run_commands();
   void run();
@@ -120,6 +121,7 @@ class LiveSimulation {
   void tell(const StepReport& report);
   void start_pace();
   void end_frame();
+  void apply_wind();
   void change_model(SpringModel model);
   void judge_solver();
   void hold();
@@ -133,11 +135,10 @@ class LiveSimulation {
   std::vector<Vec3> reach_;
 
   // Of the simulation's thread.
-  SceneDesc scene_;
   std::shared_ptr<JobSystem> jobs_;
-  SceneWorld built_;
+  std::unique_ptr<SceneRun> run_;
+  IntegratorSettings solver_;
   World::Snapshot snapshot_;  // of the start
-  std::optional<Film> film_;
   LiveStatus status_;
   int steps_to_make_ = 0;
   std::optional<Vec3> wind_;

@@ -40,12 +40,11 @@ void ProblemFinder::add_step(const StepReport& step) {
   for (const InfeasiblePair& pair : step.infeasible) add_once(pair, infeasible_);
 }
 
-void ProblemFinder::add_frame(double energy, int crossings) {
+void ProblemFinder::add_frame(double energy) {
   strained_.resize(world_.num_cloths());
   flat_.resize(world_.num_cloths());
   for (int c = 0; c < world_.num_cloths(); ++c) look_at_cloth(c);
   look_at_energy(energy);
-  crossings_ = crossings;
   ++num_frames_;
 }
 

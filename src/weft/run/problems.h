@@ -32,8 +32,11 @@ class ProblemFinder {
 
   void add_step(const StepReport& step);
 
-  /// `energy`: kinetic and potential, of all cloths [J]; `crossings`: pairs of triangles that cross.
-  void add_frame(double energy, int crossings);
+  /// `energy`: kinetic and potential, of all cloths [J].
+  void add_frame(double energy);
+
+  /// Pairs of triangles that cross in the last frame.
+  void set_crossings(int count) { crossings_ = count; }
 
   /// `count` more pairs of features that went through each other.
   void add_passages(int count) { passages_ += count; }

@@ -56,6 +56,7 @@ struct RunReport {
   // What the independent checker (verify/checker.h) found in the frames, the start not counted:
   std::optional<int>
       intersections;            // crossing pairs of triangles in the worst frame; empty without frames [1]
+  std::optional<int> crossings_at_end;  // likewise in the last frame [1]
   std::optional<int> passages;  // pairs of features that went through each other (verify/passages.h), over
                                 // the run; empty where that was not checked [1]
   std::string first_passage;    // `frame 12: cloth "sheet" particle 7 passes …`; empty: there is none

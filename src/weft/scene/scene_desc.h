@@ -132,7 +132,8 @@ struct SceneDesc {
   bool untangle = true;          // set apart what crosses at the start, where there is contact
   CrossedStart crossed_start = CrossedStart::refuse;
 
-  int num_frames() const;  // round(duration · fps), at least 1
+  int num_frames() const;      // round(duration · fps), at least 1
+  double step_length() const;  // 1 / (fps · steps_per_frame) [s]
 };
 
 }  // namespace weft::engine

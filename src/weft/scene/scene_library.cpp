@@ -1,5 +1,9 @@
 #include "weft/scene/scene_library.h"
 
+#ifndef _WIN32
+#include <dlfcn.h>
+#endif
+
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
@@ -17,11 +21,32 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, not_there);
 }
 
-/// share/weft/scenes for a program in bin; empty where the system does not tell the program's place.
-fs::path installed_folder() {
+/// The running program; empty where the system does not report it.
+fs::path program_file() {
   std::error_code unknown;
-  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  return program.empty() ? fs::path() : program.parent_path().parent_path() / "share" / "weft" / "scenes";
+  return fs::read_symlink("/proc/self/exe", unknown);
+}
+
+/// The library or program that holds this code; empty where the system does not report it.
+fs::path library_file() {
+#ifndef _WIN32
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&list_scenes), &info) == 0 || !info.dli_fname) return {};
+  std::error_code unknown;
+  return fs::canonical(info.dli_fname, unknown);
+#else
+  return {};
+#endif
+}
+
+/// The folders above a file, nearest first.
+std::vector<fs::path> folders_above(const fs::path& file) {
+  std::vector<fs::path> folders;
+  for (fs::path folder = file.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    folders.push_back(folder);
+    if (folder == folder.parent_path()) break;
+  }
+  return folders;
 }
 
 /// "paper/fig6_ball" may be asked for as "fig6_ball" too.
@@ -49,14 +74,30 @@ std::string describe_missing(const std::string& name) {
 
 }  // namespace
 
+std::filesystem::path find_scene_folder(const fs::path& library, const fs::path& program) {
+  for (const fs::path& binary : {library, program}) {
+    for (const fs::path& prefix : folders_above(binary)) {
+      const fs::path scenes = prefix / "share" / "weft" / "scenes";
+      if (is_folder(scenes)) return scenes;
+    }
+  }
+  std::error_code not_there;
+  for (const fs::path& binary : {library, program}) {
+    for (const fs::path& tree : folders_above(binary)) {
+      const bool is_source = fs::exists(tree / "include" / "weft" / "weft.h", not_there);
+      if (is_source && is_folder(tree / "scenes")) return tree / "scenes";
+    }
+  }
+  return {};
+}
+
 std::filesystem::path scene_folder() {
   if (const char* folder = std::getenv("WEFT_SCENES")) {
     if (is_folder(folder)) return folder;
     throw InputError("WEFT_SCENES is \"" + std::string(folder) + "\", expected a folder with scenes");
   }
-  for (const fs::path& folder : {installed_folder(), fs::path(WEFT_SOURCE_SCENES)}) {
-    if (is_folder(folder)) return folder;
-  }
+  const fs::path folder = find_scene_folder(library_file(), program_file());
+  if (!folder.empty()) return folder;
   throw InputError("the shipped scenes are not found; set WEFT_SCENES to their folder");
 }
 

@@ -12,10 +12,14 @@ struct ShippedScene {
   std::filesystem::path file;
 };
 
-/// The folder with the shipped scenes: $WEFT_SCENES if set, else share/weft/scenes beside the running
-/// program's folder, else the source tree that this library was built from. Throws InputError if none of them
-/// exists.
+/// The folder with the shipped scenes: $WEFT_SCENES if set, else find_scene_folder() from the library and the
+/// program that run. Throws InputError if there is none.
 std::filesystem::path scene_folder();
+
+/// `share/weft/scenes` in a folder above the library, or else above the program; or else `scenes` of the
+/// source tree that they were built in. Empty if there is none.
+std::filesystem::path find_scene_folder(const std::filesystem::path& library,
+                                        const std::filesystem::path& program);
 
 /// All of them, by name.
 std::vector<ShippedScene> list_scenes();

@@ -128,12 +128,6 @@ void untangle(World& world, SceneNotes& built) {
     warnings.push_back("could not be untangled: " + what + "; move them apart");
 }
 
-weft::Wind describe_wind(const WindDesc& wind) {
-  weft::Wind result{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
-  for (const WindKey& key : wind.keys) result.keys.push_back({key.time, from_engine(key.velocity)});
-  return result;
-}
-
 void append(const std::vector<std::string>& sentences, std::vector<std::string>& to) {
   to.insert(to.end(), sentences.begin(), sentences.end());
 }
@@ -141,6 +135,7 @@ void append(const std::vector<std::string>& sentences, std::vector<std::string>&
 }  // namespace
 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
+double SceneDesc::step_length() const { return 1 / (fps * steps_per_frame); }
 
 PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
   PublicScene result;
@@ -176,10 +171,10 @@ SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) 
   return {std::move(static_cast<SceneNotes&>(built)), std::move(WorldAccess::engine(built.world))};
 }
 
-Wind wind_at(const WindDesc& wind, double time) {
-  Wind now{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
-  if (!wind.keys.empty()) now.velocity = wind_velocity(wind.keys, time);
-  return now;
+weft::Wind describe_wind(const WindDesc& wind) {
+  weft::Wind result{.drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
+  for (const WindKey& key : wind.keys) result.keys.push_back({key.time, from_engine(key.velocity)});
+  return result;
 }
 
 }  // namespace weft::engine

@@ -32,7 +32,7 @@ struct SceneWorld : SceneNotes {
 PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
-/// The wind that blows at a time.
-Wind wind_at(const WindDesc& wind, double time);
+/// A scene's wind, as a World takes it.
+weft::Wind describe_wind(const WindDesc& wind);
 
 }  // namespace weft::engine

@@ -1,4 +1,5 @@
-#include "weft/run/runner.h"
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
 
 #include <gtest/gtest.h>
 
@@ -41,9 +42,9 @@ const std::map<std::string, std::string> kHashes = {
 TEST(PaperScenes, HaveTheSameBitsEverywhere) {
   for (const auto& [name, hash] : kHashes) {
     for (const int threads : {1, 2}) {
-      const RunResult result =
-          run_scene(shipped(name), {.frames = 30, .threads = threads, .record_animation = false});
-      EXPECT_EQ(result.report.state_hash, hash) << name << ", " << threads << " threads";
+      const RunReport report =
+          run_scene(shipped(name), {.frames = 30, .threads = threads});
+      EXPECT_EQ(report.state_hash, hash) << name << ", " << threads << " threads";
     }
   }
 }
@@ -52,21 +53,21 @@ TEST(PaperScenes, TwinsHaveTheSameBitsEverywhere) {
   // Smaller and shorter, for debug builds. What is tested is the arithmetic.
   const SceneDesc scene = shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"});
   for (const int threads : {1, 2}) {
-    const RunResult result = run_scene(scene, {.frames = 20, .threads = threads, .record_animation = false});
-    EXPECT_EQ(result.report.state_hash, "0c97798ca620ae6f") << threads;
+    const RunReport report = run_scene(scene, {.frames = 20, .threads = threads});
+    EXPECT_EQ(report.state_hash, "0c97798ca620ae6f") << threads;
   }
 }
 
 TEST(PaperScenes, KeepTheStiffnessNumberAtOneOrBelow) {
   for (const auto& [name, hash] : kHashes) {
-    const RunResult result = run_scene(shipped(name), {.frames = 1, .record_animation = false});
-    EXPECT_FALSE(warns(result.report, "too stiff")) << name;
+    const RunReport report = run_scene(shipped(name), {.frames = 1});
+    EXPECT_FALSE(warns(report, "too stiff")) << name;
   }
 }
 
 /// Nothing crosses and nothing is more than 0.1 mm inside a collider, at any frame, by the checker.
 void expect_clean(const SceneDesc& scene, int frames) {
-  const RunReport report = run_scene(scene, {.frames = frames, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = frames});
   EXPECT_EQ(report.outcome, RunOutcome::done);
   EXPECT_EQ(report.frames, frames);
   EXPECT_EQ(report.intersections, 0) << scene.name;
@@ -97,29 +98,30 @@ TEST(PaperScenes, FallFreelyForTheFirstSixtyCentimetres) {
   // From its lowest corner the tilted sheet falls as Eq. 16 lets it: between the factors of a = a_max and of
   // none.
   const SceneDesc scene = shipped("paper/fig5_falling");
-  const RunResult result = run_scene(scene, {.frames = 20, .record_animation = false});
-  const std::vector<double>& y = result.report.lowest_y;
+  const RunReport report = run_scene(scene, {.frames = 20});
+  const std::vector<double>& y = report.lowest_y;
   const double t = 19.0 / 60, fallen = y[0] - y[19];
   EXPECT_GT(fallen, 0.5);
   const double v0 = 9.81 / 60;
   EXPECT_NEAR(fallen, v0 * t + 0.5 * 9.81 * t * t, 0.06 * fallen);
 }
 
-TEST(Runner, WarnsOfThePapersFrozenClothWithTheEffectiveGravity) {
-  const RunResult result = run_scene(shipped("paper/fig3_horizontal_real", {"solver.integrator=paper"}),
-                                     {.frames = 1, .record_animation = false});
-  EXPECT_TRUE(warns(result.report, "too stiff for the paper's Eq. 16"));
-  EXPECT_TRUE(warns(result.report, "of gravity"));
+TEST(SceneRun, WarnsOfThePapersFrozenClothWithTheEffectiveGravity) {
+  const RunReport report = run_scene(shipped("paper/fig3_horizontal_real", {"solver.integrator=paper"}),
+                                     {.frames = 1});
+  EXPECT_TRUE(warns(report, "too stiff for the paper's Eq. 16"));
+  EXPECT_TRUE(warns(report, "of gravity"));
 }
 
-TEST(Runner, RecordsTheStartAndEveryFrame) {
-  const RunResult result = run_scene(shipped("paper/fig6_ball"), {.frames = 5});
-  ASSERT_EQ(result.animation.cloths.size(), 1u);
-  EXPECT_EQ(result.animation.cloths[0].frames.size(), 6u);
-  EXPECT_EQ(result.animation.cloths[0].frames[0].size(), 3u * 33 * 33);
-  ASSERT_EQ(result.animation.bodies.size(), 1u);
-  EXPECT_EQ(result.report.lowest_y.size(), 5u);
-  EXPECT_EQ(result.report.kinetic_energy.size(), 5u);
+TEST(SceneRun, RecordsTheStartAndEveryFrame) {
+  FilmSink film;
+  const RunReport report = run_scene(shipped("paper/fig6_ball"), {.frames = 5}, {&film});
+  ASSERT_EQ(film.animation().cloths.size(), 1u);
+  EXPECT_EQ(film.animation().cloths[0].frames.size(), 6u);
+  EXPECT_EQ(film.animation().cloths[0].frames[0].size(), 3u * 33 * 33);
+  ASSERT_EQ(film.animation().bodies.size(), 1u);
+  EXPECT_EQ(report.lowest_y.size(), 5u);
+  EXPECT_EQ(report.kinetic_energy.size(), 5u);
 }
 
 /// A body's vertices at a frame, in the world.
@@ -130,8 +132,8 @@ std::vector<Vec3> vertices(const RigidMesh& body, std::size_t frame) {
   return placed;
 }
 
-TEST(Runner, ShowsEveryColliderWhereItIs) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "runner_test";
+TEST(SceneRun, ShowsEveryColliderWhereItIs) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "scene_run_test";
   std::filesystem::create_directories(folder);
   write_obj(folder / "body.obj", make_sphere_mesh({0.1, 0, 0}, 0.2, 8));
   const std::string scene = R"([scene]
@@ -159,12 +161,13 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
 )";
   const SceneDesc desc = parse_scene(scene, folder / "scene.toml");
   const SceneWorld built = build_world(desc, make_serial_jobs());
-  const RunResult result = run_scene(desc, {.frames = 3});
-  ASSERT_EQ(result.animation.bodies.size(), 3u);
+  FilmSink film;
+  run_scene(desc, {.frames = 3}, {&film});
+  ASSERT_EQ(film.animation().bodies.size(), 3u);
   for (const int frame : {0, 3}) {
     for (const int b : {0, 1}) {
       const ColliderShape shape = shape_at(built.world.colliders()[b], frame / 60.0);
-      for (const Vec3& p : vertices(result.animation.bodies[b], static_cast<std::size_t>(frame))) {
+      for (const Vec3& p : vertices(film.animation().bodies[b], static_cast<std::size_t>(frame))) {
         // Rounding of turning and moving.
         EXPECT_NEAR(signed_distance(shape, p).distance, 0, 1e-12) << "collider " << b << ", frame " << frame;
       }
@@ -173,7 +176,7 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
   // The mesh's middle, (0.1, 0, 0) in the file, is first turned to y, then by its motion to z.
   const auto middle = [&](std::size_t frame) {
     Vec3 sum = Vec3::Zero();
-    const std::vector<Vec3> placed = vertices(result.animation.bodies[2], frame);
+    const std::vector<Vec3> placed = vertices(film.animation().bodies[2], frame);
     for (const Vec3& p : placed) sum += p / static_cast<double>(placed.size());
     return sum;
   };
@@ -182,30 +185,31 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
   std::filesystem::remove_all(folder);
 }
 
-TEST(Runner, KeepsWhatWasDoneWhenInterrupted) {
-  const RunResult result =
-      run_scene(shipped("paper/fig6_ball"), {.frames = 50}, [](const Progress& p) { return p.frame < 7; });
-  EXPECT_EQ(result.report.outcome, RunOutcome::interrupted);
-  EXPECT_EQ(result.report.frames, 7);
-  EXPECT_EQ(result.animation.cloths[0].frames.size(), 8u);
+TEST(SceneRun, KeepsWhatWasDoneWhenInterrupted) {
+  FilmSink film;
+  const RunReport report =
+      run_scene(shipped("paper/fig6_ball"), {.frames = 50}, {&film}, [](const Progress& p) { return p.frame < 7; });
+  EXPECT_EQ(report.outcome, RunOutcome::interrupted);
+  EXPECT_EQ(report.frames, 7);
+  EXPECT_EQ(film.animation().cloths[0].frames.size(), 8u);
 }
 
-TEST(Runner, TellsWhichClothFailedWhenAndWhatToDo) {
-  const RunResult result =
+TEST(SceneRun, TellsWhichClothFailedWhenAndWhatToDo) {
+  const RunReport report =
       run_scene(shipped("paper/fig3_horizontal_real",
                         {"solver.integrator=explicit", "solver.explicit.substeps=1", "cloth[0].name=sail"}),
-                {.frames = 200, .record_animation = false});
-  EXPECT_EQ(result.report.outcome, RunOutcome::failed);
-  EXPECT_NE(result.report.failure.find("frame "), std::string::npos);
-  EXPECT_NE(result.report.failure.find("sail"), std::string::npos);
-  EXPECT_NE(result.report.failure.find("substeps"), std::string::npos);
+                {.frames = 200});
+  EXPECT_EQ(report.outcome, RunOutcome::failed);
+  EXPECT_NE(report.failure.find("frame "), std::string::npos);
+  EXPECT_NE(report.failure.find("sail"), std::string::npos);
+  EXPECT_NE(report.failure.find("substeps"), std::string::npos);
 }
 
 TEST(Report, HasThePrincipalStretchesOfMembranesPerFrame) {
-  const RunResult result = run_scene(
+  const RunReport report = run_scene(
       shipped("paper/fig3_horizontal_real", {"cloth[0].grid.cells=[8, 8]", "cloth[0].fabric=gray_interlock"}),
-      {.frames = 30, .record_animation = false});
-  const nlohmann::json json = nlohmann::json::parse(to_json(result.report));
+      {.frames = 30});
+  const nlohmann::json json = nlohmann::json::parse(to_json(report));
   ASSERT_EQ(json["max_stretch"].size(), 30u);
   EXPECT_GT(json["max_stretch"][29], 1.05) << "jersey";
   EXPECT_LT(json["max_stretch"][29], 2);
@@ -214,9 +218,9 @@ TEST(Report, HasThePrincipalStretchesOfMembranesPerFrame) {
 }
 
 TEST(Report, HasEveryNameThatOthersRelyOnAndNullForWhatIsNotMeasured) {
-  const RunResult result =
-      run_scene(shipped("paper/fig3_horizontal"), {.frames = 3, .record_animation = false});
-  const nlohmann::json json = nlohmann::json::parse(to_json(result.report));
+  const RunReport report =
+      run_scene(shipped("paper/fig3_horizontal"), {.frames = 3});
+  const nlohmann::json json = nlohmann::json::parse(to_json(report));
   for (const char* key : {"scene",
                           "integrator",
                           "particles",
@@ -269,10 +273,10 @@ TEST(Report, TellsWhereTheTimeOfTheStepsWent) {
   const SceneDesc scene = shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"});
   double spent = 0;
   const RunReport report =
-      run_scene(scene, {.frames = 30, .record_animation = false}, [&](const Progress& progress) {
+      run_scene(scene, {.frames = 30}, {}, [&](const Progress& progress) {
         spent = progress.seconds_spent;
         return true;
-      }).report;
+      });
   const nlohmann::json work = nlohmann::json::parse(to_json(report))["work"];
   const nlohmann::json& seconds = work["seconds"];
   double kinds = 0;
@@ -297,7 +301,7 @@ TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
   scene.cloths[1].position = {-0.5, 2.1, 0};
   scene.untangle = false;
   scene.crossed_start = CrossedStart::allow;
-  const RunReport report = run_scene(scene, {.frames = 2, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = 2});
   ASSERT_TRUE(report.intersections.has_value());
   EXPECT_GT(*report.intersections, 20);
   EXPECT_TRUE(warns(report, "at the start cloth \"sheet\" triangle "));
@@ -313,7 +317,7 @@ SceneDesc swapped_ribbons(const Overrides& overrides) {
 }
 
 TEST(Report, CountsWhatPassesThroughWithinAStepThoughNothingCrossesAtAnyFrame) {
-  const RunReport report = run_scene(swapped_ribbons({}), {.frames = 30, .record_animation = false}).report;
+  const RunReport report = run_scene(swapped_ribbons({}), {.frames = 30});
   EXPECT_EQ(report.intersections, 0);
   ASSERT_TRUE(report.passages.has_value());
   EXPECT_GT(*report.passages, 100);
@@ -325,8 +329,7 @@ TEST(Report, CountsWhatPassesThroughWithinAStepThoughNothingCrossesAtAnyFrame) {
 
 TEST(Report, OfPassagesIsNullWhereTheyAreNotChecked) {
   const RunReport report =
-      run_scene(swapped_ribbons({}), {.frames = 2, .record_animation = false, .check_passages = false})
-          .report;
+      run_scene(swapped_ribbons({}), {.frames = 2, .check_passages = false});
   EXPECT_FALSE(report.passages.has_value());
   EXPECT_TRUE(nlohmann::json::parse(to_json(report))["passages"].is_null());
 }
@@ -338,8 +341,8 @@ TEST(Report, CountsPassagesWithinSubstepsAndSteps) {
   const double start = 0.5, there = start + 0.4 / scene.fps, back = start + 0.8 / scene.fps;
   scene.colliders.at(0).motion =
       RigidMotion({{.time = start}, {.time = there, .translation = {0, 0, 11.25}}, {.time = back}});
-  EXPECT_EQ(*run_scene(scene, {.frames = 29, .record_animation = false}).report.passages, 0);
-  EXPECT_GE(*run_scene(scene, {.frames = 32, .record_animation = false}).report.passages, 2)
+  EXPECT_EQ(*run_scene(scene, {.frames = 29}).passages, 0);
+  EXPECT_GE(*run_scene(scene, {.frames = 32}).passages, 2)
       << "there and back: the ball's middle, and the particle in its way";
 }
 
@@ -359,7 +362,7 @@ SceneDesc crossed_sheets() {
 
 TEST(Report, OfAStartThatIsUntangledHasNoCrossings) {
   SceneDesc scene = crossed_sheets();
-  const RunReport report = run_scene(scene, {.frames = 20, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = 20});
   EXPECT_EQ(report.intersections, 0);
   EXPECT_TRUE(warns(report, "set apart in "));
   EXPECT_TRUE(warns(report, "cloth \"blade\""));
@@ -369,7 +372,7 @@ TEST(Report, OfACrossedStartThatIsRefusedNamesClothsTrianglesAndCounts) {
   SceneDesc scene = crossed_sheets();
   scene.untangle = false;
   try {
-    run_scene(scene, {.frames = 1, .record_animation = false});
+    run_scene(scene, {.frames = 1});
     FAIL();
   } catch (const InputError& error) {
     const std::string message = error.what();
@@ -384,14 +387,14 @@ TEST(Report, OfACrossedStartThatIsRefusedNamesClothsTrianglesAndCounts) {
 TEST(Report, OfAPoleThroughASheetThatNothingCanSetApartIsRefused) {
   SceneDesc scene = shipped("paper/fig6_ball", {"cloth[0].grid.cells=[8, 8]"});
   scene.colliders[0].shape = Capsule{{0, -1, 0}, {0, 2, 0}, 0.1};
-  EXPECT_THROW(run_scene(scene, {.frames = 1, .record_animation = false}), InputError);
+  EXPECT_THROW(run_scene(scene, {.frames = 1}), InputError);
 }
 
 TEST(Report, OfACrossedStartThatIsAllowedWarns) {
   SceneDesc scene = crossed_sheets();
   scene.untangle = false;
   scene.crossed_start = CrossedStart::allow;
-  const RunReport report = run_scene(scene, {.frames = 1, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = 1});
   EXPECT_EQ(report.outcome, RunOutcome::done);
   EXPECT_TRUE(warns(report, " crossing pairs"));
 }
@@ -401,7 +404,7 @@ TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {
   const SceneDesc scene = shipped(
       "paper/fig6_ball", {"cloth[0].grid.cells=[1, 1]", "cloth[0].position=[-0.5, 0.6, -0.5]",
                           "scene.gravity=[0, 0, 0]", "solver.steps_per_frame=1", "solver.contact=false"});
-  const RunReport report = run_scene(scene, {.frames = 1, .record_animation = false}).report;
+  const RunReport report = run_scene(scene, {.frames = 1});
   ASSERT_TRUE(report.penetration_max.has_value());
   EXPECT_NEAR(*report.penetration_max, 0.1, 1e-6) << "the ball's top is at 0.7 m";
   EXPECT_TRUE(warns(report, "at the start cloth \"cloth\" triangle "));
@@ -409,10 +412,10 @@ TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {
 }
 
 TEST(Report, EnergyOfFallingClothIsThatOfItsWeight) {
-  const RunResult result = run_scene(shipped("paper/fig5_falling", {"solver.integrator=explicit"}),
-                                     {.frames = 20, .record_animation = false});
-  const auto& k = result.report.kinetic_energy;
-  const auto& p = result.report.potential_energy;
+  const RunReport report = run_scene(shipped("paper/fig5_falling", {"solver.integrator=explicit"}),
+                                     {.frames = 20});
+  const auto& k = report.kinetic_energy;
+  const auto& p = report.potential_energy;
   EXPECT_NEAR(k[19] + p[19], k[0] + p[0], 2e-3 * p[0]) << "nothing but gravity works on it";
   const double v = 9.81 / 3;  // after a third of a second
   EXPECT_NEAR(k[19], 0.5 * 0.2 * v * v, 1e-3);
@@ -426,17 +429,17 @@ TEST(Report, QuantilesAreNearestRanks) {
 }
 
 TEST(Report, HasTheEnergiesOfEveryFrameAndTheirSumIsTheTwoItAlwaysHad) {
-  const RunResult result = run_scene(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"}),
-                                     {.frames = 40, .record_animation = false});
-  const EnergySeries& e = result.report.energy;
+  const RunReport report = run_scene(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"}),
+                                     {.frames = 40});
+  const EnergySeries& e = report.energy;
   ASSERT_EQ(e.bending.size(), 40u);
   for (int f = 0; f < 40; ++f) {
-    EXPECT_EQ(e.kinetic[f], result.report.kinetic_energy[f]);
-    const double potential = result.report.potential_energy[f];
+    EXPECT_EQ(e.kinetic[f], report.kinetic_energy[f]);
+    const double potential = report.potential_energy[f];
     EXPECT_NEAR(e.elastic[f] + e.bending[f] + e.gravitational[f], potential, 1e-12 * std::abs(potential));
   }
   EXPECT_GT(e.bending[39], 0);
-  const nlohmann::json json = nlohmann::json::parse(to_json(result.report))["energy"];
+  const nlohmann::json json = nlohmann::json::parse(to_json(report))["energy"];
   EXPECT_EQ(json["elastic"].size(), 40u);
   for (const char* key : {"work_pins", "work_shapes", "work_wind", "work_hands", "left_over"})
     EXPECT_TRUE(json.at(key).is_null()) << key << " is not measured without an audit";
@@ -448,7 +451,7 @@ TEST(Report, OfAnAuditBalancesAndTheMotionIsTheSame) {
       shipped("contact/rotating_ball", {"cloth[0].grid.cells=[12, 12]", "solver.steps_per_frame=2"});
   RunReport reports[2];
   for (const bool audit : {false, true})
-    reports[audit] = run_scene(scene, {.frames = 90, .record_animation = false, .audit = audit}).report;
+    reports[audit] = run_scene(scene, {.frames = 90, .audit = audit});
   EXPECT_EQ(reports[0].state_hash, reports[1].state_hash);
   const EnergySeries& e = reports[1].energy;
   ASSERT_EQ(e.left_over.size(), 90u);

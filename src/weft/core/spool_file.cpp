@@ -1,0 +1,70 @@
+#include "weft/core/spool_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "weft/error.h"
+
+#ifndef _WIN32
+#include <cstdlib>
+#include <unistd.h>
+#endif
+
+namespace weft::engine {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& folder) {
+  const int reason = errno != 0 ? errno : EIO;
+  throw InputError("a temporary file in " + folder.string() +
+                   " cannot be written: " + std::generic_category().message(reason));
+}
+
+/// nullptr where the folder does not allow it.
+std::FILE* open_in(const std::filesystem::path& folder) {
+#ifndef _WIN32
+  std::string name = (folder / ".weft-XXXXXX").string();
+  const int descriptor = mkstemp(name.data());
+  if (descriptor < 0) return nullptr;
+  unlink(name.c_str());
+  return fdopen(descriptor, "w+b");
+#else
+  (void)folder;
+  return std::tmpfile();
+#endif
+}
+
+}  // namespace
+
+SpoolFile::SpoolFile(const std::filesystem::path& folder) : folder_(folder.empty() ? "." : folder) {
+  errno = 0;
+  file_.reset(open_in(folder_));
+  if (!file_) {
+    folder_ = std::filesystem::temp_directory_path();
+    file_.reset(open_in(folder_));
+  }
+  if (!file_) fail(folder_);
+}
+
+void SpoolFile::append(const void* bytes, std::size_t count) {
+  if (count == 0) return;
+  errno = 0;
+  if (std::fwrite(bytes, 1, count, file_.get()) != count) fail(folder_);
+  size_ += count;
+}
+
+void SpoolFile::copy_to(std::ostream& out) {
+  errno = 0;
+  if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) fail(folder_);
+  std::array<char, 1 << 16> buffer;
+  for (std::size_t left = size_; left > 0;) {
+    const std::size_t count = std::fread(buffer.data(), 1, std::min(left, buffer.size()), file_.get());
+    if (count == 0) fail(folder_);
+    out.write(buffer.data(), static_cast<std::streamsize>(count));
+    left -= count;
+  }
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,77 @@
+#pragma once
+/// Animations: meshes with their positions in every frame.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "weft/core/shapes.h"
+#include "weft/mesh/triangle_mesh.h"
+
+namespace weft::engine {
+
+/// A mesh with a position per vertex and frame.
+struct AnimatedMesh {
+  std::string name;
+  std::vector<Triangle> triangles;
+  std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
+  std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
+  std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+};
+
+/// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, which takes it to the world.
+/// One pose: it stands still.
+struct RigidMesh {
+  struct Pose {
+    Vec3 translation = Vec3::Zero();                               // [m]
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // unit
+    bool operator==(const Pose& other) const {
+      return translation == other.translation && rotation.coeffs() == other.rotation.coeffs();
+    }
+  };
+
+  std::string name;
+  TriangleMesh mesh;
+  std::array<double, 3> color = {0.5, 0.5, 0.5};
+  std::vector<Pose> poses;                 // (1 or num_frames)
+  std::vector<std::vector<float>> frames;  // of a body that deforms: (num_frames) of (num_vertices x 3), in
+                                           // the mesh's coordinates; empty: the mesh stays as it is [m]
+  /// Position of a vertex in a frame, in the mesh's coordinates.
+  Vec3 vertex(std::size_t v, std::size_t frame) const {
+    if (frames.empty()) return mesh.positions[v];
+    return Eigen::Map<const Eigen::Vector3f>(&frames[frame][3 * v]).cast<double>();
+  }
+
+  std::optional<SolidShape> shape;  // what `mesh` shows, exactly, in its coordinates; empty: just the mesh
+};
+
+struct Animation {
+  std::string title;
+  double frames_per_second = 60;  // > 0
+  std::vector<AnimatedMesh> cloths;
+  std::vector<RigidMesh> bodies;
+  std::vector<std::array<std::string, 2>> passing = {};  // names of pairs that do not collide
+};
+
+/// One frame of an animation.
+struct AnimationFrame {
+  std::vector<std::vector<float>> cloths;         // (num_cloths) of (num_vertices x 3), world space [m]
+  std::vector<RigidMesh::Pose> poses;             // (num_bodies)
+  std::vector<std::vector<float>> body_vertices;  // (num_bodies) as RigidMesh::frames has them; empty for a
+                                                  // body that does not deform [m]
+};
+
+/// Its meshes alone.
+Animation without_frames(const Animation& animation);
+
+/// Number of frames, at least 1: the most that any mesh has.
+std::size_t count_frames(const Animation& animation);
+
+/// Frame `k` of the animation; a body with one pose has it in every frame.
+AnimationFrame get_frame(const Animation& animation, std::size_t k);
+
+/// Appends a frame. A body that has stood still so far keeps one pose.
+void append_frame(AnimationFrame frame, Animation& animation);
+
+}  // namespace weft::engine

@@ -1,0 +1,55 @@
+#include "weft/run/frame_checker.h"
+
+#include <algorithm>
+
+#include "weft/error.h"
+#include "weft/run/scene_run.h"
+#include "weft/run/start_check.h"
+
+namespace weft::engine {
+namespace {
+
+void check_start(const SceneDesc& scene, const World& world, RunReport& report) {
+  const std::vector<std::string> found = check_start(world);
+  report.warnings.insert(report.warnings.end(), found.begin(), found.end());
+  if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return;
+  std::string all = scene.untangle ? "the start crosses, and could not be set apart:"
+                                   : "the start crosses, and solver.untangle = false leaves it so:";
+  for (const std::string& sentence : found) all += "\n  " + sentence;
+  throw InputError(all + "\nmove them apart, or solver.crossed_start = \"allow\" runs all the same");
+}
+
+}  // namespace
+
+void FrameChecker::begin(SceneRun& run, RunReport& report) {
+  check_start(run.scene(), run.world(), report);
+  frames_.emplace(run.world());
+  if (!has_passages_) return;
+  watch_.emplace(frames_->now().frame);
+  report.passages = 0;
+  run.observe([this, &report, frame = &run](double time) {
+    const FrameToCheck moment = frames_->at(time);
+    const std::vector<verify::FeaturePair> passages = watch_->advance(moment.frame);
+    if (passages.empty()) return;
+    if (report.passages == 0)
+      report.first_passage = "frame " + std::to_string(frame->frame() + 1) + ": " +
+                             verify::describe(moment.frame, passages[0]);
+    *report.passages += static_cast<int>(passages.size());
+  });
+}
+
+void FrameChecker::add_frame(const SceneRun&, RunReport& report) {
+  const verify::FrameCheck check = verify::check_frame(frames_->now().frame, 0);
+  report.crossings_at_end = check.intersections;
+  report.intersections = std::max(report.intersections.value_or(0), check.intersections);
+  if (!check.deepest) return;
+  report.penetration_max = std::max(report.penetration_max.value_or(0), check.penetration());
+}
+
+void FrameChecker::finish(const SceneRun&, RunReport& report) {
+  if (!watch_ || watch_->num_left_out() == 0) return;
+  report.warnings.push_back("passages are not counted of " + std::to_string(watch_->num_left_out()) +
+                            " substeps in which cloth moved by more than its own size");
+}
+
+}  // namespace weft::engine

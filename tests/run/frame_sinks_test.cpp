@@ -1,0 +1,191 @@
+/// Frames reach sinks as they are made, and files hold the frames that a sink in memory got.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "weft/error.h"
+#include "weft/io/glb_reader.h"
+#include "weft/io/obj_reader.h"
+#include "weft/run/file_sinks.h"
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
+#include "weft/scene/scene_reader.h"
+
+namespace weft::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
+  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
+}
+
+class FrameSinks : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+
+  fs::path folder_;
+};
+
+/// Keeps the frames' numbers and the world's time at them.
+struct Listener : FrameSink {
+  void begin(SceneRun& run, RunReport&) override { add_frame(run, *this); }
+  void add_frame(const SceneRun& run, RunReport&) override { add_frame(run, *this); }
+  void begin_step(const SceneRun&) override { ++steps; }
+  void finish(const SceneRun&, RunReport& report) override { hash = report.state_hash; }
+
+  static void add_frame(const SceneRun& run, Listener& self) {
+    self.frames.push_back(run.frame());
+    self.times.push_back(run.world().time());
+  }
+
+  std::vector<int> frames;
+  std::vector<double> times;
+  int steps = 0;
+  std::string hash;
+};
+
+TEST_F(FrameSinks, GetEveryFrameOnceInOrder) {
+  Listener listener;
+  const SceneDesc scene = shipped("flag", {"solver.steps_per_frame=2"});
+  const RunReport report = run_scene(scene, {.frames = 4}, {&listener});
+  EXPECT_EQ(listener.frames, (std::vector<int>{0, 1, 2, 3, 4}));
+  for (int k = 0; k <= 4; ++k) EXPECT_NEAR(listener.times[k], k / 60.0, 1e-12);
+  EXPECT_EQ(listener.steps, 8);
+  EXPECT_EQ(listener.hash, report.state_hash);
+}
+
+TEST_F(FrameSinks, RunFrameByFrameHasTheSameBitsWithAndWithoutThem) {
+  const SceneDesc scene = shipped("flag");
+  Listener listener;
+  SceneRun watched(scene, make_serial_jobs(), {&listener}, 10), alone(scene, make_serial_jobs(), {}, 10);
+  while (watched.next_frame()) EXPECT_TRUE(alone.next_frame());
+  EXPECT_FALSE(alone.next_frame());
+  SceneRun by_steps(scene, make_serial_jobs());
+  for (int s = 0; s < 10 * scene.steps_per_frame; ++s) by_steps.step();
+  EXPECT_EQ(watched.finish().state_hash, alone.finish().state_hash);
+  EXPECT_EQ(by_steps.finish().state_hash, alone.report().state_hash);
+  EXPECT_EQ(run_scene(scene, {.frames = 10}).state_hash, alone.report().state_hash);
+}
+
+TEST_F(FrameSinks, ReportSoFarGrowsByAFrame) {
+  SceneRun run(shipped("paper/fig6_ball"), make_serial_jobs(), {}, 3);
+  EXPECT_EQ(run.report().frames, 0);
+  ASSERT_TRUE(run.next_frame());
+  EXPECT_EQ(run.report().frames, 1);
+  run.interrupt();
+  EXPECT_FALSE(run.next_frame());
+  EXPECT_EQ(run.finish().outcome, RunOutcome::interrupted);
+}
+
+TEST_F(FrameSinks, GlbHasTheFramesOfTheFilm) {
+  StagedFile file(folder_ / "animation.glb");
+  GlbSink glb(file);
+  FilmSink film;
+  run_scene(shipped("contact/rotating_ball", {"cloth[0].grid.cells=[12, 12]"}), {.frames = 6}, {&glb, &film});
+  file.replace();
+  const Animation read = read_glb(folder_ / "animation.glb");
+  ASSERT_EQ(count_frames(read), 7u);
+  ASSERT_EQ(read.bodies.size(), film.animation().bodies.size());
+  for (std::size_t k = 0; k < 7; ++k) {
+    const AnimationFrame a = get_frame(read, k), b = get_frame(film.animation(), k);
+    for (std::size_t i = 0; i < b.cloths[0].size(); ++i)
+      EXPECT_NEAR(a.cloths[0][i], b.cloths[0][i], 2e-7);  // a difference from the first frame, rounded
+    for (std::size_t n = 0; n < b.poses.size(); ++n) {
+      EXPECT_LT((a.poses[n].translation - b.poses[n].translation).norm(), 1e-6);
+      EXPECT_LT(a.poses[n].rotation.angularDistance(b.poses[n].rotation), 1e-6);
+    }
+  }
+}
+
+TEST_F(FrameSinks, GlbHasBodiesThatDeform) {
+  write_obj(folder_ / "body_0.obj", make_sphere_mesh({0, 0, 0}, 0.2, 8));
+  write_obj(folder_ / "body_1.obj", make_sphere_mesh({0, 0, 0}, 0.3, 8));
+  const SceneDesc scene = parse_scene(R"([scene]
+format = 1
+[[cloth]]
+grid = { size = [1, 1], cells = [4, 4] }
+position = [0, 5, 0]
+[[collider]]
+shape = "mesh"
+frames = "body_*.obj"
+frame_rate = 30
+)",
+                                      folder_ / "scene.toml");
+  StagedFile file(folder_ / "animation.glb");
+  GlbSink glb(file);
+  run_scene(scene, {.frames = 2}, {&glb});
+  file.replace();
+  const Animation read = read_glb(folder_ / "animation.glb");
+  ASSERT_EQ(read.bodies.size(), 1u);
+  ASSERT_EQ(read.bodies[0].frames.size(), 3u);
+  for (const int k : {0, 1, 2})
+    EXPECT_NEAR(read.bodies[0].vertex(0, static_cast<std::size_t>(k)).norm(), 0.2 + 0.05 * k, 1e-6);
+}
+
+TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
+  ObjSink obj(folder_);
+  FilmSink film;
+  run_scene(shipped("two_layers", {"cloth[0].grid.cells=[6, 6]", "cloth[1].grid.cells=[6, 6]"}), {.frames = 3},
+            {&obj, &film});
+  for (const AnimatedMesh& cloth : film.animation().cloths) {
+    std::string name = cloth.name;  // "upper sheet"
+    std::replace(name.begin(), name.end(), ' ', '_');
+    for (int k = 0; k <= 3; ++k) {
+      const ObjMesh read = read_obj(folder_ / (name + "_000" + std::to_string(k) + ".obj"));
+      EXPECT_EQ(read.mesh.triangles, cloth.triangles);
+      for (int v = 0; v < read.mesh.num_vertices(); ++v) {
+        for (int axis = 0; axis < 3; ++axis)
+          EXPECT_EQ(static_cast<float>(read.mesh.positions[v][axis]), cloth.frames[k][3 * v + axis]);
+      }
+    }
+  }
+}
+
+TEST_F(FrameSinks, GlbRefusesARunThatItCannotHoldBeforeItStarts) {
+  StagedFile file(folder_ / "animation.glb");
+  GlbSink glb(file);
+  try {
+    run_scene(shipped("flag"), {.frames = 1000000}, {&glb});
+    FAIL() << "no refusal";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a .glb holds 4 GiB"), std::string::npos) << error.what();
+  }
+}
+
+/// The most memory that a process has which runs so many frames to a .glb [bytes].
+double peak_memory(const SceneDesc& scene, int frames, const fs::path& file) {
+  const pid_t child = fork();
+  if (child == 0) {
+    StagedFile staged(file);
+    GlbSink glb(staged);
+    run_scene(scene, {.frames = frames, .check_passages = false}, {&glb});
+    _exit(0);
+  }
+  int status = 0;
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  EXPECT_EQ(status, 0);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+TEST_F(FrameSinks, MemoryDoesNotGrowWithTheFrames) {
+  const SceneDesc scene =
+      shipped("paper/fig3_horizontal", {"cloth[0].grid.cells=[64, 64]", "solver.contact=false"});
+  const double few = peak_memory(scene, 20, folder_ / "few.glb");
+  const double many = peak_memory(scene, 420, folder_ / "many.glb");
+  const double data = 400.0 * 65 * 65 * 6 * sizeof(float);  // of the further frames: 41 MB
+  EXPECT_LT(many - few, 0.2 * data) << "grew by " << (many - few) / 1e6 << " MB";
+}
+
+}  // namespace
+}  // namespace weft::engine
