@@ -237,7 +237,7 @@ class ContactSystem {
   ContactStep step_;
   bool is_predicted_ = false;      // the solve includes contacts
   bool is_for_solve_ = false;      // contacts are being predicted
-  bool is_near_shape_ = false;     // some vertex may touch a plain shape
+  bool is_near_shape_ = false;     // some vertex may touch a primitive shape
   bool is_placed_ = false;         // motion_ and the members after it are this step's
   bool is_surveyed_ = false;       // only uncertain_ may meet in the motion surveyed last
   bool is_clear_ = false;          // no contact is possible in the motion that hold_off checked

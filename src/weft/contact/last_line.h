@@ -7,10 +7,10 @@
 ///     1. Impulses (Bridson, Fedkiw and Anderson 2002) separate the pair's end positions along the normal at
 ///        the impact, repeatedly, because a correction may cause new hits.
 ///
-///     2. Remaining hits are joined into rigid impact zones (Provot 1997; Harmon et al. 2008). A zone's motion
-///        is split into the best-fitting rigid motion and a remainder, and the remainder is scaled down, in
-///        the end to zero; zones that meet are merged. Momentum is kept, and rigid motion causes no hits
-///        within the zone. A zone that meets a kinematic body takes that body's motion.
+///     2. Remaining hits are joined into rigid impact zones (Provot 1997; Harmon et al. 2008). The motion of
+///        a zone is split into the best-fitting rigid motion and a remainder, and the remainder is scaled
+///        down, in the end to zero; zones that meet are merged. Momentum is kept, and rigid motion causes no
+///        hits within the zone. A zone that meets a kinematic body takes that body's motion.
 ///
 ///     3. Hits that remain are between bodies whose kinematic motions are infeasible. They are listed.
 ///
@@ -69,8 +69,8 @@ struct LastLineStep {
 
 class LastLine {
  public:
-  /// Changes motion.end of cloth vertices where necessary. Ignores pairs that touch or intersect at the start,
-  /// and features inside a closed mesh: they may leave. `proximity` is valid for the motion afterwards.
+  /// Changes motion.end of cloth vertices where necessary. Ignores pairs that touch or intersect at the
+  /// start, and features inside a closed mesh: they may leave. `proximity` then holds for the motion.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
 
   /// The impulses of the last hold(): `push` holds how much each moved [kg m].

@@ -2,10 +2,10 @@
 /// Repair of cloth that starts intersected, before the first step.
 ///
 ///              │ B           Where edges pierce triangles, each of two surfaces is cut into the parts on
-///              │             either side of the other. The lightest of the four parts moves over to its own
-///     A1 ──────┼────── A2    surface's other part, the row along the cut first; the stretch this causes pulls
-///              │             the next row after it. Where cloth intersects itself, the two curves cut it in
-///              │             the same way.
+///              │             either side of the other. The lightest of the four parts moves over to its
+///     A1 ──────┼────── A2    own surface's other part, the row along the cut first; the stretch this causes
+///              │             pulls the next row after it. Where cloth intersects itself, the two curves
+///              │             cut it in the same way.
 ///
 /// Where pins hold all parts, the cut is shortened at its ends (Volino and Magnenat-Thalmann 2006).
 ///
