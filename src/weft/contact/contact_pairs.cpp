@@ -164,7 +164,7 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   return finish_pair(distance, gap, c);
 }
 
-/// The time of coplanarity, if the four vertices can meet by then: from `distance`, with motion up to `travel`.
+/// Time of coplanarity, if the four vertices can meet by then: from `distance`, with motion up to `travel`.
 std::optional<double> ContactSystem::find_meeting_time(const Constraint& c, double distance,
                                                        double travel) const {
   if (distance > travel + kMeeting) return std::nullopt;
