@@ -26,8 +26,7 @@ double pair_distance(const std::vector<Vec3>& x, const std::vector<double>& weig
 /// Requirements on every result: weights that are a pair of points on the features, the pair's distance, and
 /// none smaller.
 struct Claim {
-  double worst_value =
-      0;  // |distance − the pair's| and distance − the smallest, over the largest length
+  double worst_value = 0;  // |distance − the pair's| and distance − the smallest, over the largest length
   double worst_minimum = 0;
   double worst_sum = 0;  // of the weights
   bool weights_in_range = true;

@@ -60,9 +60,9 @@ struct LastLineStep {
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
   const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
   const std::vector<ClosedMesh>* closed_meshes = nullptr;
-  const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) 1: do not collide; or empty
-  const ShapeClearance* clearance = nullptr;  // of cloth from primitive shapes
-  double thickest = 0;                        // half thickness of the thickest cloth [m]
+  const std::vector<char>* passes = nullptr;     // (cloths and shapes, the same) 1: do not collide; or empty
+  const ShapeClearance* clearance = nullptr;     // of cloth from primitive shapes
+  double thickest = 0;                           // half thickness of the thickest cloth [m]
   std::span<const Separation> separations = {};  // of some triangles, in the order of shapes and triangles
   WorkClock* clock = nullptr;                    // counts detections; null: not counted
 };

@@ -170,7 +170,7 @@ class Proximity {
 
   // State at the last search.
   Moment at_start_, at_end_;
-  std::vector<float> margin_;  // (num_vertices) slack, half thickness and float rounding [m]
+  std::vector<float> margin_;           // (num_vertices) slack, half thickness and float rounding [m]
   std::vector<SweptBox> patch_box_;     // (patches)
   std::vector<char> is_flat_;           // (windows) no self contact is possible
   std::vector<PatchPair> patch_pairs_;  // whose features are listed, in order

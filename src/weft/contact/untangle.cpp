@@ -292,7 +292,7 @@ class Untangler {
   struct Cut {
     int mesh = 0;
     std::vector<Pierced> crossings;
-    int side = 0;  // of the cutting triangles on which the lighter part is: +1 along normals
+    int side = 0;               // of the cutting triangles on which the lighter part is: +1 along normals
     double weight = kInfinity;  // of the lighter part [kg]
   };
 

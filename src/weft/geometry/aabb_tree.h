@@ -280,8 +280,8 @@ class AabbTree {
   bool moves_ = false;  // fitted to moving boxes
   std::vector<aabb_tree::LeafWays> leaf_ways_;
   std::vector<Aabb> node_ways_;
-  std::vector<char> is_marked_;  // (nodes) a marked item is below
-  std::vector<int> starts_;  // roots of disjoint subtrees that cover all items, for parallel refits
+  std::vector<char> is_marked_;    // (nodes) a marked item is below
+  std::vector<int> starts_;        // roots of disjoint subtrees that cover all items, for parallel refits
   std::vector<int> start_ends_;    // one past the last node below each
   std::vector<int> above_starts_;  // all nodes above them, ascending
 };

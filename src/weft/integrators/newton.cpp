@@ -27,8 +27,8 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kMissedShare = 0.2;   // of the energy: a larger model error requests one more Newton step
-constexpr double kFallingShare = 0.5;  // of the remaining energy: likewise for a larger last decrease
+constexpr double kMissedShare = 0.2;      // of the energy: a larger model error requests one more Newton step
+constexpr double kFallingShare = 0.5;     // of the remaining energy: likewise for a larger last decrease
 constexpr int kFewestStepsInContact = 2;  // the first one has no contacts and contact forces
 constexpr int kMostStepsInContact = 6;
 constexpr int kTimesCoasting = 2;          // factor on iterations from x + h v, which must add all of gravity
