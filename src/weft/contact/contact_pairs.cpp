@@ -17,7 +17,7 @@ constexpr int kPairGrain = 1024;  // pairs per chunk
 /// distance per step: full separation in one step would throw it.
 constexpr double kRecovery = 0.2;
 
-/// Parallel edges have no reliable direction between them: limit of sin² of the angle.
+/// Almost parallel edges have no reliable direction between them: limit of sin² of the angle.
 constexpr double kParallelSq = 0.03;
 
 /// Edges that come nearer than this when they are coplanar count as meeting [m].
