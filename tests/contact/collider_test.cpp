@@ -28,7 +28,7 @@ TEST(Collider, GoesWhereItsMotionTakesItAboutItsPivot) {
   EXPECT_LT((moved.b - Vec3(1, 2, 2)).norm(), 1e-14);
 }
 
-/// A cloth of lone particles that contact alone moves. Mass 0.01 kg each.
+/// A cloth of lone particles that only contact moves. Mass 0.01 kg each.
 struct Particles {
   std::shared_ptr<const ClothModel> model;
   ClothState state;
@@ -41,7 +41,7 @@ struct Particles {
         state(make_state(places)),
         is_pinned(places.size(), 0) {}
 
-  /// The particles are at the start of the step; `move` takes them to its end.
+  /// The particles are at the start of the step; `move` sets their ends.
   template <class Move>
   void step(const std::vector<Collider>& colliders, const ContactStep& step, const Move& move) {
     const ContactCloth cloth{model.get(), &state, &is_pinned};
@@ -55,7 +55,7 @@ struct Particles {
     this->step(colliders, step, [] {});
   }
 
-  /// Ballistic flight for one step, as semi-implicit Euler has it.
+  /// Ballistic flight for one step, by semi-implicit Euler.
   void fall(const std::vector<Collider>& colliders, const ContactStep& step) {
     this->step(colliders, step, [&] {
       for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -66,8 +66,8 @@ struct Particles {
   }
 };
 
-/// One particle on a plane tilted by `angle_deg`, sliding from rest for a second: how far it has gone down
-/// the slope.
+/// One particle on a plane tilted by `angle_deg`, sliding from rest for a second: its displacement down the
+/// slope.
 double slide(double angle_deg, double friction) {
   const Mat3 tilt = rotation_from_angles_deg({0, 0, angle_deg});
   const std::vector<Collider> colliders = {
@@ -104,7 +104,7 @@ TEST(ContactSystem, MovingColliderTakesClothAlong) {
           << s;
     }
   }
-  EXPECT_NEAR(particles.state.position(0).y(), 1.001, 1e-4);  // half the thickness, and a share of g h²
+  EXPECT_NEAR(particles.state.position(0).y(), 1.001, 1e-4);  // half the thickness, plus a share of g h²
   EXPECT_NEAR(particles.state.v.get(0).y(), 0.5, 1e-3);       // the ball's
 }
 
@@ -118,7 +118,7 @@ TEST(ContactSystem, TurningColliderTakesClothAlongByFriction) {
   for (int s = 1; s <= kSteps; ++s) {
     particles.fall(colliders, {.time = s / double{kSteps}, .step = 1.0 / kSteps});
   }
-  // It slips while it gets under way, v²/(2 µ g) = 2.5 mm, and is thrown outwards by a second-order share.
+  // It slips while it accelerates, v²/(2 µ g) = 2.5 mm, and is thrown outwards by a second-order share.
   EXPECT_LT((particles.state.position(0) - Vec3(0, 0.001, -0.1)).norm(), 0.005);
 }
 
@@ -144,7 +144,7 @@ TEST(ContactSystem, OnAHeavyLandingNothingStaysInsideNorBouncesBack) {
 }
 
 TEST(ContactSystem, BetweenTwoCollidersBothAreObeyed) {
-  // In a groove of two planes: the push of one is not what brings cloth into the other.
+  // In a groove of two planes: the push of one must not bring cloth into the other.
   const Mat3 left = rotation_from_angles_deg({0, 0, -30}), right = rotation_from_angles_deg({0, 0, 50});
   const std::vector<Collider> colliders = {{"left", Plane{Vec3::Zero(), left * Vec3::UnitY()}, 0.2, {}},
                                            {"right", Plane{Vec3::Zero(), right * Vec3::UnitY()}, 0.2, {}}};
@@ -163,7 +163,7 @@ TEST(ContactSystem, BetweenTwoCollidersBothAreObeyed) {
 }
 
 TEST(ContactSystem, FastParticleDoesNotPassThroughASmallBall) {
-  // 0.8 m within a step, through a ball of 0.1 m: the way is what counts, unless it ends beyond.
+  // 0.8 m within a step, through a ball of 0.1 m: the whole motion counts, unless it ends beyond.
   const std::vector<Collider> colliders = {{"ball", Sphere{Vec3::Zero(), 0.1}, 0.0, {}}};
   Particles particles({{0, 0.12, 0}, {1, 0.12, 0}}, 0.002);
   for (std::size_t i = 0; i < 2; ++i) particles.state.v.set(i, {0, -10, 0});

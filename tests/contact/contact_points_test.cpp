@@ -1,4 +1,4 @@
-/// The contacts that a step tells of: their forces carry what they carry.
+/// Reported contact points: their forces equal the loads that the contacts carry.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ Vec3 sum_of_forces(const std::vector<ContactPoint>& points) {
   return sum;
 }
 
-/// The mean of the contacts' sum over the last quarter of the steps.
+/// Mean of the sum of contact forces over the last quarter of the steps.
 Vec3 settle(World& world, double seconds, int steps_per_second) {
   const int num_steps = static_cast<int>(std::lround(seconds * steps_per_second)), last = num_steps / 4;
   Vec3 mean = Vec3::Zero();
@@ -86,7 +86,7 @@ TEST_P(ContactPoints, OfASheetOnABallCarryItsWeight) {
   const ClothId sheet = add_sheet(world, "sheet", 0.3, 8, Mat3::Identity(), 0.2 + kSoft.thickness / 2);
   const Vec3 force = settle(world, 2.5, GetParam().steps_per_second);
   const double weight = mass_of(world, sheet) * kGravity;
-  // It still swings a little; and paper_fixed does not keep momentum where borders differ.
+  // It still swings a little, and paper_fixed does not conserve momentum where borders differ.
   const double tolerance = GetParam().integrator == std::string("paper_fixed") ? 0.05 : 0.03;
   EXPECT_NEAR(force.y(), weight, tolerance * weight);
 }

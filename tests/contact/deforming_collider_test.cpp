@@ -1,4 +1,4 @@
-/// Meshes that change their shape push cloth and are never passed through.
+/// Deforming mesh colliders push cloth, and are never penetrated.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 const ClothMaterial kCotton{.structural = 200, .shear = 60, .bend = 0.5, .damping = 2e-3};
 
-/// A ball that becomes this much wider, and flatter, and back, in half a second each.
+/// A ball that widens by this factor, flattens, and returns, in half a second each.
 Collider make_pulsing_ball(double radius, double factor) {
   TriangleMesh ball = make_sphere_mesh(Vec3::Zero(), radius, 12);
   std::vector<Vec3> wide;

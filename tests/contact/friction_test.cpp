@@ -1,4 +1,4 @@
-/// Coulomb's law, for whole sheets: on colliders and on other cloth.
+/// Coulomb's law for whole sheets, on colliders and on other cloth.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping =
 double radians(double angle_deg) { return angle_deg * 3.14159265358979 / 180; }
 Mat3 tilt_of(double angle_deg) { return rotation_from_angles_deg({0, 0, angle_deg}); }
 
-/// A sheet with its middle at the origin, `height` over the slope.
+/// A sheet with its centre at the origin, `height` over the slope.
 std::vector<Vec3> place_on_slope(const ClothTopology& topology, double size, const Mat3& tilt,
                                  double height) {
   std::vector<Vec3> positions;
@@ -26,10 +26,10 @@ std::vector<Vec3> place_on_slope(const ClothTopology& topology, double size, con
   return positions;
 }
 
-/// The way down the slope, per half the square of the time: the mean acceleration of what began at rest.
+/// The displacement down the slope over half the squared time: the mean acceleration from rest.
 struct Slide {
   double acceleration = 0;  // [m/s²]
-  double lift = 0;          // how far it has moved off the slope [m]
+  double lift = 0;          // displacement off the slope [m]
 };
 
 Slide measure(World& world, ClothId cloth, const Mat3& tilt, double seconds, int steps_per_second) {
@@ -42,7 +42,7 @@ Slide measure(World& world, ClothId cloth, const Mat3& tilt, double seconds, int
 
 enum class Ground { plane, box };
 
-/// A sheet on a plane that rises by 40 cm per metre, with a speed down it; static friction 0.5, sliding 0.3.
+/// A sheet on a plane of slope 40 %, with an initial speed down it; static friction 0.5, sliding 0.3.
 Slide start_on_slope(const std::string& integrator, double speed, double static_friction) {
   constexpr double kSize = 0.32;
   const double angle_deg = std::atan(0.4) * 180 / 3.14159265358979;
@@ -87,7 +87,7 @@ TEST(StaticFriction, MayBeThatOfAPair) {
   EXPECT_THROW(world.set_friction("sheet", "floor", 0.2, -0.4), InputError);
 }
 
-/// A sheet of 8 x 8 cells of 4 cm on a slope of the collider's friction.
+/// A sheet of 8 x 8 cells of 4 cm on a slope with the given friction.
 Slide slide_on(Ground ground, const std::string& integrator, double angle_deg, double friction) {
   constexpr double kSize = 0.32;
   World world;
@@ -120,8 +120,8 @@ class FrictionOnASlope : public testing::TestWithParam<FrictionCase> {};
 TEST_P(FrictionOnASlope, HoldsTheSheetUntilTheTangentReachesTheCoefficient) {
   const auto [ground, integrator] = GetParam();
   const double a = radians(25), critical = std::tan(a);
-  // With friction 3 % more than needed. What sticks may creep at 1 mm/s in implicit_euler: 0.005 m/s² by the
-  // measure of a slide of 0.4 s, against 4.1 m/s² without friction.
+  // With friction 3 % above the limit. Sticking cloth may creep at 1 mm/s in implicit_euler: 0.005 m/s² as
+  // measured over a slide of 0.4 s, against 4.1 m/s² without friction.
   EXPECT_LT(std::abs(slide_on(ground, integrator, 25, 1.03 * critical).acceleration), 0.0055);
   const double expected = kGravity * (std::sin(a) - 0.97 * critical * std::cos(a));
   const double found = slide_on(ground, integrator, 25, 0.97 * critical).acceleration;
@@ -133,7 +133,7 @@ TEST_P(FrictionOnASlope, SlowsTheSheetByTheCoefficient) {
   const auto [ground, integrator] = GetParam();
   for (const double friction : {0.0, 0.1, 0.3}) {
     const double a = radians(30), expected = kGravity * (std::sin(a) - friction * std::cos(a));
-    // Semi-implicit Euler is ahead by the share 1/120; the rest is the contact's.
+    // Semi-implicit Euler is ahead by the share 1/120; the rest is contact error.
     EXPECT_NEAR(slide_on(ground, integrator, 30, friction).acceleration, expected, 0.02 * expected)
         << friction;
   }
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(test.param.ground == Ground::plane ? "plane_" : "box_") + test.param.integrator;
     });
 
-/// A small sheet on a bigger one that is pinned flat, tilted by `angle_deg`; the small one starts with
+/// A small sheet on a larger one that is pinned flat, tilted by `angle_deg`; the small one starts with
 /// `speed` down the slope.
 struct TwoSheets {
   World world;
@@ -185,8 +185,8 @@ struct TwoSheets {
 class FrictionOnCloth : public testing::TestWithParam<const char*> {};
 
 TEST_P(FrictionOnCloth, SlowsTheSheetByTheMeanOfBothCoefficients) {
-  // The geometric mean: 0.2 and 0.45 give 0.3. Sheets are flat against each other; where the direction
-  // between two features is not quite the sheets' normal, the coefficient is not quite met.
+  // The geometric mean: 0.2 and 0.45 give 0.3. Sheets lie flat on each other; where the direction between two
+  // features deviates from the sheets' normal, the coefficient is not met exactly.
   const double a = radians(30);
   const std::array<double, 3> cases[] = {{0, 0, 0}, {0.3, 0.3, 0.3}, {0.2, 0.45, 0.3}};
   for (const auto& [lower, upper, friction] : cases) {

@@ -1,4 +1,4 @@
-/// Nothing gets inside of anything, and what contact does to motion is what it may do.
+/// Contact projection: no penetration, and only admissible changes of motion.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ IntegratorSettings settings(const std::string& integrator) {
   return {.integrator = integrator, .explicit_euler = {}, .paper = {}, .implicit_euler = {}};
 }
 
-/// A sheet of 8 x 8 coarse cells of 10 cm above the origin, its middle at `middle`.
+/// A sheet of 8 x 8 coarse cells of 10 cm above the origin, centred at `middle`.
 ClothId add_sheet(World& world, const Vec3& middle, int cells = 8, double size = 0.8, double turn_deg = 0,
                   const Vec3& velocity = Vec3::Zero(), const ClothMaterial& material = kCotton) {
   const auto topology = build_grid_topology(test::square(cells, size), SpringModel::alternating);
@@ -35,7 +35,7 @@ ClothId add_sheet(World& world, const Vec3& middle, int cells = 8, double size =
                           .velocity = velocity});
 }
 
-/// The deepest of points spread over all triangles, > 0 inside [m].
+/// The deepest of sample points spread over all triangles, > 0 inside [m].
 double deepest_sample(const World& world, ClothId cloth, const Collider& collider) {
   constexpr int kCuts = 8;
   const ColliderShape shape = shape_at(collider, world.time());
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HoldOff, testing::Range(0, 10), [](const auto& 
 
 class HoldOffMesh : public testing::TestWithParam<const char*> {};
 
-/// How many vertices of the cloth are inside the closed mesh.
+/// Number of cloth vertices inside the closed mesh.
 int num_inside(const World& world, ClothId cloth, const TriangleMesh& mesh) {
   std::vector<Vec3> points;
   for (int i = 0; i < world.model(cloth).num_particles(); ++i)
@@ -142,8 +142,8 @@ INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
                          testing::Values("explicit", "paper_fixed", "implicit_euler"),
                          [](const auto& test) { return std::string(test.param); });
 
-/// The height of a sheet's lowest particle over the top face of a box of 0.4 m around the origin, which is
-/// part of `mesh`, after a second; it starts around `middle`.
+/// Height of a sheet's lowest particle over the top face of a box of 0.4 m around the origin, which is part
+/// of `mesh`, after a second; the sheet starts around `middle`.
 double lowest_over_box(const TriangleMesh& mesh, const Vec3& middle) {
   World world;
   world.set_integrator(settings("implicit_euler"));
@@ -165,8 +165,8 @@ TriangleMesh welded_box(const Vec3& center) {
 }
 
 TEST(ContactSystem, PushesClothOutOfSolidsThatMeetAtAnEdge) {
-  // The edge between them has four triangles. Both are solids all the same, and their outside is known. The
-  // cloth lies on one triangle: of edges no side is known.
+  // The edge between them has four triangles. Both are still solids with a defined outside. The cloth lies on
+  // one triangle, because edges have no defined side.
   TriangleMesh two = welded_box(Vec3::Zero());
   const TriangleMesh other = welded_box({0.4, -0.4, 0});
   two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
@@ -177,7 +177,7 @@ TEST(ContactSystem, PushesClothOutOfSolidsThatMeetAtAnEdge) {
 }
 
 TEST(ContactSystem, DoesNotDrawClothInAtATriangleThatFacesTheWrongWay) {
-  // Which side is outside is not known then: cloth is held off where it comes from.
+  // The outside is undefined then: cloth stays on the side that it comes from.
   for (std::size_t t = 0; t < 12; ++t) {
     TriangleMesh twisted = welded_box(Vec3::Zero());
     std::swap(twisted.triangles[t][0], twisted.triangles[t][1]);
@@ -186,8 +186,8 @@ TEST(ContactSystem, DoesNotDrawClothInAtATriangleThatFacesTheWrongWay) {
 }
 
 TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
-  // An open roof of two planes under a sheet whose middle row lies exactly along the ridge: the row's
-  // vertices see the ridge, an edge, and no face.
+  // An open roof of two planes under a sheet whose middle row lies exactly along the ridge: the row's nearest
+  // feature is the ridge, an edge, and no face.
   for (const char* integrator : {"explicit", "implicit_euler"}) {
     auto roof = std::make_shared<TriangleMesh>();
     roof->positions = {{-1, -0.6, -1}, {1, -0.6, -1}, {-1, 0, 0}, {1, 0, 0}, {-1, -0.6, 1}, {1, -0.6, 1}};
@@ -208,7 +208,7 @@ TEST(ContactSystem, HoldsClothOffARidgeThatItsVerticesLieOn) {
   }
 }
 
-/// Of all cloths together.
+/// Totals over all cloths.
 struct Totals {
   Vec3 momentum = Vec3::Zero();
   double energy = 0;  // kinetic and elastic [J]
@@ -233,7 +233,7 @@ TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
   world.set_integrator(settings("explicit"));
   ClothMaterial material = kCotton;
   material.friction = GetParam();
-  // Turned against each other, off centre, one heavier; each keeps a little above the other at first.
+  // Rotated against each other, off centre, one heavier; each starts slightly above the other.
   ClothMaterial heavy = material;
   heavy.density = 0.5;
   add_sheet(world, {0, 0.01, 0}, 6, 0.3, 0, {0.3, -1, 0}, material);
@@ -246,7 +246,7 @@ TEST_P(Collision, OfTwoFreeClothsKeepsMomentumAndGainsNoEnergy) {
   for (int s = 0; s < 300; ++s) {
     ASSERT_TRUE(world.step(1.0 / 1000).ok);
     const Totals now = measure(world);
-    // Velocities are floats: each step rounds each by 6e-8 of itself, at random.
+    // Velocities are floats: each step rounds each by a relative 6e-8, at random.
     EXPECT_LT((now.momentum - before.momentum).norm(), 2e-6 * size) << s;
     highest = std::max(highest, now.energy);
   }

@@ -1,4 +1,4 @@
-/// Whatever motion it is given, the last line leaves nothing crossed, by the independent checker.
+/// CCD fail-safe: no intersections after any motion, by the independent checker.
 
 #include "weft/contact/last_line.h"
 
@@ -13,7 +13,7 @@
 namespace weft::engine {
 namespace {
 
-/// Patches of cloth, each at its place, then closed meshes, and what LastLine has to know of them.
+/// Patches of cloth with positions, then closed meshes, and the input of LastLine.
 struct Patches {
   std::vector<TriangleMesh> meshes;
   Surface surface;
@@ -71,7 +71,7 @@ struct Patches {
                      *jobs);
   }
 
-  /// Pairs of features that pass from the start to there.
+  /// Number of feature pairs that pass through each other on the way to `end`.
   std::size_t num_passages(const std::vector<Vec3>& end) const {
     const auto frame_at = [&](const std::vector<Vec3>& x) {
       verify::Frame frame;
@@ -106,7 +106,7 @@ struct Patches {
   }
 };
 
-/// Patches above each other, slightly turned, that do not cross.
+/// Stacked patches, slightly rotated, without intersections.
 Patches make_stack(Random& random, int layers) {
   Patches patches;
   for (int k = 0; k < layers; ++k) {
@@ -123,7 +123,7 @@ TEST(LastLine, LeavesNothingCrossedAndKeepsMomentum) {
     Random random(seed);
     Patches patches = make_stack(random, 3);
     std::vector<Vec3> end = patches.motion.start;
-    // Each patch flies through the others, and all of it is shaken by up to its own size.
+    // Each patch flies through the others, and is perturbed by up to its own size.
     const double shake = std::pow(10.0, random.uniform(-3, -1));
     for (std::size_t m = 0; m < patches.meshes.size(); ++m) {
       const Vec3 way = test::random_vector(random, 0.05);
@@ -168,7 +168,7 @@ TEST(LastLine, PrescribedMotionsThatLeaveNoRoomAreListed) {
 }
 
 TEST(LastLine, ASheetIsTakenAlongByWhatMovesThroughItsPlace) {
-  // The lower patch is pinned and comes up by a metre: the upper one, which is free, must be above it.
+  // The lower patch is pinned and rises by a metre: the upper one, which is free, must end above it.
   Random random(3);
   Patches patches = make_stack(random, 2);
   for (int v = 0; v < patches.first_vertex[1]; ++v) patches.inverse_mass[v] = 0;
@@ -182,8 +182,8 @@ TEST(LastLine, ASheetIsTakenAlongByWhatMovesThroughItsPlace) {
 }
 
 TEST(LastLine, NothingPassesThroughAClosedMeshThatTurnsFast) {
-  // A patch lies on a facet of a ball, and the ball turns: ridges come to the patch, and faces behind whose
-  // planes it lies at the start, although it is outside.
+  // A patch lies on a facet of a rotating ball: ridges reach the patch, and faces behind whose planes it lies
+  // at the start, although it is outside.
   int passed = 0;
   for (int seed = 0; seed < 60; ++seed) {
     Random random(seed);

@@ -1,4 +1,4 @@
-/// What keeps the momentum of cloths that touch each other moves nothing that does not touch.
+/// Momentum conservation of touching cloths does not move cloth without contact.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 5e-3};
 
-/// Two squares side by side that nothing joins, 40 cm each, a metre between them.
+/// Two unconnected squares next to each other, 40 cm each, a metre apart.
 std::shared_ptr<const ClothTopology> make_two_squares() {
   TriangleMesh both = build_grid_mesh(test::square(6, 0.4), GridDiagonals::alternating);
   const int n = both.num_vertices();
@@ -39,7 +39,7 @@ TEST(ContactMomentum, OfAClothInPiecesLeavesTheOneThatFliesAlone) {
 }
 
 TEST(ContactMomentum, OfClothThatSomethingElseHoldsIsNotTheirs) {
-  // The lower sheet is held at its border and catches the upper one, which must come to rest on it.
+  // The lower sheet is pinned at its border and catches the upper one, which must come to rest on it.
   World world;
   const auto square = test::mesh_of(test::square(8, 0.4));
   const ClothId below = world.add_cloth({.name = "below", .topology = square, .material = kSoft});

@@ -1,4 +1,4 @@
-/// Cloth that is nearer to itself at rest than it is thick: short edges, a lining.
+/// Cloth nearer to itself at rest than its thickness: short edges, a lining.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ constexpr double kSize = 0.2;  // [m]
 
 TriangleMesh sheet() { return build_grid_mesh(test::square(kCells, kSize), GridDiagonals::alternating); }
 
-/// A shell and, below it and a little to the side, its lining, in one mesh.
+/// A shell with its lining, below it and slightly offset, in one mesh.
 TriangleMesh lined_sheet() {
   TriangleMesh mesh = sheet();
   const TriangleMesh shell = mesh;
@@ -37,7 +37,7 @@ ClothId add_cloth(World& world, const std::string& name, const TriangleMesh& mes
        .positions = mesh.positions});
 }
 
-/// How far the particles of the second sheet are below those of the first, at least, but for borders [m].
+/// The least distance of the second sheet's particles below those of the first, without borders [m].
 double least_distance(const World& world, ClothId upper, ClothId lower, int first_lower) {
   double least = 1;
   for (int row = 2; row < kCells - 1; ++row) {

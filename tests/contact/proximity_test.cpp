@@ -1,4 +1,4 @@
-/// Proximity against brute force: every pair of features, at many moments of the step.
+/// Proximity against brute force: every pair of features, at many times of the step.
 
 #include "weft/contact/proximity.h"
 
@@ -25,7 +25,7 @@ constexpr double kSlack = 0.15 * kCell;
 
 using Pairs = std::set<std::array<int, 2>>;
 
-/// Cloths and bodies, where they are, and what they were at rest.
+/// Cloths and bodies, at present and at rest.
 struct Scene {
   struct Sheet {
     Grid grid;
@@ -34,7 +34,7 @@ struct Scene {
 
   Surface surface;
   std::vector<Sheet> sheets;
-  bool are_meshes = false;  // grids are taken as any mesh
+  bool are_meshes = false;  // treats grids as general meshes
   std::vector<Vec3> rest, places;
   int num_cloth_vertices = 0, num_cloth_triangles = 0;
 
@@ -79,8 +79,8 @@ struct Scene {
   }
 };
 
-/// Which pairs of features come within the sum of their half thicknesses, at the ends of the step or at one
-/// of a few moments between.
+/// Brute force: feature pairs within the sum of their half thicknesses, at the ends of the step or at one of
+/// a few times between.
 class BruteForce {
  public:
   BruteForce(const Proximity& proximity, int num_cloth_vertices, const SurfaceMotion& motion)
@@ -148,7 +148,7 @@ class BruteForce {
     if (is_sharp(v, *x)) fan_pairs.insert(pair);
   }
 
-  /// Triangles around v whose normals are more than 45° from their sum, as proximity.h has it.
+  /// Whether a triangle around v deviates by more than 45° from the sum of normals, as in proximity.h.
   bool is_sharp(int v, const std::vector<Vec3>& x) const {
     std::vector<Vec3> normals;
     Vec3 sum = Vec3::Zero();
@@ -181,7 +181,7 @@ Pairs missing(const Pairs& wanted, const Pairs& found) {
   return result;
 }
 
-/// Holds the lists against brute force; returns how many pairs were close.
+/// Compares the lists with brute force; returns the number of close pairs.
 std::size_t check(Proximity& proximity, const Scene& scene, const SurfaceMotion& motion,
                   const std::string& where, bool with_fans = false) {
   const BruteForce brute_force(proximity, scene.num_cloth_vertices, motion);
@@ -207,14 +207,14 @@ std::size_t check(Proximity& proximity, const Scene& scene, const SurfaceMotion&
   return brute_force.vertex_triangle.size() + brute_force.edge_edge.size();
 }
 
-/// A strip folded to and fro `layers` times along x, layers `gap` apart.
+/// A strip folded back and forth in `layers` layers along x, `gap` apart.
 Vec3 fold(const Vec3& p, double length, double gap) {
   const int layer = static_cast<int>(p.x() / length);
   const double along = p.x() - layer * length;
   return {layer % 2 == 0 ? along : length - along, layer * gap, p.z()};
 }
 
-/// The layouts of the cloth.
+/// Cloth layouts.
 std::map<std::string, Scene> make_scenes() {
   std::map<std::string, Scene> scenes;
   const auto same = [](const Vec3& p) { return p; };
@@ -237,7 +237,7 @@ std::map<std::string, Scene> make_scenes() {
   scenes["on a mesh"].add_body(make_sphere_mesh(center, 0.0985, 6));
   scenes["one triangle"].add_sheet(1, same);
   scenes["one triangle"].add_body(make_box_mesh({0, -0.05, 0}, {0.1, 0.05, 0.1}, Mat3::Identity()));
-  for (const double radius : {0.03, 0.12}) {  // bent in an arc, and rolled up until it meets itself
+  for (const double radius : {0.03, 0.12}) {  // bent in an arc, and rolled up into self contact
     scenes["rolled, " + std::to_string(radius)].add_sheet(12, [&](const Vec3& p) {
       return Vec3(radius * std::sin(p.x() / radius), radius * std::cos(p.x() / radius), p.z());
     });
@@ -263,7 +263,7 @@ TEST(Proximity, FindsEveryPairOfASceneAtRest) {
 }
 
 TEST(Proximity, OfAFlatSheetListsOnlyWhatIsNear) {
-  // Neighbours but one are a cell apart, more than slack and thickness together: nothing is listed.
+  // Second neighbours are a cell apart, more than slack plus thickness: nothing is listed.
   const Scene scene = make_scenes().at("flat");
   Proximity proximity = scene.make_proximity();
   proximity.update(scene.motion_to(scene.places), *make_serial_jobs());
@@ -271,7 +271,7 @@ TEST(Proximity, OfAFlatSheetListsOnlyWhatIsNear) {
   EXPECT_EQ(proximity.edge_edge().size(), 0u);
 }
 
-/// Steps on which each vertex goes its own way, up to `size` far.
+/// Steps in which each vertex moves separately, by up to `size`.
 void check_random_motion(double size, bool keeps_direction, int num_steps) {
   const auto jobs = make_serial_jobs();
   for (auto& [name, scene] : make_scenes()) {
@@ -301,7 +301,7 @@ TEST(Proximity, MissesNothingInASmallTremble) { check_random_motion(0.3 * kSlack
 TEST(Proximity, MissesNothingInBigJumps) { check_random_motion(1.5 * kCell, false, 6); }
 
 TEST(Proximity, MissesNothingWhereOnlyAPartMoves) {
-  // Less than the share at which everything is looked for anew, while all drifts.
+  // Below the share at which all pairs are searched again, while all vertices drift.
   const auto jobs = make_serial_jobs();
   for (auto& [name, scene] : make_scenes()) {
     Proximity proximity = scene.make_proximity();
@@ -326,7 +326,7 @@ TEST(Proximity, MissesNothingWhereEverythingTurnsAndTravels) {
     Proximity proximity = scene.make_proximity();
     const Scene before = scene;
     for (int s = 1; s <= 12; ++s) {
-      // The bodies stay: cloth passes them by.
+      // The bodies are static: cloth passes them by.
       const Mat3 turn = rotation_from_angles_deg({7.0 * s, 11.0 * s, 0});
       std::vector<Vec3> end = scene.places;
       for (int v = 0; v < scene.num_cloth_vertices; ++v) {
@@ -341,7 +341,7 @@ TEST(Proximity, MissesNothingWhereEverythingTurnsAndTravels) {
 }
 
 TEST(Proximity, MissesNothingFarFromTheWorldsOrigin) {
-  // Boxes are floats, 1 mm apart at 10 km: they must be seen from near.
+  // Boxes are floats, 1 mm apart at 10 km: they must be relative to a near origin.
   const auto jobs = make_serial_jobs();
   for (auto& [name, scene] : make_scenes()) {
     for (Vec3& p : scene.places) p += Vec3(1e4, 2e3, -3e4);
@@ -379,7 +379,7 @@ TEST(Proximity, KeepsItsListsInFreeFall) {
     std::vector<Vec3> end = scene.places;
     for (std::size_t v = 0; v < end.size(); ++v) {
       end[v].y() -= 9.81 * s / 3600;
-      end[v].x() *= 1 + 1e-5;  // and stretches a little: a list made anew would have a longer longest edge
+      end[v].x() *= 1 + 1e-5;  // and a slight stretch: a rebuilt list would have a longer longest edge
     }
     const SurfaceMotion motion = scene.motion_to(end);
     proximity.update(motion, *jobs);
@@ -390,7 +390,7 @@ TEST(Proximity, KeepsItsListsInFreeFall) {
   check(proximity, scene, scene.motion_to(scene.places), "after the fall");
 }
 
-/// The listed pairs that are within what contact asks for at the end, in the order of the list.
+/// The listed pairs that are within the contact gap at the end, in the order of the list.
 std::vector<std::array<int, 2>> close_ones(const Proximity& proximity, const std::vector<Vec3>& x) {
   std::vector<std::array<int, 2>> result;
   for (const FeaturePair& p : proximity.vertex_triangle()) {
@@ -448,7 +448,7 @@ TEST(Proximity, ListsTheSameForAnyNumberOfThreads) {
                          b.edge_edge().end(), same));
 }
 
-/// The sheets of a scene, as a survey sees them: each as floats from an origin of its own.
+/// The sheets of a scene as input of a survey: floats, each with a separate origin.
 class Survey {
  public:
   static constexpr double kSlackOfFew = 0.1 * kHalfThickness, kRoom = 1.1;
@@ -459,7 +459,7 @@ class Survey {
     clearance_.reset(grids);
   }
 
-  /// Places become such that floats hold them.
+  /// Rounds positions to values that floats represent.
   std::vector<ItemPair> find_uncertain(SurfaceMotion& motion) {
     std::vector<Vec3Array> starts, ends;
     std::vector<ClothMotion> motions;
@@ -484,7 +484,7 @@ class Survey {
     return pairs;
   }
 
-  bool is_whole() const { return is_whole_; }  // false: cloth moves against itself too far
+  bool is_whole() const { return is_whole_; }  // false: cloth moves too far against itself
 
  private:
   std::vector<Scene::Sheet> sheets_;
@@ -500,7 +500,7 @@ std::map<std::string, Scene> make_sheets() {
   return sheets;
 }
 
-/// Of the pairs that a survey leaves uncertain, the lists must have all that brute force finds anywhere.
+/// Among the pairs that a survey leaves uncertain, the lists must contain all that brute force finds.
 void check_survey(const std::string& name, const Scene& scene, const std::vector<Vec3>& end) {
   Survey survey(scene);
   SurfaceMotion motion = scene.motion_to(end);
@@ -526,7 +526,7 @@ TEST(ClothSurvey, MissesNothingAtRestAndInJumps) {
 }
 
 TEST(ClothSurvey, MissesNothingWhileASheetRollsUp) {
-  // Turned and thrown as well, in steps that end nearer and nearer to itself.
+  // Also rotated and thrown, in steps that end nearer and nearer to itself.
   const auto roll = [](const Vec3& p, double radius, double turn) {
     const Vec3 rolled(radius * std::sin(p.x() / radius), radius * std::cos(p.x() / radius), p.z());
     return Vec3(rotation_from_angles_deg({turn, 20, turn}) * rolled + Vec3(0.01 * turn, 2, 0));

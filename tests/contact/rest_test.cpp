@@ -1,4 +1,4 @@
-/// Cloth that lies on something comes to rest and stays.
+/// Cloth in resting contact comes to rest and stays at rest.
 
 #include <gtest/gtest.h>
 
@@ -33,11 +33,11 @@ World make_sheets_on_ball(const std::string& integrator, int num_sheets, int cel
 struct Rest {
   double largest_kinetic = 0;  // of one cloth after settling [J]
   double largest_rise = 0;     // of the total energy of one cloth, from its lowest to any later one [J]
-  double drift = 0;            // of a middle [m]
-  double drop = 0;             // how far the middle of the first one has sunk since the start [m]
+  double drift = 0;            // of a centre [m]
+  double drop = 0;             // drop of the first one's centre since the start [m]
 };
 
-/// Runs `settling` seconds, and then watches for `watching` more.
+/// Runs `settling` seconds, then measures for `watching` more.
 Rest watch(World& world, double settling, double watching, int steps_per_second) {
   const double step = 1.0 / steps_per_second;
   const auto middle = [&](int c) {
@@ -78,7 +78,7 @@ struct RestCase {
   const char* integrator;
   int num_sheets, cells;
   int steps_per_second;
-  double fastest;  // what is still called rest, on the average [m/s]
+  double fastest;  // average speed that counts as rest [m/s]
 };
 
 class ClothOnABall : public testing::TestWithParam<RestCase> {};
@@ -91,11 +91,11 @@ TEST_P(ClothOnABall, ComesToRestAndStays) {
   RecordProperty("rise_nJ", std::to_string(rest.largest_rise * 1e9));
   RecordProperty("drift_um", std::to_string(rest.drift * 1e6));
   EXPECT_GT(rest.drop, 0.02) << "it has draped itself over the ball, and hangs";
-  // Of 0.128 kg. (implicit_euler is not among the cases: at 60 steps per second it keeps trembling, by
-  // some centimetres per second on this ball, for triangles sag into round shapes between its steps.)
+  // Mass 0.128 kg. (implicit_euler is not among the cases: at 60 steps per second it jitters by some
+  // centimetres per second on this ball, because triangles sag into round shapes between its steps.)
   EXPECT_LT(rest.largest_kinetic, 0.5 * 0.128 * fastest * fastest);
   EXPECT_LT(rest.drift, 1e-3);
-  // The sheet lifted by 40 µm: a twenty-fifth of its thickness.
+  // Corresponds to lifting the sheet by 40 µm: a twenty-fifth of its thickness.
   EXPECT_LT(rest.largest_rise, 0.128 * 9.81 * 4e-5);
 }
 
@@ -108,8 +108,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ClothOnABall,
                          });
 
 TEST(LayersOnAFloor, DoNotBuzz) {
-  // Two sheets, one turned by 7°. Solved for one after the other, and set apart afterwards, they trembled by
-  // 0.8 mm/s for ever.
+  // Two sheets, one rotated by 7°. Solving one after the other with later separation would jitter by
+  // 0.8 mm/s indefinitely.
   World world;
   world.add_collider({"floor", Plane{Vec3::Zero(), Vec3::UnitY()}, 0.4, {}});
   const auto topology = build_grid_topology(test::square(24, 0.75), SpringModel::alternating);

@@ -1,4 +1,4 @@
-/// The same bits again; and whatever is thrown at it, a step ends, and says so if it failed.
+/// Determinism and robustness: for any input a step terminates, and reports failure.
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ int steps_per_second(const std::string& integrator) {
 class Repeats : public testing::TestWithParam<const char*> {};
 
 TEST_P(Repeats, WithContactForAnyNumberOfThreads) {
-  // 2 x 625 particles, thousands of pairs: more than one chunk of work of most kinds. The yardstick is slow.
+  // 2 x 625 particles, thousands of pairs: more than one chunk of most kinds of work. The reference is slow.
   const int cells = GetParam() == std::string("implicit_euler") ? 14 : 24;
   std::uint64_t hash[2];
   for (const int threads : {1, 2}) {
@@ -72,8 +72,8 @@ TEST_P(Repeats, WithContactFromASnapshot) {
   const int rate = steps_per_second(GetParam());
   const double step = 1.0 / rate;
   for (int s = 0; s < rate / 3; ++s) ASSERT_TRUE(world.step(step).ok);  // in the middle of the crash
-  // Lists of pairs are kept between steps, or made anew: neither must show. Many short replays, at all
-  // stages of keeping.
+  // Pair lists are kept between steps or rebuilt: the result must not depend on that. Many short replays, at
+  // all stages of the lists' life.
   for (int replay = 0; replay < 8; ++replay) {
     const World::Snapshot snapshot = world.snapshot();
     fresh.restore(snapshot);
@@ -108,11 +108,10 @@ TEST(ContactSystem, AThickerMaterialCountsFromTheNextStep) {
   for (int s = 0; s < 30; ++s) ASSERT_TRUE(world.step(0.01).ok);
   const double gap = compute_center_of_mass(world.model(upper), world.state(upper)).y() -
                      compute_center_of_mass(world.model(world.cloth(0)), world.state(world.cloth(0))).y();
-  EXPECT_GT(gap, 0.007);  // recovered by a share per step, most of it in 0.3 s
+  EXPECT_GT(gap, 0.007);  // recovered by a share per step, mostly within 0.3 s
 }
 
-/// Steps up to `most` times or until a step fails; all of it in bounded time, that of the
-/// processor: the machine may be busy.
+/// Steps up to `most` times or until a step fails, within a bounded processor time (the machine may be busy).
 StepReport run(World& world, double dt, int most) {
   const std::clock_t start = std::clock();
   StepReport report;
@@ -135,7 +134,7 @@ void expect_finite(const World& world) {
 }
 
 TEST(World, ExplodingNextToCollidersEndsWithAReportThatNamesTheCloth) {
-  // Stiff cloth with one substep per frame, next to everything that contact knows.
+  // Stiff cloth with one substep per frame, next to every kind of contact.
   World world;
   IntegratorSettings broken = settings("explicit");
   broken.explicit_euler.substeps = 1;
@@ -208,7 +207,7 @@ TEST(ContactSystem, StandsCoincidentCloths) {
         const ClothModel& model = world.model(world.cloth(c));
         double mass = 0;
         for (const double m : model.mass) mass += m;
-        // They fell 5 cm; more speed than 1 m/s came out of nowhere.
+        // They fell 5 cm; a speed above 1 m/s is spurious.
         EXPECT_LT(compute_kinetic_energy(model, world.state(world.cloth(c))), 0.5 * mass) << integrator;
         EXPECT_GT(compute_lowest_y(world.state(world.cloth(c))), -0.051) << integrator;
       }
@@ -279,8 +278,8 @@ TEST(ContactSystem, StandsHugeAndTinyColliders) {
         EXPECT_TRUE(run(world, 1.0 / 120, 60).ok) << integrator << " " << collider.name << " " << size;
         const double middle = compute_center_of_mass(world.model(cloth), world.state(cloth)).y();
         EXPECT_LT(middle, -0.015) << integrator << " " << collider.name << " " << size;
-        // On a ball of 1000 km it lies, on a mesh's cone of 1 in 5 it hangs; a speck holds it, or it slides
-        // off and falls 1.2 m.
+        // On a ball of 1000 km it lies, on a mesh cone of slope 1 in 5 it hangs; a tiny shape holds it, or it
+        // slides off and falls 1.2 m.
         EXPECT_GT(middle, size > 1 ? -0.06 : -1.3) << integrator << " " << collider.name << " " << size;
       }
     }

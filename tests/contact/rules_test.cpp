@@ -1,4 +1,4 @@
-/// What is said of two things, in place of what each says itself: their friction, and whether they collide.
+/// Contact settings of a pair of bodies, in place of those of the bodies: friction, and the collision filter.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 const ClothMaterial kSoft{.structural = 20, .shear = 10, .bend = 0.2, .damping = 2e-3, .friction = 0.5};
 
-/// A square of 32 cm with its middle over the origin.
+/// A square of 32 cm, centred over the origin.
 ClothId add_sheet(World& world, const std::string& name, double height, const Mat3& turn = Mat3::Identity()) {
   constexpr double kSize = 0.32;
   const auto topology = build_grid_topology(test::square(8, kSize), SpringModel::alternating);
@@ -33,14 +33,14 @@ void run(World& world, double seconds, int steps_per_second) {
 }
 
 TEST(ContactRules, GiveAPairItsOwnFriction) {
-  // On a slope of 30° the collider's own friction would hold it.
+  // On a slope of 30° the collider's default friction would hold it.
   const double a = 30 * 3.14159265358979 / 180, friction = 0.2;
   const Mat3 tilt = rotation_from_angles_deg({0, 0, 30});
   World world;
   world.add_collider({"slope", Plane{Vec3::Zero(), tilt * Vec3::UnitY()}, 0.7, {}});
   const ClothId sheet = add_sheet(world, "sheet", kSoft.thickness / 2, tilt);
   world.set_friction("slope", "sheet", 0.9);
-  world.set_friction("sheet", "slope", friction);  // the last one counts, in whatever order they are named
+  world.set_friction("sheet", "slope", friction);  // the last one wins, whatever the order of the names
   const Vec3 before = compute_center_of_mass(world.model(sheet), world.state(sheet));
   run(world, 0.4, 300);
   const Vec3 moved = compute_center_of_mass(world.model(sheet), world.state(sheet)) - before;
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(All, PassingColliders,
                                           testing::Values(Body::sphere, Body::plane, Body::mesh)));
 
 TEST(ContactRules, LetClothThroughItself) {
-  // The two halves of a fold fall into each other; with contact the upper one stays above.
+  // The two halves of a fold pass through each other; with contact the upper one stays above.
   const auto topology = build_grid_topology({.size_x = 0.4, .size_z = 0.2, .cells_x = 16, .cells_z = 8},
                                             SpringModel::alternating);
   const auto lowest_gap = [&](bool collide) {

@@ -1,4 +1,4 @@
-/// ShapeClearance against measuring everything: shapes and points that wander, jump and stop.
+/// ShapeClearance against exhaustive measurement: shapes and points that wander, jump and stop.
 
 #include "weft/contact/shape_clearance.h"
 
@@ -51,7 +51,7 @@ TEST(ShapeClearance, LeavesOutNoPointThatComesNear) {
   int num_near = 0, num_looked_at = 0, num_all = 0;
   std::vector<int> near;
   for (int step = 0; step < 400; ++step) {
-    const bool jumps = step % 50 == 49;  // to another state, as a restart does
+    const bool jumps = step % 50 == 49;  // to another state, like a restart
     if (jumps) {
       time = random.uniform(0, 9);
       for (Vec3& p : motion.start) p = test::random_vector(random, 3);
@@ -90,7 +90,7 @@ TEST(ShapeClearance, LeavesOutNoPointThatComesNear) {
   EXPECT_LT(num_looked_at, num_all / 2) << "most need not be measured";
 }
 
-/// A step that has failed leaves nothing behind.
+/// A failed step has no effect on later ones.
 TEST(ShapeClearance, MeasuresAgainWhatWasNoNumber) {
   const std::vector<Collider> colliders = make_colliders();
   const std::vector<MovingShape> shapes = shapes_at(colliders, 0);

@@ -1,4 +1,4 @@
-/// Solids made thinner keep their shape, and thin ones do not turn inside out.
+/// Thinner solids keep their shape, and thin ones do not invert.
 
 #include "weft/contact/shrink.h"
 
@@ -52,7 +52,7 @@ TEST(Shrink, ABarBecomesThinnerByTheDepthAndNeverTurnsInsideOut) {
     mesh.positions = shrink(full, radii, depth);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3& p = full.positions[v];
-      if (std::abs(p.x()) > 0.15) continue;  // ends are drawn in as well
+      if (std::abs(p.x()) > 0.15) continue;  // ends shrink as well
       const double from_axis = std::hypot(mesh.positions[v].y(), mesh.positions[v].z());
       EXPECT_NEAR(from_axis, std::max(kRadius - depth, 0.1 * kRadius), 0.1 * kRadius);
     }

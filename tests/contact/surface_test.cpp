@@ -13,7 +13,7 @@ namespace {
 
 bool has(const Triangle& t, int v) { return std::find(t.begin(), t.end(), v) != t.end(); }
 
-/// Two grids, a closed mesh, and a fan of three triangles at one edge.
+/// Two grids, a closed mesh, and three triangles at one edge.
 Surface make_surface() {
   Surface surface;
   for (const GridDiagonals diagonals : {GridDiagonals::parallel, GridDiagonals::alternating}) {
@@ -86,7 +86,7 @@ TEST(Surface, EveryPairOfFeaturesBelongsToExactlyOnePairOfTriangles) {
   }
   for (const auto& [pair, count] : vertex_triangle) EXPECT_EQ(count, 1) << pair[0] << " " << pair[1];
   for (const auto& [pair, count] : edge_edge) EXPECT_EQ(count, 1) << pair[0] << " " << pair[1];
-  // All but the vertices of the triangle itself, and the one vertex without triangles.
+  // All except the vertices of the triangle itself, and the one vertex without triangles.
   EXPECT_EQ(vertex_triangle.size(), static_cast<std::size_t>(n * (surface.num_vertices - 1) - 3 * n));
   const std::size_t m = surface.edges.size();
   EXPECT_EQ(edge_edge.size(), m * (m - 1) / 2);

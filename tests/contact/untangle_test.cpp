@@ -1,4 +1,4 @@
-/// Cloth that starts crossed is set apart, and stays so: by the independent checker.
+/// Repair of intersected cloth, validated by the independent checker.
 
 #include "weft/contact/untangle.h"
 
@@ -35,7 +35,7 @@ double largest_strain(const World& world, ClothId cloth) {
   return compute_strain(world.model(cloth), world.state(cloth)).max;
 }
 
-/// What crosses is set apart, and a second and a half later nothing has crossed at any frame.
+/// Repairs the intersections, and checks that none occurs in any frame of the next second and a half.
 void expect_untangled(World& world, const std::string& what_crossed) {
   ASSERT_TRUE(check(world).intersections > 0 || check(world).penetration() > 1e-3)
       << "else nothing is tested";
@@ -57,7 +57,7 @@ void expect_untangled(World& world, const std::string& what_crossed) {
 
 TEST(Untangle, CrossedPlanesOfClothGoApart) {
   World world;
-  // Upright, its lowest quarter below the level one.
+  // Upright, with its lowest quarter below the level one.
   const ClothId upright = add_sheet(world, "upright", {0.013, 0.1, 0.007}, {90, 0, 0}, 0.35, 14);
   const ClothId level = add_sheet(world, "level", {0, 0, 0}, {0, 0, 0}, 0.5, 20);
   world.set_pins(level, {{{0, 20, 440 - 20, 440}, {}, Vec3::Zero()}});
@@ -92,13 +92,13 @@ TEST(Untangle, ClothPartlyInAClosedMeshComesOut) {
   expect_untangled(world, "cloth \"sheet\"");
 }
 
-/// A sheet bent over by `turn_deg` round an edge, so that its end comes back through the rest.
+/// A sheet bent over by `turn_deg` around an edge, so that its end comes back through the rest.
 TEST(Untangle, AFoldThroughItselfComesOut) {
   const auto topology = build_grid_topology({.size_x = 0.7, .size_z = 0.2, .cells_x = 35, .cells_z = 10},
                                             SpringModel::alternating);
   std::vector<Vec3> positions;
   for (const Vec3& p : topology->mesh.positions) {
-    // Straight, then round a circle of 0.05 m by 240 degrees, then straight on: through the first part.
+    // Straight, then around a circle of 0.05 m by 240 degrees, then straight again: through the first part.
     constexpr double kRadius = 0.05, kStart = 0.3, kTurn = 240 * 3.14159265358979 / 180;
     const double s = std::max(0.0, p.x() - kStart), arc = std::min(s / kRadius, kTurn),
                  rest = s - arc * kRadius;

@@ -1,4 +1,4 @@
-/// VelocityProjection against Gauss–Seidel in plain order, bit by bit.
+/// VelocityProjection against Gauss–Seidel in plain order: bit-identical.
 
 #include "weft/contact/velocity_projection.h"
 
@@ -18,8 +18,8 @@ struct Problem {
   std::vector<Vec3> velocities, slowed;
 };
 
-/// Constraints of one vertex, of triangles and of pairs, which share vertices; some are not active, some
-/// vertices cannot move.
+/// Constraints of one vertex, of triangles and of pairs, which share vertices; some are inactive, some
+/// vertices are fixed.
 Problem make_problem(double friction) {
   constexpr int kVertices = 40, kConstraints = 90;
   Random random(7);
@@ -86,7 +86,7 @@ TEST(VelocityProjection, HasTheBitsOfTheOrderGiven) {
     Problem expected = make_problem(friction), found = expected;
     project_in_order(expected);
     VelocityProjection projection;
-    for (int repeat = 0; repeat < 2; ++repeat) {  // the second time with its work space used
+    for (int repeat = 0; repeat < 2; ++repeat) {  // the second time with used work space
       found = make_problem(friction);
       std::vector<Quad> velocities, slowed(found.slowed.size());
       for (const Vec3& v : found.velocities) velocities.push_back(to_quad(v));

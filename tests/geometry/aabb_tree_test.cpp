@@ -16,7 +16,7 @@ Aabb box_around(const Vec3& center, double size) {
   return make_aabb(center - Vec3::Constant(size), center + Vec3::Constant(size));
 }
 
-/// What queries have to cope with, by name.
+/// Query inputs, by name.
 std::vector<std::pair<std::string, Boxes>> inputs() {
   Random random(7);
   std::vector<std::pair<std::string, Boxes>> all;
@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, Boxes>> inputs() {
   return all;
 }
 
-/// Every third item hangs on the same key as the next one.
+/// Every third item shares a key with the next one.
 std::vector<AabbTree::Keys> some_keys(std::size_t n) {
   std::vector<AabbTree::Keys> keys;
   for (int i = 0; i < static_cast<int>(n); ++i) {
@@ -137,7 +137,7 @@ TEST_P(EveryLevelAndThread, RefittedTreeEqualsBruteForce) {
 }
 
 TEST_P(EveryLevelAndThread, PairsThatMayMeetEqualBruteForce) {
-  // Half of them fly together, as cloth does; what is reported may not depend on the common part.
+  // Half of them move together, as cloth does; the result must not depend on the common part.
   for (const auto& [name, boxes] : inputs()) {
     if (name == "huge" || name == "of all sizes" || name == "empty boxes") continue;
     Random random(5);
@@ -208,7 +208,7 @@ TEST_P(EveryLevelAndThread, OfMarkedItemsThatHaveMovedNoPairIsMissed) {
     EXPECT_TRUE(includes(sorted(search.pairs), self_pairs)) << round;
     tree.find_pairs(other, *jobs_, search, AabbTree::Extent::marked);
     EXPECT_TRUE(includes(sorted(search.pairs), all_pairs)) << round;
-    // What is not marked is where it was: all pairs are still those of brute force.
+    // Unmarked items have not moved: all pairs still equal those of brute force.
     tree.find_self_pairs(*jobs_, search);
     std::vector<ItemPair> every;
     for (int a = 0; a < static_cast<int>(boxes.size()); ++a) {
@@ -296,7 +296,7 @@ TEST(AabbTree, NearestItemIsThatOfBruteForce) {
     radii.push_back(random.uniform(0, 0.1));
     boxes.push_back(box_around(centers[i], radii[i]));
   }
-  centers[17] = centers[300];  // two that are equally near: the lower one counts
+  centers[17] = centers[300];  // two equally near items: the lower one wins
   radii[17] = radii[300];
   boxes[17] = boxes[300];
   AabbTree tree;
@@ -352,7 +352,7 @@ TEST(AabbTree, RayMeetsTheFirstBallOfBruteForce) {
 }
 
 TEST(AabbTree, ComparesFewBoxesWhereFewAreNear) {
-  // Cost grows with what is close, not with the square: four times the boxes, about four times the work.
+  // Cost grows with the close pairs, not quadratically: four times the boxes, about four times the work.
   const auto jobs = make_serial_jobs();
   const auto count = [&](int side) {
     Boxes boxes;

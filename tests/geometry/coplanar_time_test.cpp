@@ -37,7 +37,7 @@ TEST(CoplanarTime, OfCommonMotionIsNone) {
   }
 }
 
-/// Against a walk in a thousand steps.
+/// Against a search in a thousand steps.
 TEST(CoplanarTime, IsTheFirstChangeOfSign) {
   Random random(1);
   int found = 0, several = 0;
@@ -55,7 +55,7 @@ TEST(CoplanarTime, IsTheFirstChangeOfSign) {
     }
     const std::optional<double> time = find_coplanar_time(start, end);
     if (first < 0) {
-      // Two changes within one step escape the walk, not the search.
+      // Two changes within one step escape the stepwise search, but not the bisection.
       EXPECT_LT(std::abs(volume(start, end, time.value_or(0))), time ? 1e-5 : 1e9);
       continue;
     }

@@ -11,23 +11,22 @@ using test::Quad;
 
 constexpr double kRounding = 1e-15;  // a few roundings of numbers of size 1
 
-/// The weighted sum of points in many digits, its squared length: the true distance between the pair of
-/// points that signed weights stand for.
+/// The length of the weighted sum of points in extended precision: the true distance between the pair of
+/// points that signed weights represent.
 double pair_distance(const std::vector<Vec3>& x, const std::vector<double>& weights) {
   Quad sum = 0;
   for (int k = 0; k < 3; ++k) {
-    Quad d = 0;  // relative to one point: the weights sum to 0 but for rounding
+    Quad d = 0;  // relative to one point: the weights sum to 0 up to rounding
     for (std::size_t i = 0; i < x.size(); ++i) d += Quad(weights[i]) * (Quad(x[i][k]) - Quad(x[0][k]));
     sum += d * d;
   }
   return std::sqrt(static_cast<double>(sum));
 }
 
-/// What every answer owes: weights that are a pair of points on the features, the pair's distance, and none
-/// smaller.
+/// Requirements on every result: weights that are a pair of points on the features, the pair's distance, and
+/// none smaller.
 struct Claim {
-  double worst_value =
-      0;  // |distance − the pair's| and distance − the smallest, by the largest length in play
+  double worst_value = 0;  // |distance − the pair's| and distance − the smallest, over the largest length
   double worst_minimum = 0;
   double worst_sum = 0;  // of the weights
   bool weights_in_range = true;
@@ -106,8 +105,8 @@ TEST(PointSegment, OfNoLengthIsAPoint) {
 
 // --- Points and triangles ---
 
-/// Points made to lie in a region: over a place on the feature, outwards within the cone of directions that
-/// the feature is closest for.
+/// Points constructed in a region: above a point of the feature, outwards within the cone of directions for
+/// which the feature is closest.
 TEST(PointTriangle, EveryVoronoiRegion) {
   Random random(1);
   for (int trial = 0; trial < 1000; ++trial) {
@@ -168,7 +167,7 @@ TEST(PointTriangle, AgreesWithTheSlowSearchOnUnluckyInput) {
   claim.expect();
 }
 
-/// Needles of every thinness with points over them: where areas lose their digits.
+/// Needles of all aspect ratios with points over them: areas lose digits there.
 TEST(PointTriangle, AgreesWithTheSlowSearchOnNeedles) {
   Claim claim;
   Random random(5);
@@ -188,7 +187,7 @@ TEST(PointTriangle, AgreesWithTheSlowSearchOnNeedles) {
 
 // --- Edges ---
 
-/// Edges laid through the ends of a common perpendicular n: a feature's interior is closest if the edge is
+/// Edges placed at the ends of a common perpendicular n: a feature's interior is closest if the edge is
 /// across n, an end if the edge leads away from the other.
 TEST(EdgeEdge, EveryPairOfRegions) {
   Random random(6);
@@ -256,7 +255,7 @@ TEST(EdgeEdge, AgreesWithTheSlowSearchCloseToParallel) {
 }
 
 TEST(EdgeEdge, OfParallelEdgesTakesTheMiddleOfTheirOverlap) {
-  const Vec3 a0(0, 0, 0), a1(4, 0, 0), b0(3, 1, 0), b1(9, 1, 0);  // side by side for 3 <= x <= 4
+  const Vec3 a0(0, 0, 0), a1(4, 0, 0), b0(3, 1, 0), b1(9, 1, 0);  // overlapping for 3 <= x <= 4
   for (const bool turn_a : {false, true}) {
     for (const bool turn_b : {false, true}) {
       const auto d =
@@ -313,7 +312,7 @@ TEST(SegmentTriangle, AgreesWithTheSlowSearchOnUnluckyInput) {
   claim.expect();
 }
 
-// --- What holds of all ---
+// --- Properties of all distances ---
 
 /// The largest difference between w_i n and the central difference of the distance, over all corners.
 template <class Distance>

@@ -26,7 +26,7 @@ Capsule random_capsule(Random& random) {
   return {.a = a, .b = b, .radius = random.uniform(0.01, 0.5)};
 }
 
-/// A slab, a rod, a cube, or anything; every other one upright.
+/// A slab, a rod, a cube, or any box; every other one upright.
 OrientedBox random_box(Random& random) {
   OrientedBox box;
   box.center = test::random_vector(random, 0.3);
@@ -35,7 +35,7 @@ OrientedBox random_box(Random& random) {
   return box;
 }
 
-/// Small ones and large ones, edges, points, and ones flat on a face of the box or through its middle.
+/// Small and large triangles, edges, points, and triangles flat on a face of the box or through its middle.
 Corners random_triangle(Random& random, const OrientedBox& box) {
   if (test::pick(random, 4) == 0) return test::unlucky_points(random, 3);
   const double size = test::random_size(random, -2, 0.7);
@@ -80,7 +80,7 @@ TEST(PointSignedDistance, HasANormalWhereAllDirectionsAreAlike) {
   EXPECT_EQ(signed_distance(none, Vec3(Vec3::Zero())).normal, Vec3::UnitY());
 }
 
-/// Central differences of 1e-6 miss where the gradient jumps (inside a box): not met in these trials.
+/// Central differences of 1e-6 fail where the gradient jumps (inside a box): not met in these trials.
 template <class Shape>
 double normal_error(const Shape& shape, const Vec3& p) {
   constexpr double kDelta = 1e-6;
@@ -112,10 +112,10 @@ TEST(PointSignedDistance, NormalIsItsGradient) {
   EXPECT_LT(num_off, 20) << "only within 1e-6 of where two faces are equally far, or 0.01 of a box's edge";
 }
 
-// --- Triangles, against a search that knows nothing of shapes ---
+// --- Triangles, against a search that does not depend on the shape ---
 
-/// Golden section along each coordinate in turn: the smallest of a convex function on the triangle, from
-/// above.
+/// Golden section search along each coordinate alternately: an upper bound for the minimum of a convex
+/// function on the triangle.
 template <class Function>
 double golden_minimum(const Function& f, double high, double accuracy) {
   constexpr double kGolden = 0.6180339887498949;
@@ -154,8 +154,8 @@ double searched_minimum(const Shape& shape, const Corners& x, double accuracy) {
       1, accuracy);
 }
 
-/// Every answer: the weights are a point of the triangle, the distance is that point's, the normal a unit
-/// vector.
+/// Requirements on every result: the weights are a point of the triangle, the distance is that point's, the
+/// normal is a unit vector.
 template <class Shape>
 void expect_honest(const Shape& shape, const Corners& x, const TriangleSignedDistance& d, double tolerance) {
   ASSERT_GE(d.weights.minCoeff(), 0);
@@ -164,7 +164,7 @@ void expect_honest(const Shape& shape, const Corners& x, const TriangleSignedDis
   ASSERT_NEAR(d.distance, signed_distance(shape, at(d.weights, x)).distance, tolerance);
 }
 
-/// The largest length in play for shapes of size 1.
+/// The largest length involved for shapes of size 1.
 double size_of(const Corners& x) { return 1 + std::max({x[0].norm(), x[1].norm(), x[2].norm()}); }
 
 template <class Shape>
@@ -172,7 +172,7 @@ void expect_smallest(const Shape& shape, const Corners& x) {
   const TriangleSignedDistance d = distance_of(shape, x);
   const double size = size_of(x);
   expect_honest(shape, x, d, 2e-14 * size);
-  // Never above what a search finds; and that is above the truth by no more than its own accuracy.
+  // Never above the searched minimum, which exceeds the true one by no more than its accuracy.
   constexpr double kAccuracy = 1e-5;
   const double searched = searched_minimum(shape, x, kAccuracy);
   ASSERT_LE(d.distance, searched + 2e-14 * size);
@@ -288,7 +288,7 @@ TEST(TriangleAndBox, InsideDepthIsThatOfTheLinearProgramme) {
   EXPECT_GT(num_inside, 30'000);
 }
 
-/// A plane between the two proves the distance: the triangle is beyond it by as much, the box is not.
+/// A separating plane proves the distance: the triangle is beyond it by that much, the box is not.
 TEST(TriangleAndBox, OutsideDistanceIsProvedByItsNormal) {
   Random random(7);
   int num_outside = 0, num_ties = 0;
@@ -302,8 +302,8 @@ TEST(TriangleAndBox, OutsideDistanceIsProvedByItsNormal) {
     const double box_end =
         d.normal.dot(box.center) + (box.rotation.transpose() * d.normal).cwiseAbs().dot(box.half_size);
     const double triangle_start = std::min({d.normal.dot(x[0]), d.normal.dot(x[1]), d.normal.dot(x[2])});
-    // The normal's error, a rounding of the size over the distance, turns up times the size. Between two
-    // features that are equally near to within a rounding, the normals may differ by its root.
+    // The normal's error, a rounding of the size over the distance, enters times the size. Between two
+    // features that are equally near to within a rounding, the normals may differ by its square root.
     const double error = std::abs(triangle_start - box_end - d.distance) / (size * size / d.distance);
     ASSERT_LT(error, 2e-8) << trial;
     num_ties += error > 1e-14;
@@ -404,7 +404,7 @@ TEST(TriangleAndCapsule, TheAxisCanBeNearestToAnEdgeACornerOrTheFace) {
   EXPECT_LT((face.normal + Vec3::UnitY()).norm(), 1e-15);
 }
 
-// --- What holds of all ---
+// --- Properties of all distances ---
 
 /// ∂d/∂x_i = w_i normal where the deepest point moves smoothly: for almost all triangles outside.
 template <class Shape>
@@ -480,7 +480,7 @@ TEST(Support, IsThePlaneThatTouchesTheShape) {
         const Vec3 p = test::random_vector(random, 2);
         ASSERT_TRUE(signed_distance(shape, p).distance > 0 || normal.dot(p) <= most + 1e-12);
       }
-      const Vec3 far = 1e4 * normal;  // its nearest point is the one that sticks out farthest, or almost
+      const Vec3 far = 1e4 * normal;  // its nearest point is the support point, or almost
       const SignedDistance d = signed_distance(shape, far);
       ASSERT_NEAR(normal.dot(far - d.distance * d.normal), most, 1e-3);
     };

@@ -1,5 +1,5 @@
 #pragma once
-/// Distances found the slow way, in more digits than a double has, and inputs to try them on.
+/// Slow reference distances, in more digits than a double has, and test inputs.
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,9 @@ using Quad = long double;
 
 /// The squared distance between the convex hulls of a and b (two or three corners each, or one): the least
 /// over all pairs of faces of the distance between the planes through them, where that is attained inside
-/// both faces. The minimum over both hulls is inside some pair of faces, and where it is attained at many
-/// places, also inside a pair with only one solution; so pairs whose normal equations are singular are left
-/// out.
+/// both faces. The minimum over both hulls is inside some pair of faces. If it is attained at several
+/// positions, it is also inside a pair with only one solution; so pairs with singular normal equations are
+/// skipped.
 template <class Real>
 Real slow_distance_sq(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   using Vector = std::array<Real, 3>;
@@ -122,9 +122,9 @@ inline Mat3 random_rotation(Random& random) {
   return rotation;
 }
 
-/// Points as they come in bad luck: on a coarse lattice (so that edges are parallel, or nothing), on one
-/// line, all but coincident, with the fourth side all but parallel to the first, shaken by anything from
-/// 1e-17 to 1; all that at sizes from 1e-9 to 1e6, and at times far from the origin.
+/// Degenerate point sets: on a coarse lattice (so that edges are parallel, or of zero length), on one line,
+/// almost coincident, with the fourth side almost parallel to the first, perturbed by 1e-17 to 1; all at
+/// sizes from 1e-9 to 1e6, and sometimes far from the origin.
 inline std::vector<Vec3> unlucky_points(Random& random, int count) {
   std::vector<Vec3> x(count);
   const int kind = pick(random, 5);
@@ -138,7 +138,7 @@ inline std::vector<Vec3> unlucky_points(Random& random, int count) {
   if (kind == 2) {  // parallel: the last side along another
     x[count - 1] = x[count - 2] + random.uniform(-2, 2) * (x[1] - x[0]);
   }
-  if (kind == 3) {  // two of them in one place
+  if (kind == 3) {  // two coincident points
     x[pick(random, count)] = x[pick(random, count)];
   }
   if (kind == 4) {  // in a plane

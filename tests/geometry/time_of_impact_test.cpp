@@ -52,7 +52,7 @@ TEST(TimeOfImpact, OfACommonMotionIsNone) {
 }
 
 TEST(TimeOfImpact, KeepsThatFeaturesMayPartAgain) {
-  // Much nearer than the separation at the start: parting is free, and resting; approaching is not.
+  // Much nearer than the separation at the start: parting and resting are free; approaching is not.
   const Points start = {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0.2, 2e-5, 0.3)};
   for (const double y : {2e-5, 3e-5, 1.0}) {
     Points end = start;
@@ -70,14 +70,14 @@ TEST(TimeOfImpact, KeepsAFloorUnderTheGap) {
   EXPECT_GT(distance, 0.4 * kLimit.floor) << "halving it every step would have left 1e-21";
 }
 
-/// 20,000, or as many as the environment's WEFT_CASES says.
+/// 20,000, or the value of the environment variable WEFT_CASES.
 int num_cases() {
   const char* cases = std::getenv("WEFT_CASES");
   return cases ? std::max(20000, std::atoi(cases)) : 20000;
 }
 
-/// Random and degenerate pairs, against a walk in small steps: no impact is missed, none comes too late, and
-/// none is invented where features keep their distance.
+/// Random and degenerate pairs, against small time steps: no impact is missed or late, and none is reported
+/// for features that keep their distance.
 template <class Find, class Distance>
 void compare_with_a_walk(const Find& find, const Distance& distance, std::uint64_t seed) {
   constexpr int kSteps = 400;

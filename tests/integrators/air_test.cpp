@@ -1,5 +1,5 @@
-/// Drag, lift and gusts: the terminal velocity of the formula, nothing edge-on, no energy from still air, and
-/// steady with light cloth at 60 steps per second.
+/// Drag, lift and gusts: the analytic terminal velocity, no force edge-on, no energy from still air, and
+/// stability with light cloth at 60 steps per second.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr int kCells = 8;
 constexpr const char* kIntegrators[] = {"newton", "implicit_euler"};
 
-/// Silk of another weight, or a board.
+/// Silk with another density, or a board.
 std::shared_ptr<const ClothModel> sheet_of(double density, bool is_board = false) {
   Fabric fabric = find_fabric("silk");
   fabric.density = density;
@@ -42,7 +42,7 @@ TEST(AirForce, IsTheTextbooksDragAndLift) {
       << "face-on";
   EXPECT_EQ(force(Vec3::UnitY(), {3, 0, 0}).norm(), 0) << "edge-on";
   EXPECT_EQ((force(Vec3::UnitY(), {1, 2, 0}) - force(-Vec3::UnitY(), {1, 2, 0})).norm(), 0) << "both sides";
-  // At 45°: lift turns aside, up or down with the normal, and is perpendicular to the stream.
+  // At 45°: lift is perpendicular to the stream, up or down with the normal.
   const Vec3 u(2, 0, 0), slanted = Vec3(1, 1, 0).normalized(), f = force(slanted, u);
   EXPECT_NEAR(f.x(), 0.5 * 1.2 * 2 * 4 * 1.1 * std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(f.y(), 0.5 * 1.2 * 2 * 4 * 0.5 * 0.5, 1e-12);
@@ -53,7 +53,7 @@ TEST(Air, GivesAFallingSheetTheTerminalVelocityOfTheFormula) {
   // ½ ρ C_D v² = (mass per area) g
   for (const char* name : kIntegrators) {
     for (const double density : {0.03, 0.2}) {
-      const auto model = sheet_of(density, true);  // a soft one bellies, and falls faster
+      const auto model = sheet_of(density, true);  // a soft one bulges, and falls faster
       ClothState state = make_state(model->topology->mesh.positions);
       test::advance(*make(name), *model, {.wind = kStill}, 1.0 / 60, 60, state);
       const double terminal = std::sqrt(density * 9.81 / (0.5 * 1.2 * 1.1));

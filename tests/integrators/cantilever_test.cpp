@@ -1,4 +1,4 @@
-/// A strip of fabric clamped at one end, at rest under its own weight, against the elastica.
+/// A fabric strip clamped at one end, at rest under its weight, against the elastica.
 
 #include <gtest/gtest.h>
 
@@ -26,15 +26,15 @@ enum class Bending { grid, mesh, hinges };
 struct Strip {
   SheetKind kind = SheetKind::alternating;
   Bending bending = Bending::grid;
-  int cells = 10;  // along the strip; the first one is clamped, and free from its middle on
+  int cells = 10;  // along the strip; the first one is clamped up to its middle
   double gamma = 1;
-  double weft_over_warp = 2;  // bending rigidities; the bias in between
+  double weft_over_warp = 2;  // ratio of bending rigidities; the bias is in between
   double warp_deg = 0;        // from the strip's length
 };
 
 constexpr double kLength = 0.2, kDensity = 0.2, kGravity = 9.81;
 
-/// Of the rigidity along the strip that Γ asks for.
+/// The fabric with the rigidity along the strip that gives Γ.
 Fabric strip_fabric(const Strip& strip) {
   const auto [s, c] = sin_cos_deg(strip.warp_deg);
   Fabric shape{.density = kDensity, .c11 = 2000, .c22 = 2000, .c12 = 0, .g = 500};
@@ -84,7 +84,7 @@ double h_over_w(const Strip& strip) {
     environment.pins.particle.push_back(i);
     environment.pins.position.push_back(model->topology->mesh.positions[i]);
   }
-  // Large steps: implicit Euler's own damping brings the strip to rest.
+  // Large steps: the numerical damping of implicit Euler brings the strip to rest.
   const auto integrator = make_implicit_euler({.tolerance = 1e-5, .iterations = 200});
   const auto is_moving = [&] { return state.v.get(columns - 1).norm() > 1e-5 * kLength; };
   int steps = 0;
@@ -99,7 +99,7 @@ double h_over_w(const Strip& strip) {
   return drop / reach;
 }
 
-/// Its relative error [%].
+/// The strip's relative error [%].
 double error(Strip strip, const Point& point) {
   strip.gamma = point.gamma;
   const double percent = 100 * (h_over_w(strip) / point.h_over_w - 1);
@@ -112,7 +112,7 @@ double error(Strip strip, const Point& point) {
 }
 
 TEST(Cantilever, OnGridsBendsAsTheElasticaAlongWarpAndWeft) {
-  // 2 % is asked for; measured 0.6 % up to 20 at 10 cells, 1.7 % at 200 with 25.
+  // Requirement 2 %; measured 0.6 % up to 20 at 10 cells, 1.7 % at 200 with 25.
   for (const double warp : {0.0, 90.0}) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(error({.cells = 10, .warp_deg = warp}, kMaster[i]), 0, 1) << warp;
   }
@@ -144,7 +144,7 @@ TEST(Cantilever, CutOnTheBiasBendsByTheBiasRigidity) {
 }
 
 TEST(Cantilever, OfHingesIsTooSoftOnGrids) {
-  // A finding: the vertices settle between the hinges, which shows as 11 to 17 % more drop.
+  // A known limit: the vertices settle between the hinges, which shows as 11 to 17 % more drop.
   for (const SheetKind kind : {SheetKind::alternating, SheetKind::parallel}) {
     EXPECT_GT(error({.kind = kind, .bending = Bending::hinges}, kMaster[0]), 5);
   }

@@ -17,7 +17,7 @@ using test::on_grid;
 using test::on_mesh;
 using test::square;
 
-/// Area over that at rest of the triangle that has least of it.
+/// The smallest area of a triangle over its rest area.
 double least_area(const ClothModel& model, const ClothState& state) {
   double least = 9;
   const TriangleMesh& mesh = model.topology->mesh;
@@ -34,7 +34,7 @@ double energy(const ClothModel& model, const ClothState& state) {
   return compute_kinetic_energy(model, state) + compute_elastic_energy(model, state);
 }
 
-/// A way to collapse: where the point (x, 0, z) of a sheet goes.
+/// A collapsed shape: the image of the point (x, 0, z) of a sheet.
 struct Crush {
   const char* name;
   Vec3 x, z;  // per metre along x, along z
@@ -72,8 +72,8 @@ Environment nothing() {
   return environment;
 }
 
-/// Within half a second, at 60 steps per second. BDF2 remembers the opening as a velocity: energy may rise
-/// from one step to the next by what it had lost, but never above the crushed cloth's.
+/// Within half a second, at 60 steps per second. BDF2 carries the opening on as a velocity: energy may rise
+/// from one step to the next by its previous loss, but never above that of the crushed cloth.
 void expect_opens(const IntegratorSettings& settings, int cells, double size) {
   for (const auto& [sheet, model] : sheets(cells, size)) {
     for (const Crush& crush : kCrushes) {
@@ -101,7 +101,7 @@ TEST(Collapse, CellsOpenAgainWithImplicitEuler) {
   expect_opens({.integrator = "newton", .is_double = true}, 1, 0.02);
 }
 
-/// The term of `newton` is that of `implicit_euler`: with small steps both open a cell along one path.
+/// `newton` and `implicit_euler` have the same term: with small steps both open a cell along one path.
 TEST(Collapse, OpensTheSameWithNewtonAndImplicitEuler) {
   for (const auto& [sheet, model] : sheets(1, 0.02)) {
     SCOPED_TRACE(sheet);

@@ -56,7 +56,7 @@ TEST(Paper, DriftsInMomentumWhereBordersDiffer) {
 TEST(ImplicitEuler, NeverGainsEnergyUndriven) {
   const auto topology = build_grid_topology(square(10), SpringModel::basic);
   const auto model = build_cloth_model(topology, {.structural = 200, .shear = 100, .bend = 2});
-  // Stretched evenly by a fifth: the springs stay at or beyond rest length while it contracts the first time.
+  // Stretched evenly by a fifth: the springs stay at or beyond rest length during the first contraction.
   std::vector<Vec3> positions;
   for (const Vec3& p : topology->mesh.positions) positions.push_back(1.2 * p);
   ClothState state = make_state(positions);
@@ -65,7 +65,8 @@ TEST(ImplicitEuler, NeverGainsEnergyUndriven) {
   for (int s = 0; s < 100; ++s) {
     test::advance(*integrator, *model, kNothing, 1e-3, 1, state);
     const double now = total_energy(*model, state);
-    // Once springs are compressed the bound of the truths applies: ½ µ h² |v'|², far below this share.
+    // Once springs are compressed, the bound for the true Jacobian applies: ½ µ h² |v'|², far below this
+    // share.
     EXPECT_LT(now, energy * (1 + 1e-4)) << s;
     energy = now;
   }
@@ -184,11 +185,11 @@ double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 TEST(Integrators, AgreeAsTheStepGoesToZero) {
   const std::vector<Vec3> reference = swing("explicit", 12800);
   for (const char* name : {"explicit", "paper_fixed", "desbrun", "implicit_euler", "newton", "xpbd"}) {
-    // First order divides the error by 4; the constant Jacobian's numerical damping gets there late.
+    // First order divides the error by 4; the constant Jacobian's numerical damping converges late.
     const double coarse = distance(swing(name, 800), reference),
                  fine = distance(swing(name, 3200), reference);
     EXPECT_LT(fine, 0.001) << name;
-    constexpr double kErrorOfReference = 5e-5;  // twice what explicit has left at 3200 steps [m]
+    constexpr double kErrorOfReference = 5e-5;  // twice the error of explicit at 3200 steps [m]
     EXPECT_TRUE(coarse / fine > 2.5 || coarse < kErrorOfReference) << name;
   }
 }

@@ -1,4 +1,4 @@
-/// A preconditioner must be symmetric and positive definite, whatever contacts hold.
+/// The preconditioner is symmetric and positive definite for any contacts.
 
 #include "weft/integrators/contact_filter.h"
 

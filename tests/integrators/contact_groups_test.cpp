@@ -1,4 +1,4 @@
-/// Cloths that touch are solved for together, and no others.
+/// Only cloths in contact are solved together.
 
 #include "weft/integrators/contact_groups.h"
 
@@ -52,8 +52,7 @@ TEST(ContactGroups, OfNothingThatTouchesAreAllCloths) {
   }
 }
 
-/// Two cloths of one cell and one weight each, whose particles have all been moved by (1, 0, 0) and (3, 0,
-/// 0).
+/// Two cloths of one cell and one weight each, whose particles are all displaced by (1, 0, 0) and (3, 0, 0).
 struct FreeBodiesTest : testing::Test {
   const std::shared_ptr<const ClothModel> model =
       build_cloth_model(build_grid_topology(test::square(1), SpringModel::basic), {});
@@ -72,7 +71,7 @@ struct FreeBodiesTest : testing::Test {
     }
   }
 
-  /// Of each cloth's first particle, after means have been removed.
+  /// Displacement of each cloth's first particle, after removal of the means.
   std::array<double, 2> remove_mean() {
     Vec3Array* const displacements[] = {&moved[0], &moved[1]};
     bodies.remove_mean(displacements);
@@ -99,7 +98,7 @@ TEST_F(FreeBodiesTest, LetGoAreFreeAgain) {
   EXPECT_EQ(remove_mean(), (std::array{0.0, 0.0}));
 }
 
-/// A sheet that lies on the floor at `place`, and if wanted two more beside it that fall on each other.
+/// A sheet on the floor at `place`, optionally with two more beside it that fall on each other.
 World make_heap(const char* integrator, bool with_others) {
   World world;
   world.set_integrator({.integrator = integrator});

@@ -1,4 +1,4 @@
-/// Integrators that work in double precision: what rounding no longer does, and what still holds.
+/// Integrators in double precision: less rounding, and the same guarantees.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ std::unique_ptr<Integrator> in_double(const char* name, double tolerance = 1e-9)
   return make_integrator({.integrator = name, .implicit_euler = {.tolerance = tolerance}, .is_double = true});
 }
 
-/// As precisely as it is kept [m].
+/// Position in the stored precision [m].
 Vec3 position_of(const ClothState& state, int particle) {
   return state.origin + most_precise(state.precise.x, state.x, particle);
 }
@@ -36,7 +36,7 @@ TEST(DoublePrecision, FallsFreelyToTheLastDigits) {
       follow_cloth(sheet.state);
     }
     const double time = kSteps * step;
-    const double late = std::string(name) == "newton" ? 0 : 0.5 * 9.81 * step * time;  // implicit Euler's
+    const double late = std::string(name) == "newton" ? 0 : 0.5 * 9.81 * step * time;  // implicit Euler
     EXPECT_NEAR(position_of(sheet.state, 4).y(), start - 0.5 * 9.81 * time * time - late, 1e-9) << name;
   }
 }
@@ -62,7 +62,7 @@ TEST(DoublePrecision, IsWhatNewtonInFloatsComesToWithEnoughIterations) {
   }
 }
 
-/// A soft strip's free corner after a tenth of a second in n steps.
+/// Position of a soft strip's free corner after a tenth of a second in n steps.
 Vec3 swing(const char* name, int steps) {
   Hung sheet(build_grid_topology(square(3), SpringModel::alternating), 3,
              {.structural = 20, .shear = 10, .bend = 1, .damping = 0.01});

@@ -1,4 +1,4 @@
-/// A cloth of membranes and bending in implicit_euler.
+/// Membrane and bending elements in implicit_euler.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Elements, ShakenKeepTheirMomentumAndSettle) {
   }
 }
 
-/// Kinetic energy, in J, that a curled and spinning sheet has left after a second.
+/// Kinetic energy [J] of a curled and spinning sheet after a second.
 double spin_left(double damping, BendingModel bending) {
   Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = damping;
@@ -103,8 +103,8 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
     const double stretching = energy(0, mesh.positions, stretched);
     EXPECT_NEAR(energy(kTau, mesh.positions, stretched) / stretching, 1 + kTau / kStep, 1e-3)
         << "the strain's second order is 1e-4 of it";
-    // Rolled by 0.2/m, then by 0.1/m more: a quarter of the energy at 0.2/m is that of the difference. A soft
-    // membrane, whose own resistance to the chords vanishes beside.
+    // Curvature 0.2/m, then 0.1/m more: the difference has a quarter of the energy at 0.2/m. A soft membrane,
+    // so that its resistance to the chords is negligible.
     fabric.c11 = fabric.c22 = 1e-6;
     fabric.g = 1e-6;
     const auto some = test::rolled(mesh, 0.2, 0), more = test::rolled(mesh, 0.3, 0);

@@ -1,5 +1,5 @@
 #pragma once
-/// Sheets of fabric for tests of integrators: membranes and bending on grids and meshes, and what holds them.
+/// Fabric sheets for tests of integrators: membranes and bending on grids and meshes, with their pins.
 
 #include <memory>
 #include <vector>
@@ -45,7 +45,7 @@ inline std::shared_ptr<const ClothModel> springs_on(const Grid& grid, double str
                            build_grid_bending_elements(grid, GridWarp::first_axis, fabric));
 }
 
-/// Held where the given particles are at rest.
+/// Pins the given particles at their rest positions.
 inline Environment hung_by(const ClothModel& model, const std::vector<int>& pins) {
   Environment environment;
   for (const int i : pins) {

@@ -1,4 +1,4 @@
-/// Free cloth under gravity: what must hold to round-off, and what the paper's filter does instead.
+/// Free cloth under gravity: exact to round-off, and the deviation of the paper's filter.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ std::vector<Vec3> lifted(const std::vector<Vec3>& positions, const Vec3& by) {
 
 class FreeFall : public testing::TestWithParam<const char*> {};
 
-/// How far cloth at rest has fallen after n steps, in units of g h²: each step of the first-order integrators
-/// moves it with the velocity at its end, BDF2 with its ghost history is exact.
+/// Fall of cloth from rest after n steps, in units of g h²: each step of the first-order integrators moves it
+/// with the velocity at its end, BDF2 with its ghost history is exact.
 double fallen(std::string_view integrator, int n) {
   return integrator == "newton" ? 0.5 * n * n : 0.5 * n * (n + 1);
 }
@@ -80,8 +80,8 @@ TEST(Paper, FiltersGravityByItsOwnFormulaOnEveryParticle) {
       }
       for (std::size_t i = 0; i < a.size(); ++i) {
         const double expected = -kGravity * h * (1 + h * h / model->mass[i] * sum[i]) / (1 + a[i]);
-        // Besides float rounding, the flat sheet's springs are off their rest length by rounding, in the
-        // plane only.
+        // Besides float rounding, the springs of the flat sheet deviate from their rest length by rounding,
+        // in the plane only.
         EXPECT_NEAR(state.v.get(i).y(), expected, 2e-6 * kGravity * h) << "k = " << k << ", particle " << i;
       }
     }

@@ -1,4 +1,4 @@
-/// A fabric's membranes and bending in newton: against explicit integration, implicit_euler and formulas.
+/// Membrane and bending elements in newton: against explicit integration, implicit_euler and formulas.
 
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ TEST(NewtonElements, StayTameAtEveryIterationCount) {
 
 TEST(NewtonElements, ComeToTheRestOfImplicitEuler) {
   Fabric fabric = find_fabric("cotton_shirting");
-  fabric.damping = 0.05;  // to be at rest soon
+  fabric.damping = 0.05;  // for a fast approach to rest
   for (const auto& model : {on_grid(square(10), fabric), on_mesh(square(10), fabric)}) {
     std::vector<int> row;
     for (int i = 0; i <= 10; ++i) row.push_back(i);
@@ -150,8 +150,8 @@ TEST(NewtonElements, VibrateWithTheFrequencyOfTheirStiffnessAndTheDampingOfTheir
       if (s == 49) high = end;
       if (s == 149) low = end;
     }
-    // After a quarter and three quarters of a period; strain is linear to a thousandth, cells are a
-    // twentieth, BDF2 errs by 0.1 % of a radian's frequency.
+    // After a quarter and three quarters of a period. Strain is linear to a thousandth, cells are a
+    // twentieth, BDF2 has a frequency error of 0.1 % of a radian.
     const double decay = std::exp(-0.1 * omega / omega_damped * 3.14159265);
     EXPECT_NEAR(-low / high, decay, 0.01);
     EXPECT_NEAR(high, 1e-3 * std::exp(-0.1 * omega / omega_damped * 1.5707963) * omega / omega_damped, 1e-5);

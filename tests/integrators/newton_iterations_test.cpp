@@ -1,4 +1,4 @@
-/// `newton` at every number of iterations: more of them must never make worse cloth.
+/// `newton` at every iteration count: more iterations never make the cloth worse.
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 namespace weft::engine {
 namespace {
 
-/// Kinetic energy of what differs between a particle and the mean of its four neighbours [J]: ripples as
-/// short as the grid can have count fully, waves of ten cells by a hundredth.
+/// Kinetic energy of the difference between a particle and the mean of its four neighbours [J]: the shortest
+/// ripples of the grid count fully, waves of ten cells by a hundredth.
 double short_wave_energy(const ClothModel& model, const ClothState& state) {
   const Grid& grid = *model.topology->grid;
   double energy = 0;

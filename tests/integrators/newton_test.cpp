@@ -1,4 +1,4 @@
-/// The default integrator: what its method promises, and what it must survive.
+/// The default integrator: accuracy and robustness.
 
 #include <gtest/gtest.h>
 
@@ -44,15 +44,15 @@ TEST(Newton, FollowsTheHangingSheetOfRealFabric) {
       worst_reference = std::max(worst_reference, largest_strain(*reference.model, reference.state));
     }
     RecordProperty("error_mm", std::to_string(1000 * error));
-    EXPECT_LT(error, 0.05);  // 0.04 as measured, of a swing of a metre
+    EXPECT_LT(error, 0.05);  // measured 0.04, for a swing of a metre
     EXPECT_GT(worst, 0.6 * worst_reference);
     EXPECT_LT(worst, 1.4 * worst_reference);
   }
 }
 
 TEST(Newton, StaysTameAtEveryIterationCount) {
-  // With the transverse stiffness of compressed springs clamped at zero strains came to hundreds of percent,
-  // the more so the more iterations.
+  // With the transverse stiffness of compressed springs clamped at zero, strains would reach hundreds of
+  // percent, increasing with the iterations.
   for (const int iterations : {5, 10, 20, 40, 100, 200}) {
     Hung sheet(build_grid_topology(square(31), SpringModel::simplified), 31);
     const auto integrator = newton(iterations);
@@ -63,7 +63,7 @@ TEST(Newton, StaysTameAtEveryIterationCount) {
   }
 }
 
-/// A soft sheet after half a second in n equal steps, or (ratio not 1) in pairs of steps of that ratio.
+/// A soft sheet after half a second in n equal steps, or (ratio not 1) in pairs of steps with that ratio.
 ClothState swing(int steps, double ratio) {
   Hung sheet(build_grid_topology(square(6), SpringModel::simplified), 6,
              {.structural = 20, .shear = 10, .bend = 1, .damping = 0.01});
@@ -89,7 +89,7 @@ TEST(Newton, IsOfSecondOrder) {
 TEST(Newton, ComesToTheRestOfImplicitEuler) {
   for (const auto& topology :
        {build_grid_topology(square(10), SpringModel::alternating), test::mesh_of(square(10))}) {
-    // Hung by its whole first row: by two corners it has several ways of folding to rest.
+    // Pinned along its whole first row: pinned at two corners it has several rest states.
     Hung a(topology, 10), b(topology, 10);
     for (Hung* sheet : {&a, &b}) {
       sheet->environment.wind.drag = 1;
@@ -125,7 +125,7 @@ TEST(Newton, KeepsMomentumWithFewAndManyIterationsHereAndTenKilometresAway) {
 }
 
 TEST(Newton, OfDisconnectedAndLightPiecesEachKeepsItsOwnMomentum) {
-  // Two squares, a single triangle that is a millionth as heavy, one of the squares pinned.
+  // Two squares and a single triangle that is a millionth as heavy; one of the squares is pinned.
   TriangleMesh mesh;
   const auto add_square = [&](double x) {
     const int first = mesh.num_vertices();
@@ -196,7 +196,7 @@ TEST(Newton, StaysSettledThroughARestart) {
   EXPECT_EQ(rms_distance(copy, another), 0) << "all that is remembered is in the state";
   EXPECT_LT(rms_distance(copy, settled), 1e-5);
 
-  // Without its history: the invented one sees that the pins carry the whole weight.
+  // Without history: the initial history includes that the pins carry the whole weight.
   ClothState forgetful = settled;
   forgetful.history = {};
   test::advance(*newton(), *sheet.model, sheet.environment, 1.0 / 60, 5, forgetful);
@@ -236,7 +236,7 @@ TEST(Newton, WorksHarderTheStifferTheClothIsAndTheLongerTheStep) {
   EXPECT_GT(iterations(2000, 1.0 / 60, NewtonQuality::high), 2 * usual);
 }
 
-/// Period of a stiff pendulum let go at the given angle, from its first two passages downwards.
+/// Period of a stiff pendulum released at the given angle, from its first two downward passages.
 double pendulum_period(double angle) {
   const std::vector<Vec3> places = {Vec3::Zero(), {std::sin(angle), -std::cos(angle), 0}};
   const auto model = build_cloth_model(test::chain(places, 0.1, 1), {.density = 1, .structural = 1e5});
@@ -267,7 +267,7 @@ TEST(Newton, HasThePeriodsOfThePendulum) {
   }
 }
 
-/// Frequency of a hanging strip in its n-th mode, from the zeros of its tip's swing [Hz].
+/// Frequency of a hanging strip in its n-th mode, from the zero crossings of its tip [Hz].
 double strip_frequency(double bessel_zero) {
   constexpr int kLinks = 100;
   constexpr double kStep = 1.0 / 240, kAmplitude = 2e-3;
@@ -300,8 +300,8 @@ double strip_frequency(double bessel_zero) {
 }
 
 TEST(Newton, SwingsAHangingStripAtItsFrequencies) {
-  // (j/4π) √(g/L) with the zeros of the Bessel function J0. A chain of 100 links, the last of full mass, is
-  // half a link too long: 0.25 %.
+  // (j/4π) √(g/L) with the zeros of the Bessel function J0. A chain of 100 links, with full mass at the last,
+  // is half a link too long: 0.25 %.
   for (const double zero : {2.404826, 5.520078, 8.653728}) {
     const double expected = zero / (4 * 3.14159265358979) * std::sqrt(9.81);
     EXPECT_NEAR(strip_frequency(zero), expected, 0.01 * expected);

@@ -1,4 +1,4 @@
-/// `newton` on scenes that nobody would make.
+/// `newton` on random extreme scenes.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(Newton, StaysFiniteAndGainsNoEnergyInRandomScenes) {
       const double now = scene.energy();
       ASSERT_TRUE(std::isfinite(now)) << "seed " << seed << ", step " << s;
       lowest_potential = std::min(lowest_potential, scene.height_energy());
-      // Ten percent of what is in motion, and what rounding of 1e-7 m means to stiff springs.
+      // Ten percent of the energy in motion, plus the effect of rounding of 1e-7 m on stiff springs.
       const double scale = std::abs(start) - lowest_potential;
       const double rounding = 1e-3 * model.material.structural * 1e-6;
       gains |= now - start > 0.1 * scale + rounding;
@@ -37,8 +37,8 @@ TEST(Newton, StaysFiniteAndGainsNoEnergyInRandomScenes) {
     EXPECT_NEAR(scene.vertical_speed(), -9.81 * t, 0.01 * 9.81 * t + 0.01)
         << "seed " << seed << " falls at g";
   }
-  // A finding: seed 88, 24 particles of 9·10⁴ N/m with steps of 1/16 s, gains half of what is in motion, and
-  // loses it again.
+  // A known exception: seed 88, 24 particles of 9·10⁴ N/m with steps of 1/16 s, gains half of the energy in
+  // motion, and loses it again.
   EXPECT_LE(gaining.size(), 1u) << testing::PrintToString(gaining);
 }
 

@@ -1,4 +1,4 @@
-/// A seam between borders that do not match carries load as if there were none.
+/// A seam between non-matching borders carries load like continuous cloth.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLength = 0.4, kWidth = 0.1;  // of the strip, its length along x [m]
 
-/// A part of the strip that begins at x, with that many rows across.
+/// A part of the strip that begins at x, with the given number of rows across.
 TriangleMesh part(double x, double length, int rows) {
   TriangleMesh mesh = build_grid_mesh({.size_x = length, .size_z = kWidth, .cells_x = 10, .cells_z = rows},
                                       GridDiagonals::alternating);
@@ -26,7 +26,7 @@ TriangleMesh join(TriangleMesh mesh, const TriangleMesh& other) {
   return mesh;
 }
 
-/// How much longer the strip is, held at x = 0, under its own weight along x.
+/// Extension of the strip, held at x = 0, under its weight along x.
 double extension(const TriangleMesh& mesh) {
   const Fabric fabric = {.density = 0.2,
                          .c11 = 100,

@@ -1,4 +1,4 @@
-/// Stiffness that differs from spring to spring.
+/// Stiffness per spring.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ constexpr double kStep = 1.0 / 60;
 
 const ClothMaterial kSoft = {.structural = 100, .shear = 50, .bend = 2, .damping = 1e-3};
 
-/// After half a second in steps that suit the integrator.
+/// The state after half a second in steps that suit the integrator.
 ClothState swing(const char* name, const std::shared_ptr<const ClothTopology>& topology, int cells,
                  const ClothMaterial& material) {
   Hung sheet(topology, cells, material);
@@ -71,8 +71,8 @@ TEST(SpringFactors, OfAnyKindAreTheSameOnAGridAsInATable) {
   }
 }
 
-/// A strip hung by its short end whose upper half is four times as stiff: each half is longer by what hangs
-/// below it, over the stiffness of its rows.
+/// A strip hung by its short end whose upper half is four times as stiff: each half extends by the weight
+/// below it over the stiffness of its rows.
 TEST(SpringFactors, MakeTheStiffHalfOfAHungStripStretchAsMuchLessAsItShould) {
   constexpr int kAcross = 2, kAlong = 40;
   const Grid grid{.size_x = 0.05, .size_z = 1, .cells_x = kAcross, .cells_z = kAlong};
@@ -96,7 +96,7 @@ TEST(SpringFactors, MakeTheStiffHalfOfAHungStripStretchAsMuchLessAsItShould) {
   const auto integrator = test::integrator("newton");
   test::advance(*integrator, *strip.model, strip.environment, kStep, 1200, strip.state);
   const auto height = [&](int j) { return strip.state.position(grid.index(1, j)).y(); };
-  // Of the middle column, whose particles carry half of the width: w(s) = density · width/2 · g · s below.
+  // The middle column, whose particles carry half of the width: w(s) = density · width/2 · g · s below.
   const double per_metre = 0.2 * 0.05 / 2 * 9.81;
   const double spacing = 1.0 / kAlong;
   double expected_upper = 0, expected_lower = 0;

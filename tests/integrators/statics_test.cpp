@@ -1,4 +1,4 @@
-/// Where cloth comes to rest, against formulas.
+/// Rest states of cloth against formulas.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@ namespace weft::engine {
 namespace {
 
 /// The largest error of a link's extension, relative to the largest extension, of a chain hung by its upper
-/// end after it has come to rest in still air. The step is such that the paper's stiffness number is `a`; 0:
-/// as usual.
+/// end, at rest in still air. The step gives the paper's stiffness number `a`; 0: default.
 double hanging_chain_error(std::string_view name, double a) {
   constexpr int kLinks = 20;
   constexpr double kMass = 0.01, kStiffness = 50, kLength = 0.05;
@@ -42,9 +41,9 @@ TEST(HangingChain, StretchesByTheWeightBelow) {
 }
 
 TEST(HangingChain, OfThePapersFilterIsRightOnlyForSmallStiffnessNumbers) {
-  // Findings. The mended filter lets gravity through and holds springs back by 1 − a²: statics are off by
-  // that share. The printed one guesses that the pinned neighbour gives way, so that the uppermost link is
-  // off by about a.
+  // Known limits. The fixed filter passes gravity and weakens springs by 1 − a²: statics deviate by that
+  // share. The printed one assumes that the pinned neighbour yields, so that the uppermost link deviates by
+  // about a.
   for (const char* name : {"paper", "paper_fixed"}) {
     EXPECT_LT(hanging_chain_error(name, 0.01), 0.02) << name;
     EXPECT_GT(hanging_chain_error(name, 0.5), 0.05) << name;
@@ -52,8 +51,8 @@ TEST(HangingChain, OfThePapersFilterIsRightOnlyForSmallStiffnessNumbers) {
 }
 
 TEST(HangingChain, OfXpbdIsRightOnlyInSmallSteps) {
-  // A finding. Each spring sees what those before it in the pass have done about gravity, and not what those
-  // after it will: the error is about 2 h b/m from damping (h²k/m without it) and goes to zero with h.
+  // A known limit. Each spring includes the gravity response of the springs before it in the pass, but not of
+  // those after it: the error is about 2 h b/m from damping (h²k/m without it) and goes to zero with h.
   const double coarse = hanging_chain_error("xpbd", 1e-2), fine = hanging_chain_error("xpbd", 1e-4);
   EXPECT_LT(fine, 0.01);
   EXPECT_NEAR(coarse / fine, 10, 2) << "with a tenth of the step";
@@ -77,7 +76,7 @@ double catenary_sag(double ratio, int links) {
 }
 
 TEST(Catenary, SagsAsTheFormulaSays) {
-  // The discrete chain's own error falls with the square of the link: at 60 links about 2e-4.
+  // The discretisation error of the chain falls with the square of the link length: at 60 links about 2e-4.
   EXPECT_NEAR(catenary_sag(1.05, 60), 0.139304, 4e-4);
   EXPECT_NEAR(catenary_sag(1.25, 60), 0.331797, 4e-4);
   EXPECT_NEAR(catenary_sag(2.0, 60), 0.796388, 6e-4);
@@ -88,7 +87,7 @@ TEST(FlatSheet, StaysExactlyAtRestWithoutGravity) {
     for (const SpringModel spring_model :
          {SpringModel::basic, SpringModel::simplified, SpringModel::alternating}) {
       // Power-of-two spacing, so that rest lengths along rows and columns are exact in floats; no diagonals,
-      // whose rest length √2/16 no float holds.
+      // because their rest length √2/16 is not representable.
       const auto topology = build_grid_topology(test::square(16), spring_model);
       const auto model =
           build_cloth_model(topology, {.structural = 100, .shear = 0, .bend = 1, .damping = 0.001});
@@ -103,8 +102,8 @@ TEST(FlatSheet, StaysExactlyAtRestWithoutGravity) {
   }
 }
 
-/// A sheet hung by two corners, after `seconds` of slow settling: how far its lowest particle is from the
-/// middle.
+/// A sheet hung by two corners, after `seconds` of slow settling: the distance of its lowest particle from
+/// the middle.
 double skewness(SpringModel spring_model) {
   const auto topology = build_grid_topology(test::square(16), spring_model);
   const double shear = spring_model == SpringModel::basic ? 50 : 100;

@@ -1,5 +1,5 @@
-/// A strain limit holds inside the solve: on every mesh, hung, swung and pulled, and motion stays what it
-/// was.
+/// Strain limit inside the solve: it holds on every mesh, hung, swung and pulled, and does not change other
+/// motion.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::shared_ptr<const ClothModel>> sheets(int cells, const Fabric& f
   return {on_grid(square(cells), fabric), on_mesh(square(cells), fabric)};
 }
 
-/// Calls `look` after every frame of a sheet that is let go from the horizontal, held by two corners.
+/// Calls `look` after every frame of a sheet released from the horizontal, pinned at two corners.
 template <class Look>
 void swing(const ClothModel& model, Integrator& integrator, int cells, int frames, const Look& look) {
   ClothState state = make_state(model.topology->mesh.positions);
@@ -114,7 +114,7 @@ TEST(StrainLimit, HoldsWithImplicitEuler) {
 }
 
 TEST(StrainLimit, HoldsWhileACornerIsPulledAboutByAHand) {
-  // To and fro by 30 cm twice a second: up to 3.8 m/s.
+  // Back and forth by 30 cm twice a second: up to 3.8 m/s.
   for (const auto& model : sheets(20, soft(kLimit))) {
     ClothState state = make_state(model->topology->mesh.positions);
     Environment environment = hung_by(*model, {0});
@@ -127,7 +127,7 @@ TEST(StrainLimit, HoldsWhileACornerIsPulledAboutByAHand) {
   }
 }
 
-/// Energy of what differs between neighbours: the shortest waves.
+/// Energy of the differences between neighbours: the shortest waves.
 double roughness(const ClothModel& model, const ClothState& state) {
   double sum = 0;
   for (const Spring& s : model.topology->springs) {
@@ -138,7 +138,7 @@ double roughness(const ClothModel& model, const ClothState& state) {
 }
 
 TEST(StrainLimit, MovesAsStiffClothAndNoRougher) {
-  // Both hardly stretch, so that both must swing alike: the limit neither brakes nor rings.
+  // Both hardly stretch, so both must swing alike: the limit causes neither drag nor oscillation.
   constexpr int kCells = 20;
   Fabric stiff = soft(0);
   for (double* c : {&stiff.c11, &stiff.c22, &stiff.c12, &stiff.g}) *c *= 100;

@@ -1,4 +1,4 @@
-/// Cloth that follows a measured stretch curve.
+/// Cloth with a measured stretch curve.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ struct Strip {
     state = make_state(topology->mesh.positions);
   }
 
-  /// Both short sides held, the far one pulled out.
+  /// Pins both short sides, with the far one pulled out.
   void pull(double extension) {
     environment.pins = {};
     for (int i = 0; i < model->num_particles(); ++i) {
@@ -64,7 +64,7 @@ TEST(StretchCurve, IsWhatAPulledStripShows) {
         test::advance(*integrator, *strip.model, strip.environment, 1.0 / 60, 120, strip.state);
         return compute_elastic_energy(*strip.model, strip.state);
       };
-      // The force at an extension, from the work of a little more of it.
+      // The force at an extension, from the work of a small additional extension.
       const double width = strip.grid.size_z, length = strip.grid.size_x, step = 0.002;
       energy_at(point.strain / 2);
       const double low = energy_at(point.strain - step), high = energy_at(point.strain);

@@ -1,5 +1,5 @@
 /// Fabrics in `xpbd`: membranes, stencils, hinges and limits against `implicit_euler` at the same small
-/// steps, and against what needs no other integrator.
+/// steps, and against results that need no other integrator.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60;
 const Grid kSheet{.size_x = 0.3, .size_z = 0.3, .cells_x = 8, .cells_z = 8};
 
-/// Steps of an integrator, with substeps as World takes them.
+/// Steps of an integrator, with substeps as in World.
 void run(Integrator& integrator, const ClothModel& model, const Environment& environment, int frames,
          ClothState& state) {
   const int substeps = integrator.num_substeps(model, environment, kFrame);
@@ -35,8 +35,8 @@ std::vector<std::shared_ptr<const ClothModel>> all_kinds(const Fabric& fabric) {
 }
 
 TEST(XpbdFabric, SwingsAsWithImplicitEulerAtTheSameSteps) {
-  // A fifth of a second after it is let go from the horizontal, stiff enough to bend that no wrinkle decides
-  // by itself which way to go. What is left between them falls with the step.
+  // A fifth of a second after release from the horizontal; stiff enough in bending that no wrinkle has an
+  // ambiguous direction. The remaining difference falls with the step.
   Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = 0.01;
   for (double* b : {&fabric.bend_warp, &fabric.bend_weft, &fabric.bend_bias}) *b *= 30;
@@ -98,7 +98,7 @@ TEST(XpbdFabric, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(XpbdFabric, KeepsAStrainLimitWithSubstepsEnough) {
-  // A loose sheet; the limit is a stiff spring of its own, which takes more substeps than the cloth does.
+  // A loose sheet; the limit acts as a separate stiff spring, which needs more substeps than the cloth.
   Fabric loose{.density = 0.2, .c11 = 20, .c22 = 20, .c12 = 0, .g = 5};
   constexpr double kLimit = 0.02;
   for (const bool has_limit : {false, true}) {

@@ -1,4 +1,4 @@
-/// The peer: is it as good as its method allows?
+/// XPBD, the baseline: accuracy within the limits of the method.
 
 #include <gtest/gtest.h>
 
@@ -35,8 +35,8 @@ TEST(Xpbd, MovesTwoParticlesAndASpringByImplicitEuler) {
 }
 
 TEST(Xpbd, VisitsEverySpringOnceOnGridsOfEverySize) {
-  // In a step so short that no spring feels what the others have done, velocities change by the sum of all
-  // springs' forces, as in explicit Euler.
+  // In a step so short that springs are independent, velocities change by the sum of all springs' forces, as
+  // in explicit Euler.
   constexpr double kStep = 1e-6;
   for (const DampingKind kind : {DampingKind::plain, DampingKind::projected}) {
     for (const int cells_x : {1, 2, 3, 4, 6, 17, 66}) {
@@ -57,8 +57,8 @@ TEST(Xpbd, VisitsEverySpringOnceOnGridsOfEverySize) {
           for (std::size_t i = 0; i < a.v.size(); ++i)
             largest = std::max(largest, (a.v.get(i) - start.v.get(i)).norm());
           for (std::size_t i = 0; i < a.v.size(); ++i) {
-            // What springs do feel, h b/m of a dozen, is a thousandth; the weakest spring missed or visited
-            // twice would be some percent. Speeds of 1 m/s are rounded to floats.
+            // The coupling between springs, h b/m of a dozen, is a thousandth; the weakest spring missed or
+            // visited twice would be some percent. Speeds of 1 m/s are rounded to floats.
             ASSERT_LT((a.v.get(i) - b.v.get(i)).norm(), 2e-3 * largest + 2e-7)
                 << cells_x << " by " << cells_z << ", particle " << i;
           }
@@ -74,7 +74,7 @@ struct Accuracy {
   double error = 0, strain = 0;
 };
 
-/// Returns what the reference's is, and fills `results` for each number of substeps.
+/// Returns the reference's values, and fills `results` for each number of substeps.
 Accuracy measure_hanging_sheet(int particles_per_side, const std::vector<int>& substeps,
                                std::vector<Accuracy>& results) {
   constexpr int kFrames = 60;
@@ -113,8 +113,8 @@ TEST(Xpbd, ConvergesToTheReferenceWithMoreSubsteps) {
 }
 
 TEST(Xpbd, IsAsGoodAtRealSizeAsAnotherImplementationOfItsMethod) {
-  // An independent one, in double precision, with another order of the springs, made errors of 0.040 and
-  // 0.020 m and strains of 56 and 21 % with 50 and 100 substeps.
+  // An independent implementation, in double precision, with another order of the springs, has errors of
+  // 0.040 and 0.020 m and strains of 56 and 21 % with 50 and 100 substeps.
   std::vector<Accuracy> results;
   measure_hanging_sheet(64, {50, 100}, results);
   EXPECT_NEAR(results[0].error, 0.040, 0.006);
@@ -124,7 +124,7 @@ TEST(Xpbd, IsAsGoodAtRealSizeAsAnotherImplementationOfItsMethod) {
 }
 
 TEST(Xpbd, FallsAsFarAsItShouldInEightThousandSubsteps) {
-  // Velocities that are differences of positions lose three percent here: 3e-8 m of a step's 1.5e-7 m.
+  // Velocities from differences of positions would lose three percent here: 3e-8 m of a step's 1.5e-7 m.
   const auto topology = build_grid_topology(square(16), SpringModel::simplified);
   const auto model = build_cloth_model(topology, {});
   ClothState state = make_state(topology->mesh.positions);

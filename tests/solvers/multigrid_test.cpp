@@ -1,4 +1,4 @@
-/// The multigrid preconditioners as solvers of their own, and conjugate gradients with them.
+/// The multigrid preconditioners as standalone solvers, and conjugate gradients with them.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace weft::engine {
 namespace {
 
-/// A scalar matrix, the same in double precision, and how to apply its multigrid.
+/// A scalar matrix, the same in double precision, and the application of its multigrid.
 struct Problem {
   int size = 0;
   std::vector<Eigen::Triplet<double>> entries;
@@ -83,7 +83,7 @@ Problem grid_problem(int columns, int rows, bool both_diagonals) {
   return p;
 }
 
-/// The same sheet for the multigrid that knows no grid; alternating diagonals, nothing pinned.
+/// The same sheet for the mesh multigrid; alternating diagonals, no pins.
 Problem mesh_problem(int side) {
   Problem p;
   p.size = side * side;
@@ -141,7 +141,7 @@ Eigen::VectorXd without_pins(const Problem& p, Eigen::VectorXd v) {
   return v;
 }
 
-/// By how much each cycle of u ← u + V (b − A u) reduces the error in the norm of A.
+/// The factor by which each cycle of u ← u + V (b − A u) reduces the error in the norm of A.
 std::vector<double> reductions(const Problem& p, int cycles) {
   const Eigen::SparseMatrix<double> a = p.matrix();
   Eigen::VectorXd error = without_pins(p, random_vector(p.size, 7));
@@ -195,7 +195,7 @@ TEST(Multigrid, IsSymmetricAndPositiveDefinite) {
 }
 
 TEST(Multigrid, HandlesParticlesThatNothingHolds) {
-  // Three pieces: a pair, a single particle, and one that drops out.
+  // Three components: a pair, a single particle, and one that drops out.
   SparseMatrix couplings;
   couplings.num_columns = 4;
   couplings.add_entry(1, 1e6);
@@ -215,7 +215,7 @@ TEST(Multigrid, HandlesParticlesThatNothingHolds) {
   EXPECT_EQ(z.get(3).x(), 0);
 }
 
-/// The matrix of a problem, as conjugate gradients want it.
+/// The matrix of a problem, as a function for conjugate gradients.
 auto make_multiply(const Problem& p, const Eigen::SparseMatrix<double>& a) {
   return [&](const Vec3Array& in, Vec3Array& out) {
     Eigen::MatrixXd v(p.size, 3);

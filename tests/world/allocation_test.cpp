@@ -1,4 +1,4 @@
-/// Steps of the fast integrators allocate no memory once they have begun.
+/// Steps of the fast integrators do not allocate memory after the first ones.
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,13 @@ namespace {
 std::atomic<long> g_allocations{0};
 }
 
-// Not inlined, or g++ sees free() meet memory of what it still takes for its own operator new, and warns.
+// Not inlined: g++ would otherwise see free() applied to its own operator new, and warn.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++g_allocations;
   if (void* memory = std::malloc(size ? size : 1)) return memory;
   throw std::bad_alloc();
 }
-// std::stable_partition asks for this one; a sanitizer's own would not go with the free() below.
+// std::stable_partition uses this one; a sanitizer's version would not match the free() below.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++g_allocations;
   return std::malloc(size ? size : 1);
@@ -35,7 +35,7 @@ TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
          {build_grid_topology(test::square(12), SpringModel::simplified), test::mesh_of(test::square(12))}) {
       World world;
       world.set_integrator({.integrator = name});
-      // Contacts that join the solve need room as they come: newton is watched without.
+      // Contacts in the solve allocate as they come: newton is tested without.
       const bool has_ball = std::string_view(name) != "newton";
       if (has_ball) world.add_collider({"ball", Sphere{{0.5, -0.1, 0.5}, 0.1}, 0.3, {}});
       const ClothId cloth =
@@ -49,7 +49,7 @@ TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
           world.step(1.0 / 600);
         }
       };
-      // Work space grows as contacts come: what a motion needed once it never needs again.
+      // Work space grows as contacts come: repeating the same motion must not allocate.
       const World::Snapshot start = world.snapshot();
       make_steps();
       world.restore(start);

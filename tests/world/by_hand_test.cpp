@@ -1,4 +1,4 @@
-/// What a program does between two steps: colliders moved by hand, things removed, worlds cloned.
+/// Run-time control between two steps: kinematic colliders, removal of bodies, cloned worlds.
 
 #include <gtest/gtest.h>
 
@@ -17,13 +17,13 @@ namespace {
 
 using test::square;
 
-constexpr double kStep = 1.0 / 64;  // exact in binary, so that times are
+constexpr double kStep = 1.0 / 64;  // exact in binary, so that times are exact
 const ClothMaterial kSoft{.density = 0.2, .structural = 200, .shear = 80, .bend = 0.02, .friction = 0.3};
 
 static_assert(std::is_nothrow_move_constructible_v<World> && std::is_move_assignable_v<World>);
 static_assert(!std::is_copy_constructible_v<World> && !std::is_copy_assignable_v<World>);
 
-/// A sheet hung by two corners, upright, in the plane x = 0, its middle at the origin.
+/// A sheet hung by two corners, upright, in the plane x = 0, centred at the origin.
 ClothId hang_sheet(World& world) {
   const Grid grid = square(16, 0.6);
   std::vector<Vec3> positions;
@@ -39,7 +39,7 @@ double mean_x(const World& world, ClothId cloth) {
   return compute_center_of_mass(world.model(cloth), world.state(cloth)).x();
 }
 
-/// How far the ball of 0.15 m that pushes the sheet has come [m].
+/// Displacement of the ball of 0.15 m that pushes the sheet [m].
 double way(double time) { return 2 * time; }
 
 TEST(ByHand, ACollidersPosePerFrameIsTheSameAsKeyFrames) {
@@ -133,7 +133,7 @@ TEST(ByHand, ATeleportedClothKeepsItsMotion) {
     for (int i = 0; i < w->model(w->cloth(0)).num_particles(); ++i)
       velocities.emplace_back(0.1 * std::sin(i), 0.3, 0.2);
     w->set_velocities(w->cloth(0), velocities);
-    // A plate between here and there, which must not sweep it.
+    // A plate on the way, which must not sweep it.
     w->add_collider({.shape = OrientedBox{Vec3(5, 0, 0), Vec3(0.05, 2, 2), Mat3::Identity()}});
     for (int n = 0; n < 4; ++n) ASSERT_TRUE(w->step(kStep).ok);
   }
@@ -162,7 +162,7 @@ TEST(ByHand, PinsHoldWhereTheirParticlesArePut) {
   EXPECT_LT((world.state(sheet).position(0) - corner).norm(), 1e-6);
 }
 
-/// Falls freely: nothing but gravity acts on it.
+/// Checks free fall: no force except gravity.
 void expect_free_fall(World& world, ClothId cloth) {
   const Vec3 before = compute_momentum(world.model(cloth), world.state(cloth));
   constexpr int kSteps = 6;
@@ -220,7 +220,7 @@ TEST(Removal, KeepsRulesWithThoseTheyAreOf) {
   EXPECT_GT(compute_lowest_y(world.state(held)), -0.06);
 }
 
-/// In contact with a ball that moves by hand, half on its way.
+/// In contact with a kinematic ball, half on its way.
 World make_busy_world() {
   World world;
   hang_sheet(world);

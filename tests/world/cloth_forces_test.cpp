@@ -1,4 +1,4 @@
-/// Forces of springs and elements in doubles, against an integrator's own and against energies.
+/// Forces of springs and elements in doubles, against an integrator's forces and against energies.
 
 #include "weft/world/cloth_forces.h"
 
@@ -23,7 +23,7 @@ std::shared_ptr<const ClothModel> springs(DampingKind kind) {
 
 const Fabric kThick{
     .c12 = 300, .bend_warp = 0.01, .bend_weft = 0.008, .bend_bias = 0.008, .strain_limit = 0.02};
-/// Bends as hard as it stretches.
+/// As stiff in bending as in stretching.
 const Fabric kPlate{.c11 = 1, .c22 = 1, .g = 1, .bend_warp = 0.05, .bend_weft = 0.05, .bend_bias = 0.05};
 
 std::shared_ptr<const ClothModel> hinges() {
@@ -55,8 +55,8 @@ ClothState shaken(const ClothModel& model) {
 }
 
 TEST(ClothForces, AreThoseThatImplicitEulerMovesClothWith) {
-  // After its step m (v − v₀)/h is all the force there is. Its damping acts as in the shape at the start,
-  // which in 10 µs has hardly changed.
+  // After its step m (v − v₀)/h is the total force. Its damping is that of the start shape, which has hardly
+  // changed in 10 µs.
   constexpr double kStep = 1e-5;
   for (const auto& [name, model] : cases()) {
     const ClothState before = shaken(*model);
@@ -111,7 +111,7 @@ TEST(ClothForces, OfDampingOnlyTakeEnergyAndLeaveARigidRotationAlone) {
     }
     EXPECT_LT(power, -1e-3) << name;
     EXPECT_LT(sum.norm(), 1e-9) << name;
-    if (name == std::string("springs, plain damping")) continue;  // brakes rotations too
+    if (name == std::string("springs, plain damping")) continue;  // damps rotations too
     for (std::size_t i = 0; i < state.x.size(); ++i) state.v.set(i, Vec3(0.3, 1, -0.2).cross(state.x.get(i)));
     for (const Vec3& f : compute_damping_forces(*model, state)) EXPECT_LT(f.norm(), 1e-5) << name;
   }

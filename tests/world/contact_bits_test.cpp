@@ -1,4 +1,4 @@
-/// With contact, and cloth on itself, the same bits for any number of threads and every vector width.
+/// Bit-identical results with contact, including self contact, for any number of threads and SIMD width.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// Steps that divide themselves.
+/// Step division.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ double energy_of(const World& world) {
 }
 
 struct Landing {
-  double rise = 0;  // the most in a frame, over what had fallen in all [1]
+  double rise = 0;  // largest rise of energy in a frame, over the total fall [1]
   double strain = 0;
   int divisions = 0, retries = 0;
 };
@@ -79,7 +79,7 @@ TEST(StepDivision, WhatIsNotDividedHasTheSameBits) {
   EXPECT_EQ(with.state_hash(), without.state_hash());
 }
 
-/// A landing up to before its first divided step.
+/// A landing up to just before its first divided step.
 World make_before_impact(int& frames, const StepDivision& division = {}) {
   World world = make_landing(division);
   World::Snapshot before;
@@ -92,7 +92,7 @@ World make_before_impact(int& frames, const StepDivision& division = {}) {
 }
 
 TEST(StepDivision, ADividedStepIsThatOfShorterSteps) {
-  // Nothing of the attempt is left: steps of the length that was needed, taken by hand, give the same bits.
+  // The attempt has no effect: manual steps of the final length are bit-identical.
   int frames = 0;
   World world = make_before_impact(frames, {.shortest = kFrame / 2});
   ASSERT_LT(frames, 60);

@@ -1,4 +1,4 @@
-/// Energy audits of motions whose work is known.
+/// Energy audits of motions with analytic work.
 
 #include "weft/world/energy_audit.h"
 
@@ -18,11 +18,11 @@ constexpr double kGravity = 9.81;
 const ClothMaterial kSoft{.structural = 100, .shear = 50, .bend = 0.2, .damping = 2e-3};
 const ClothMaterial kUndamped{.structural = 100, .shear = 50, .bend = 0.2};
 
-/// The audits of some steps one after the other.
+/// Consecutive audits of some steps.
 struct Audited {
   WorldEnergy before;
   EnergyAudit sum;
-  double most = -1e30;  // left over in a step [J]
+  double most = -1e30;  // largest remainder of a step [J]
   double least = 1e30;
 
   double gain() const { return sum.energy.total() - before.total(); }
@@ -48,7 +48,7 @@ World make_world(const std::string& integrator = "newton") {
   return world;
 }
 
-/// A square sheet with its middle at the given place.
+/// A square sheet centred at the given position.
 ClothId add_sheet(World& world, int cells, double size, const Vec3& middle,
                   const ClothMaterial& material = kSoft, const Vec3& velocity = Vec3::Zero()) {
   const auto topology = build_grid_topology(test::square(cells, size), SpringModel::alternating);
@@ -77,7 +77,7 @@ std::vector<int> all_particles(const World& world, ClothId cloth) {
   return all;
 }
 
-/// From where it is, with this velocity from a time on.
+/// Static, with this velocity from a given time on.
 RigidMotion glide(const Vec3& velocity, double from = 0) {
   constexpr double kLong = 100;
   return RigidMotion({{.time = from}, {.time = from + kLong, .translation = kLong * velocity}});
@@ -94,7 +94,7 @@ TEST(EnergyAudit, OfFreeFallLeavesNothingOver) {
 }
 
 TEST(EnergyAudit, OfFreeFallByImplicitEulerLeavesOverWhatThatDissipates) {
-  // v' = v + g h, x' = x + h v': of every step ½ m g² h² is lost.
+  // v' = v + g h, x' = x + h v': every step dissipates ½ m g² h².
   World world = make_world("implicit_euler");
   const ClothId sheet = add_sheet(world, 8, 0.4, Vec3::Zero());
   const Audited fall = audit(world, 30, 60);
@@ -122,7 +122,7 @@ TEST(EnergyAudit, OfASheetPinnedEverywhereHasThePinsDoItAll) {
   world.set_pins(sheet, {{all_particles(world, sheet), glide({0.3, 0.4, 0}), Vec3::Zero()}});
   const Audited first = audit(world, 1, 60);
   const double mass = mass_of(world, sheet), kinetic = 0.5 * mass * 0.25, lifted = mass * kGravity * 0.4 / 60;
-  // Brought to its speed within one step of implicit Euler: m a·Δx is twice the kinetic energy.
+  // Accelerated to its speed within one step of implicit Euler: m a·Δx is twice the kinetic energy.
   EXPECT_NEAR(first.sum.work_pins, 2 * kinetic + lifted, 1e-5 * kinetic);
   EXPECT_NEAR(first.sum.left_over, -kinetic, 1e-5 * kinetic);
   const Audited then = audit(world, 30, 60);
@@ -143,7 +143,7 @@ TEST(EnergyAudit, OfAHungSheetThatIsLiftedHasThePinsGiveWhatItGains) {
     const double gained = mass_of(world, sheet) * kGravity * 0.4;
     EXPECT_NEAR(lift.sum.energy.gravitational - lift.before.gravitational, gained, 0.02 * gained)
         << integrator;
-    // The jerk of the start costs the pins twice the kinetic energy, 2 % of all.
+    // The jerk at the start costs the pins twice the kinetic energy, 2 % of the total.
     EXPECT_NEAR(lift.sum.work_pins, gained, 0.04 * gained) << integrator;
     EXPECT_LT(lift.sum.left_over, 0) << integrator;
   }
@@ -170,7 +170,7 @@ TEST(EnergyAudit, OfASheetOnARisingBallHasTheBallLiftIt) {
   const Audited lift = audit(world, 60, 60);
   const double expected = mass_of(world, sheet) * kGravity * 0.5;
   EXPECT_NEAR(lift.gain(), expected, 0.03 * expected) << "it starts with a jerk, and falls back on the ball";
-  // On a ball that moves contact points bear 6 % too much (docs/contact.md).
+  // On a moving ball contact points bear 6 % too much (docs/contact.md).
   EXPECT_NEAR(lift.sum.work_shapes, expected, 0.1 * expected);
 }
 
@@ -239,7 +239,7 @@ TEST(EnergyAudit, OfASheetAtItsTerminalSpeedHasTheAirTakeWhatGravityGives) {
   World world = make_world();
   world.set_wind({.air = air});
   const ClothId sheet = add_sheet(world, 4, 0.4, Vec3::Zero(), kSoft, Vec3(0, -speed, 0));
-  audit(world, 10, 60);  // `newton` begins as if in free fall
+  audit(world, 10, 60);  // `newton` starts with a free-fall history
   const Audited fall = audit(world, 50, 60);
   const double fallen = fall.before.gravitational - fall.sum.energy.gravitational;
   EXPECT_NEAR(fallen, mass_of(world, sheet) * kGravity * speed * 50 / 60, 0.05 * fallen)

@@ -69,7 +69,7 @@ TEST(Grab, SharesTheSpringAmongTheSurroundingsOfAPoint) {
 TEST(Grab, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
   const Vec3 aim(0.4, 0.3, 0.6);
   for (const std::string_view name : integrator_names()) {
-    // The paper's own scheme needs soft springs: what is tested is the hand.
+    // The paper's scheme needs soft springs: the test is about the attachment.
     const double cloth_stiffness = name == "paper" || name == "explicit" ? 20 : 2000;
     for (const double step : {1.0 / 60, 1.0 / 600}) {
       for (const double k : {1.0, 1e2, 1e4, 1e6, 1e8}) {
@@ -78,8 +78,8 @@ TEST(Grab, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
         sheet.hold(k, 0.06 * k, aim);
         sheet.advance(static_cast<int>(3 / step), step);
         // At rest the spring carries the cloth: 1.96 N, and up to three times that in paper_fixed, which
-        // filters what its springs carry but not the weight. The paper's damping is slow to end a swing, and
-        // a spring of 1 N/m is still on its way down.
+        // filters the load of its springs but not the weight. The paper's damping ends a swing slowly, and a
+        // spring of 1 N/m is still on its way down.
         if (k < 100) continue;
         const double weight = name == "paper_fixed" ? 6 : 1.96;
         EXPECT_LT((sheet.held_point() - aim).norm(), weight / k + 0.02);
@@ -89,7 +89,7 @@ TEST(Grab, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
 }
 
 TEST(Grab, HoldsHeavyClothByOneLightParticle) {
-  // One in ten thousand of the cloth's mass, and a spring of any stiffness.
+  // A ten-thousandth of the cloth's mass, and a spring of any stiffness.
   for (const double k : {1e2, 1e5, 1e8}) {
     Sheet sheet("desbrun");
     Grab grab{
@@ -97,7 +97,7 @@ TEST(Grab, HoldsHeavyClothByOneLightParticle) {
     grab.target = sheet.world.state(sheet.cloth).position(40) + Vec3(0, 0.2, 0);
     sheet.world.set_grabs(sheet.cloth, {grab});
     sheet.advance(240, 1.0 / 60);
-    // Desbrun's constant matrix brakes the last of the swing for long.
+    // Desbrun's constant matrix damps the end of the swing slowly.
     EXPECT_LT((sheet.world.state(sheet.cloth).position(40) - grab.target).norm(), 1.96 / k + 0.02) << k;
   }
 }
@@ -115,8 +115,8 @@ TEST(Grab, GivesTheMomentumThatItSaysItGives) {
       }
       const Vec3 momentum = compute_momentum(sheet.world.model(sheet.cloth), sheet.world.state(sheet.cloth));
       EXPECT_GT(momentum.norm(), 0.005) << name << " has been set in motion";
-      // Floats: h k times a distance that is known to 1e-7 m, over 20 steps. implicit_euler stops at 1e-2 m/s
-      // per particle, 2e-3 kg m/s for the whole cloth at worst.
+      // Floats: h k times a distance with an error of 1e-7 m, over 20 steps. implicit_euler stops at 1e-2 m/s
+      // per particle, at worst 2e-3 kg m/s for the whole cloth.
       const double tolerance =
           1e-5 + 20.0 / 240 * k * 2e-7 + (std::string(name) == "implicit_euler" ? 2e-3 : 0);
       EXPECT_LT((momentum - given).norm(), tolerance) << name << ", " << k;
@@ -134,7 +134,7 @@ TEST(Grab, LetsGoOfClothThatThenFallsFreely) {
       compute_momentum(sheet.world.model(sheet.cloth), sheet.world.state(sheet.cloth)).y() / 0.2;
   sheet.advance(30, 1.0 / 60);
   const double t = 0.5;
-  // Implicit Euler's own fall, h/2 ahead; floats.
+  // The fall of implicit Euler, h/2 ahead; floats.
   EXPECT_NEAR(sheet.height() - before, speed * t - 0.5 * 9.81 * t * (t + 1.0 / 60), 1e-3);
   EXPECT_EQ(sheet.world.grab_impulse(sheet.cloth), Vec3(Vec3::Zero()));
 }

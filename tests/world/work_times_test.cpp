@@ -32,7 +32,7 @@ ClothParts make_sheet(double height) {
   return desc;
 }
 
-/// One sheet, held everywhere, and another that settles on it. No plain shapes: every contact is a pair.
+/// A sheet pinned everywhere, and another that settles on it. No primitive shapes: every contact is a pair.
 World make_layers() {
   World world;
   const ClothId lower = world.add_cloth(make_sheet(0));
@@ -114,7 +114,7 @@ TEST(WorkTimes, OfFreeFallHaveAtMostTwoSearchesPerSecond) {
   EXPECT_GE(of_mesh.list_renewals, 1u);
   EXPECT_LE(of_mesh.list_renewals, 2u) << "what all cloth moves in common does not count";
   EXPECT_EQ(of_mesh.active, 0u);
-  // A grid is surveyed instead: nothing of it may meet.
+  // A grid is surveyed instead, and no contact is possible.
   EXPECT_EQ(work_of_free_fall(make_sheet(0)).list_renewals, 0u);
 }
 

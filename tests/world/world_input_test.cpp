@@ -1,4 +1,4 @@
-/// What a World refuses: nothing that a caller can say crashes it.
+/// Input validation of World: no input of a caller crashes it.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using test::square;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The call's sentence; a failure if there is none.
+/// The message of the call's error; a failure if there is none.
 template <class Call>
 std::string error_of(const Call& call) {
   try {

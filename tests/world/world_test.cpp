@@ -19,7 +19,7 @@ namespace {
 
 using test::square;
 
-/// A pinned sheet over a ball, with everything switched on.
+/// A pinned sheet over a ball, with all features enabled.
 struct Stage {
   World world;
   ClothId cloth;
@@ -59,7 +59,7 @@ TEST_P(Changes, BetweenStepsGiveWhatAFreshRunWithTheNewValuesGives) {
 
   Stage fresh = make_stage(GetParam(), kOther, {}, wind);
   fresh.world.restore(old.world.snapshot());
-  fresh.world.set_pins(fresh.cloth, kOneCorner);  // where the cloth is now
+  fresh.world.set_pins(fresh.cloth, kOneCorner);  // at the cloth's present positions
   for (int s = 0; s < 8; ++s) {
     ASSERT_TRUE(old.world.step(1.0 / 300).ok);
     ASSERT_TRUE(fresh.world.step(1.0 / 300).ok);
@@ -68,8 +68,7 @@ TEST_P(Changes, BetweenStepsGiveWhatAFreshRunWithTheNewValuesGives) {
 }
 
 TEST_P(Changes, OfMassAloneOrStepAloneOrPinsAloneCountToo) {
-  // Each of them is a part of some integrator's kept numbers: a stale one would go unnoticed if others
-  // changed too.
+  // Each of them is part of some integrator's cache: a stale entry would be hidden if others changed too.
   const auto run = [&](int change) {
     Stage stage = make_stage(GetParam(), kSoft, kTwoCorners, {});
     const auto apply = [&] {
@@ -127,7 +126,7 @@ TEST(World, MovesPinsAlongTheirKeyFrames) {
   }
 }
 
-/// A sheet laid on a tilted plane, let go for half a second: how far its middle has gone down the slope.
+/// A sheet on a tilted plane, released for half a second: displacement of its centre down the slope.
 double slide_of_sheet(std::string_view integrator, double angle_deg, double friction) {
   World world;
   world.set_integrator({.integrator = std::string(integrator)});
@@ -150,7 +149,7 @@ TEST(World, ClothOnASlopeSlidesByCoulombsLaw) {
     for (const double friction : {0.0, 0.2}) {
       const double radians = 30 * 3.14159265358979 / 180;
       const double expected = 0.125 * 9.81 * (std::sin(radians) - friction * std::cos(radians));
-      // Euler's error is the share 1/200; the rest is the contact's.
+      // Euler's error is the share 1/200; the rest is contact error.
       EXPECT_NEAR(slide_of_sheet(integrator, 30, friction), expected, 0.01 * expected) << integrator;
     }
   }
@@ -204,8 +203,8 @@ TEST(World, RefusesWhatDoesNotFit) {
 }
 
 TEST(World, ASliverChangesNothing) {
-  // Half a micrometre high, in the middle of cloth that falls on a ball; mesh cleaned as files are. Left as
-  // it is it stiffens what is around it: yarns stretch by 54 % for 2 %, and the cloth hangs 26 mm higher.
+  // Half a micrometre high, in cloth that falls on a ball; mesh cleaned as for files. Uncleaned it stiffens
+  // its surroundings: yarns stretch by 54 % instead of 2 %, and the cloth hangs 26 mm higher.
   struct Result {
     double lowest, yarn_strain, stretch, area;
     int parts = 0;

@@ -12,20 +12,20 @@ namespace {
 
 constexpr int kCells = 4;       // along each side of a block
 constexpr int kPatchCells = 2;  // along each side of a patch (patches.h)
-constexpr int kFarthest = 3;    // blocks no farther from each other have a rectangle around both
+constexpr int kFarthest = 3;    // blocks up to this far apart are tested by the rectangle around both
 
-/// Of sums of floats, relative to the size of what is measured; and of a gradient of about 1 [1].
+/// Rounding of float sums, relative to the measured size; and of a gradient of about 1 [1].
 constexpr float kRounding = 2e-6f, kRoundingOfGradient = 1e-3f;
 
-/// Of cloth's size: by less it moves against itself.
+/// Limit of motion against itself, as a share of the cloth's size.
 constexpr float kMostOfSize = 0.99f;
 
-/// Minima of a quantity over the rows of a block, for every column, and of its opposite.
+/// Per column, the minima of a quantity and of its negative over the rows of a block.
 struct Minima {
   float *of, *of_opposite;
 };
 
-/// Of one component: sides of cells, places at the start, ways.
+/// One component: cell sides, start positions, displacements.
 struct Columns {
   Minima across, along, place, way;
 };
@@ -38,7 +38,7 @@ WEFT_ALWAYS_INLINE void take_differences(const float* a, const float* b, int cou
   }
 }
 
-/// x and y: the component at the start and at the end, from the block's first row of particles on.
+/// x and y: the component at the start and at the end, from the block's first particle row on.
 WEFT_ALWAYS_INLINE void measure_columns_body(const float* x, const float* y, int columns, int cell_rows,
                                              const Columns& least) {
   for (int row = 0; row <= cell_rows; ++row, x += columns, y += columns) {
@@ -66,7 +66,7 @@ WEFT_ALWAYS_INLINE void spread_body(float* least, int count) {
 }
 WEFT_MULTIVERSION(spread, (float* least, int count), (least, count))
 
-/// σ_min of the matrix of the columns a, b.
+/// σ_min of the matrix with the columns a, b.
 float find_least_stretch(const Float4& a, const Float4& b) {
   const float aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b), half = 0.5f * (aa - bb);
   return std::sqrt(std::max(0.0f, 0.5f * (aa + bb) - std::sqrt(half * half + ab * ab)));
@@ -104,7 +104,7 @@ ClothClearance::Cloth::Cloth(const Grid& of, int number)
 
 int ClothClearance::Cloth::top() const { return static_cast<int>(levels.size()); }
 
-/// Of the rectangle around two blocks.
+/// Bounds of the rectangle around two blocks.
 ClothClearance::Block ClothClearance::Cloth::around(int level, Place a, Place b) {
   const auto [left, right] = std::minmax(a.column, b.column);
   const auto [top_row, bottom] = std::minmax(a.row, b.row);
@@ -128,7 +128,7 @@ const ClothClearance::Block& ClothClearance::Cloth::measure_patch(int column, in
   return patch;
 }
 
-/// Of the cells from `first` to before `end_cell`.
+/// Bounds of the cells in [first, end_cell).
 ClothClearance::Block ClothClearance::Cloth::measure_cells(Place first, Place end_cell) {
   const auto count = static_cast<std::size_t>(grid.num_particles());
   if (start.empty()) {
@@ -151,7 +151,7 @@ ClothClearance::Block ClothClearance::Cloth::measure_cells(Place first, Place en
   return block;
 }
 
-/// As wide as half the gap.
+/// The swept box, inflated by half the gap.
 SweptBox ClothClearance::Cloth::box(int level, Place place) {
   SweptBox result = around(level, place, place).box;
   const Float4 margin = Float4::Constant(0.5f * gap + rounding);
@@ -160,7 +160,7 @@ SweptBox ClothClearance::Cloth::box(int level, Place place) {
   return result;
 }
 
-/// Whether visit(place) is true for all blocks of the finer level that a block is made of.
+/// Whether visit(place) is true for all blocks of the next finer level inside a block.
 template <class Visit>
 bool ClothClearance::Cloth::all_quarters(int level, Place place, const Visit& visit) const {
   const Level& finer = level == 1 ? patches : levels[level - 2];
@@ -185,7 +185,7 @@ void ClothClearance::reset(std::span<const Grid> grids) {
   least_.resize(kQuantities * widest);
 }
 
-/// A row of blocks.
+/// Measures one row of blocks.
 void ClothClearance::measure_row(const ClothMotion& motion, int row, const Grid& grid, Level& level) {
   const int columns = grid.num_columns(), pitch = round_up_to_pack(columns + kCells),
             first = grid.index(0, row * kCells), cell_rows = std::min(kCells, grid.cells_z - row * kCells);
@@ -245,7 +245,7 @@ void ClothClearance::measure(const ClothMotion& motion, const Vec3& origin, Clot
                                 2 * largest(cloth.shift, cloth.shift));
 }
 
-/// Whether nothing in the rectangle around two blocks can meet.
+/// Whether the rectangle around two blocks cannot meet itself.
 bool ClothClearance::is_flat(Cloth& cloth, int level, Place a, Place b) {
   const Block all = cloth.around(level, a, b);
   const auto cell_x = static_cast<float>(cloth.grid.spacing_x()),
@@ -259,13 +259,13 @@ bool ClothClearance::is_flat(Cloth& cloth, int level, Place a, Place b) {
   return (least_stretch - deviation) * (cell_x * cell_z / std::hypot(cell_x, cell_z)) > cloth.gap;
 }
 
-/// False if there are too many.
+/// Returns false if there are too many pairs.
 bool ClothClearance::add_pair(int a, int b) {
   pairs_->push_back({std::min(a, b), std::max(a, b)});
   return pairs_->size() <= most_;
 }
 
-/// Pairs within a block. All searches return false if there are too many.
+/// Pairs within a block. All searches return false if there are too many pairs.
 bool ClothClearance::search_block(Cloth& cloth, int level, Place place) {
   if (is_flat(cloth, level, place, place)) return true;
   if (level == 0) return add_pair(cloth.patch(place), cloth.patch(place));

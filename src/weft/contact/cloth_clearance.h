@@ -1,20 +1,20 @@
 #pragma once
-/// Which parts of cloths that are grids may meet in a step, by one pass over their particles. All others
-/// provably keep apart.
+/// Conservative self-contact culling for grid cloth: one pass over the particles finds the patches that may
+/// meet in a step. All others provably stay apart.
 ///
-///     o--o--o--o--o     A block is 4×4 cells, and blocks form a quadtree. Sides of cells at the start and
-///     |  |  |  |  |     at the end are within bounds: those along x, and those along z. The deformation
-///     o--o--o--o--o     gradient F of every triangle, whose columns are two sides of its cell over the
-///     |  |  |  |  |     cell's size, is then within bounds at every time of straight motions.
+///     o--o--o--o--o     A block is 4×4 cells, and blocks form a quadtree. The cell sides along x, and those
+///     |  |  |  |  |     along z, are bounded at the start and at the end of the step. These bounds limit the
+///     o--o--o--o--o     deformation gradient F of every triangle at every time of straight motions: its
+///                       columns are two sides of its cell over the cell size.
 ///
-/// Let M be the middle of these bounds and E half of their diagonal. For points p, q of a rectangle of
+/// Let M be the centre of these bounds and E half of their diagonal. For points p, q of a rectangle of
 /// blocks, the mean value inequality says at every time
 ///
 ///     |x(p) − x(q)|  >=  (σ_min(M) − E) |p − q|
 ///
-/// which for the least rest distance of two features without a common vertex bounds how near any two of them
-/// come (compare patches.h). Two blocks keep apart if this holds in the rectangle around both, or if their
-/// swept boxes are apart; otherwise their quarters are tested, down to blocks of 2×2 cells, the patches.
+/// With the least rest distance of two features without a common vertex, this bounds how near any two of
+/// them come (compare patches.h). Two blocks stay apart if this holds in the rectangle around both, or if
+/// their swept boxes are disjoint; otherwise their quarters are tested, down to the patches of 2×2 cells.
 
 #include <span>
 #include <vector>
@@ -27,7 +27,7 @@
 
 namespace weft::engine {
 
-/// A cloth in a step: offsets of its particles from `origin`.
+/// The motion of one cloth in a step: particle offsets from `origin`.
 struct ClothMotion {
   const Vec3Array* start = nullptr;
   const Vec3Array* end = nullptr;
@@ -39,16 +39,16 @@ class ClothClearance {
  public:
   void reset(std::span<const Grid> grids);
 
-  /// Finds the pairs of patches, each once, of which features without a common vertex may come nearer than
-  /// `room` times their thickness at any time. Patches have the numbers that Patches gives them, a <= b.
-  /// False if there are more than `most`, or if cloth may move against itself by more than its size; then
-  /// `pairs` are not all.
+  /// Finds the pairs of patches, each once, whose features without a common vertex may come nearer than
+  /// `room` times their thickness at any time. Patches are numbered as in Patches, a <= b. Returns false if
+  /// there are more than `most`, or if cloth may move against itself by more than its size; then `pairs` is
+  /// incomplete.
   bool find_uncertain(std::span<const ClothMotion> cloths, double room, std::size_t most,
                       std::vector<ItemPair>& pairs);
 
   int num_patches() const { return num_patches_; }
 
-  /// Of the last call: around all cloths, from the origin of the first one.
+  /// Bounds of the last call: around all cloths, relative to the origin of the first one.
   const SweptBox& bounds() const { return bounds_; }
 
  private:
@@ -86,13 +86,13 @@ class ClothClearance {
     Grid grid;
     ClothMotion motion;
     Float4 shift = Float4::Zero();   // from the first cloth's origin [m]
-    float gap = 0;                   // that two features keep [m]
-    float rounding = 0;              // of positions [m]
+    float gap = 0;                   // minimum distance between two features [m]
+    float rounding = 0;              // rounding error of positions [m]
     std::vector<Level> levels;       // blocks of 4×4 cells to a single block
-    Level patches;                   // those in is_measured, by measure_patch()
+    Level patches;                   // filled by measure_patch(), valid where is_measured
     std::vector<char> is_measured;   // (patches)
     int first_patch = 0;             // number
-    std::vector<Float4> start, end;  // (particles) places, if any patch is measured [m]
+    std::vector<Float4> start, end;  // (particles) positions, if any patch is measured [m]
 
     Cloth(const Grid& of, int number);
     int top() const;  // the level of the single block; level 0 are patches

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to contact/: results of many small searches, found side by side and kept in order.
+/// Private to contact/: gathers the results of many small parallel searches in a fixed order.
 
 #include <algorithm>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace weft::engine {
 
-/// Calls work(i, chunk) for i from 0 to before `count`, side by side in chunks of `grain`, and gather(chunk)
-/// for one chunk after the other: what is gathered has the order of i, for any number of threads. `chunks` is
-/// work space, of a bounded number of chunks; each is cleared by clear().
+/// Calls work(i, chunk) for i in [0, count), in parallel in chunks of `grain`, and gather(chunk) for one
+/// chunk after the other: results are gathered in the order of i, for any number of threads. `chunks` is
+/// work space of a bounded number of chunks; each is cleared by clear().
 template <class Chunk, class Work, class Gather>
 void collect_in_order(JobSystem& jobs, int count, int grain, std::vector<Chunk>& chunks, const Work& work,
                       const Gather& gather) {

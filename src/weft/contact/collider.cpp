@@ -5,7 +5,7 @@
 namespace weft::engine {
 namespace {
 
-/// Meshes are met by their vertices, edges and triangles (see contact_system.h), never by this distance.
+/// Contact with meshes uses their vertices, edges and triangles (see contact_system.h), never this distance.
 SignedDistance signed_distance(const MeshShape&, const Vec3&) {
   return {std::numeric_limits<double>::infinity(), Vec3::UnitY()};
 }

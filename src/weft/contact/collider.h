@@ -1,5 +1,5 @@
 #pragma once
-/// Solid shapes that cloth is held off from, each still or moving by prescription.
+/// Colliders: solid shapes that are static or move by prescription.
 
 #include <memory>
 #include <string>
@@ -13,17 +13,17 @@
 
 namespace weft::engine {
 
-/// A triangle mesh as a collider, still or deforming, moved from the mesh's own coordinates: p ↦ rotation p +
-/// translation. Closed meshes face outwards; open ones hold cloth off on both sides.
+/// A triangle mesh as a collider, static or deforming, placed from mesh coordinates: p ↦ rotation p +
+/// translation. Closed meshes face outwards; open meshes collide on both sides.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;  // never null
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();                    // [m]
-  std::shared_ptr<const MeshSequence> sequence = {};  // where vertices go, in the mesh's own coordinates;
-                                                      // null: they stay. As many vertices as the mesh.
-  MeshSequence::Blend blend = {};                     // the moment of the sequence
+  std::shared_ptr<const MeshSequence> sequence = {};  // vertex animation in mesh coordinates; null: static.
+                                                      // As many vertices as the mesh.
+  MeshSequence::Blend blend = {};                     // the current time of the sequence
 
-  /// Where a vertex is now.
+  /// Current position of a vertex.
   Vec3 vertex(int v) const {
     return rotation * (sequence ? sequence->position(blend, v) : mesh->positions[v]) + translation;
   }
@@ -35,25 +35,25 @@ struct Collider {
   std::string name;
   ColliderShape shape;
   double friction = 0.3;       // Coulomb's coefficient, >= 0 [1]
-  RigidMotion motion;          // turns about pivot()
-  double static_friction = 0;  // while nothing slides; less than `friction`: the same [1]
+  RigidMotion motion;          // rotates about pivot()
+  double static_friction = 0;  // of sticking contacts; below `friction`: equal to it [1]
 };
 
-/// Signed distance from p to the shape's surface, and the normal there (geometry/shape_distance.h).
+/// Signed distance from p to the shape's surface, and the normal there (see geometry/shape_distance.h).
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p);
 
-/// The same of the triangle a, b, c, as far as `reach`.
+/// Signed distance of the triangle a, b, c, searched up to `reach`.
 TriangleSignedDistance signed_distance(const ColliderShape& shape, const Vec3& a, const Vec3& b,
                                        const Vec3& c, double reach = kNoReach);
 
-/// The largest normal · p of all points p of the shape; infinite of planes and meshes [m].
+/// Support function: the largest normal · p of all points p of the shape; infinite for planes and meshes [m].
 double support(const ColliderShape& shape, const Vec3& normal);
 
-/// The point that the collider turns about: a sphere's or box's centre, a plane's point, the middle of a
-/// capsule's axis, a mesh's own origin.
+/// The centre of rotation: a sphere's or box's centre, a plane's point, the middle of a capsule's axis, a
+/// mesh's own origin.
 Vec3 pivot(const ColliderShape& shape);
 
-/// The collider's shape where its motion, and its sequence if it has one, have taken it.
+/// The shape at `time`, moved by the collider's motion and its sequence, if any.
 ColliderShape shape_at(const Collider& collider, double time);
 
 }  // namespace weft::engine

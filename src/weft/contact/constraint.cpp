@@ -7,7 +7,7 @@ namespace weft::engine {
 namespace {
 
 constexpr double kPositionTolerance = 1e-6;  // corrections below need no further pass [m]
-constexpr double kNear = 2;  // what has so many times the first pass' largest correction as room is left out
+constexpr double kNear = 2;  // skip constraints with this much room, in largest corrections of the first pass
 
 }  // namespace
 

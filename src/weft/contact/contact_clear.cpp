@@ -1,4 +1,4 @@
-/// ContactSystem's survey of a step: which patches of cloth may meet at all, and whether colliders may.
+/// ContactSystem's survey of a step: which cloth patches may meet, and whether colliders are near.
 
 #include <algorithm>
 #include <limits>
@@ -10,22 +10,22 @@
 namespace weft::engine {
 namespace {
 
-/// What features keep between them that are not searched, over what contact holds them apart by [1]: 1.25 is
-/// more than the solve counts as near, and than cloth may leave where it was expected for contact projection
-/// to do nothing; the rest is twice the slack of lists of few patches.
+/// Distance that features outside the search keep, over the contact gap [1]. 1.25 is more than the solve
+/// counts as near, and more than the deviation from the prediction at which contact projection is a no-op.
+/// The rest is twice the slack of lists of few patches.
 constexpr double kSlackOfFew = 0.05, kRoom = 1.25 + 2 * kSlackOfFew;
 
-/// Of all patches, so many pairs may be uncertain for them to be searched alone [1].
+/// Limit on uncertain pairs, over the number of patches, for searching only these [1].
 constexpr double kFew = 1;
 
-/// After a survey that was of no use, so many steps go without.
+/// After a survey without benefit, this many steps skip it.
 constexpr int kStepsWithout = 15;
 
-/// From colliders, besides [m].
+/// Additional distance from colliders [m].
 constexpr double kRoomFromColliders = 1e-4;
 
-/// One component: ends = x + h v + gain · share, with as much of the acceleration as has been felt, `share`
-/// of all.
+/// One component of the predicted ends: x + h v + gain · share, where `share` is the share of the
+/// acceleration that acted in the last step.
 WEFT_ALWAYS_INLINE void coast_body(const float* x, const float* v, const float* share, float step, float gain,
                                    int count, float* ends) {
   for (int i = 0; i < count; ++i) ends[i] = x[i] + step * v[i] + gain * share[i];
@@ -35,8 +35,8 @@ WEFT_MULTIVERSION(coast,
                    float* ends),
                   (x, v, share, step, gain, count, ends))
 
-/// The shares of the acceleration that the step before has given to velocities: `per_gain` is the
-/// acceleration over its squared size and over that step.
+/// The shares of the acceleration that the last step added to velocities: `per_gain` is the acceleration over
+/// its squared size and over that step.
 WEFT_ALWAYS_INLINE void find_felt_body(const Vec3Array& v, const Vec3Array& before, const float* per_gain,
                                        int count, float* share) {
   const float *x = v.x(), *y = v.y(), *z = v.z(), *bx = before.x(), *by = before.y(), *bz = before.z();
@@ -53,8 +53,8 @@ WEFT_MULTIVERSION(find_felt,
 
 }  // namespace
 
-/// Whether a survey is worth its while: cloths are grids, nothing of the step's start is needed besides
-/// positions, and no survey shortly before was in vain.
+/// Whether to survey: all cloths are grids, the step's start is needed for positions only, and no recent
+/// survey was without benefit.
 bool ContactSystem::may_survey() {
   if (num_without_ > 0) {
     --num_without_;
@@ -66,7 +66,7 @@ bool ContactSystem::may_survey() {
          std::none_of(step_.rules.begin(), step_.rules.end(), sets_static);
 }
 
-/// As expect_motion(), in floats.
+/// As expect_motion(), but in floats.
 void ContactSystem::expect_ends(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
   const double h = step_.step, size_sq = acceleration.squaredNorm();
   std::size_t pin = 0;
@@ -95,21 +95,21 @@ void ContactSystem::expect_ends(const Vec3& acceleration, std::span<const Vec3> 
   }
 }
 
-/// Of the straight way to where inertia and `acceleration` take cloth; against colliders, to where all of the
-/// acceleration takes it.
+/// Surveys the straight motion to the prediction under inertia and `acceleration`; against colliders, to the
+/// ballistic prediction.
 void ContactSystem::survey_expected(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
   expect_ends(acceleration, pin_targets);
   for (std::size_t c = 0; c < cloths_.size(); ++c) motions_[c].end = &ends_[c];
   survey(step_.step * step_.step * acceleration.norm());
 }
 
-/// Of the way to where cloth is.
+/// Surveys the motion to the present positions.
 void ContactSystem::survey_solved() {
   for (std::size_t c = 0; c < cloths_.size(); ++c) motions_[c].end = &cloths_[c].state->x;
   survey(0);
 }
 
-/// `fall`: how much farther cloth may go [m].
+/// `fall`: how much farther cloth may move [m].
 void ContactSystem::survey(double fall) {
   const WorkScope scope(step_.clock, &WorkTimes::lists);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -121,12 +121,12 @@ void ContactSystem::survey(double fall) {
   const bool is_known =
       cloth_clearance_.find_uncertain(motions_, kRoom, most, uncertain_) && are_bodies_far(fall);
   is_clear_ = is_known && uncertain_.empty() && are_shapes_far(fall);
-  // Many short steps go better by lists that are kept.
+  // With many short steps, persistent lists are faster.
   is_surveyed_ = is_clear_ || (is_known && is_predicted_);
   if (!is_surveyed_) num_without_ = kStepsWithout;
 }
 
-/// Makes the lists hold for motion_, of which the last survey was.
+/// Updates the lists for motion_, which the last survey covered.
 void ContactSystem::update_lists(JobSystem& jobs) {
   if (is_surveyed_)
     proximity_.update_among(motion_, uncertain_, kSlackOfFew * 2 * thinnest_, jobs);
@@ -134,7 +134,7 @@ void ContactSystem::update_lists(JobSystem& jobs) {
     proximity_.update(motion_, jobs);
 }
 
-/// Where cloth is at any time of the step that was surveyed, and `fall` around it.
+/// Bounds of cloth during the surveyed step, enlarged by `fall`.
 ContactSystem::Region ContactSystem::surveyed_region(double fall) const {
   const SweptBox& bounds = cloth_clearance_.bounds();
   const Float4 low = bounds.min + bounds.way_min.cwiseMin(0.0f),
@@ -165,7 +165,7 @@ bool ContactSystem::are_bodies_far(double fall) const {
   });
 }
 
-/// … of a still mesh; infinite of one that deforms.
+/// Bounds of a static mesh; infinite for a deforming one.
 std::pair<Vec3, Vec3> ContactSystem::Body::bounds_at(const MeshShape& shape) const {
   const Vec3 middle = shape.rotation * (0.5 * (min + max)) + shape.translation;
   Vec3 half = shape.rotation.cwiseAbs() * (0.5 * (max - min));

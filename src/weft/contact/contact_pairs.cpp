@@ -1,4 +1,4 @@
-/// ContactSystem's pairs of features: vertices over triangles, edges over edges.
+/// ContactSystem's feature pairs: vertex–triangle and edge–edge.
 
 #include <algorithm>
 #include <cmath>
@@ -13,21 +13,21 @@ namespace {
 
 constexpr int kPairGrain = 1024;  // pairs per chunk
 
-/// Cloth found too near to cloth at the start of a step is set apart little by little, by this share of what
-/// lacks per step: all at once would throw it.
+/// Cloth too near to cloth at the start of a step is separated gradually, by this share of the missing
+/// distance per step: full separation in one step would throw it.
 constexpr double kRecovery = 0.2;
 
-/// Almost parallel edges have no reliable direction between them: sin² of the angle.
+/// Almost parallel edges have no reliable direction between them: limit of sin² of the angle.
 constexpr double kParallelSq = 0.03;
 
-/// Edges that pass each other nearer than this when they are in one plane do meet [m].
+/// Edges that come nearer than this when they are coplanar count as meeting [m].
 constexpr double kMeeting = 1e-5;
 
-/// Pairs of cloth and collider, and of two cloths, count for the solve from this share of their gap farther
-/// apart. More than this of two cloths makes friction between them too weak near its limit.
+/// The solve includes pairs that are farther apart than their gap by up to this share of it; for cloth with a
+/// collider, and for two cloths. A larger share between cloths weakens friction near its limit.
 constexpr double kNearBy = 0.6, kNearByCloth = 0.07;
 
-/// Features this near have no direction between them at all [m].
+/// Features this near have no direction between them [m].
 constexpr double kTouching = 1e-9;
 
 }  // namespace
@@ -54,8 +54,8 @@ void ContactSystem::collect_pairs(JobSystem& jobs) {
     collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_corner(p, c); });
 }
 
-/// A vertex of cloth that is nearest to an edge or a corner of a collider's mesh: ridges have no face under
-/// them. The vertex' first pair with a mesh stands for all of them.
+/// A cloth vertex that is nearest to an edge or a corner of a collider mesh, where no face lies below it. The
+/// vertex's first pair with a mesh stands for all of them.
 bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
   const std::vector<FeaturePair>& pairs = proximity_.vertex_triangle();
   const std::vector<Vec3>& x = motion_.start;
@@ -65,8 +65,8 @@ bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
   };
   if (vertex >= num_cloth || !is_body(pairs[first])) return false;
   if (first > 0 && pairs[first - 1].a == vertex && is_body(pairs[first - 1])) return false;
-  // Nearest at the start or, for what comes from farther, at the end: what lists hold by chance must not
-  // count.
+  // Nearest at the start or, for features that come from farther, at the end. Other pairs in the lists must
+  // not affect the result.
   PointTriangleDistance nearest{0, Vec3::Zero(), TriangleRegion::face};
   const FeaturePair* pair = nullptr;
   for (const std::vector<Vec3>* y : {&motion_.start, &motion_.end}) {
@@ -93,8 +93,8 @@ bool ContactSystem::make_vertex_corner(int first, Constraint& c) const {
   return finish_pair(distance, gap_of(*pair, c), c);
 }
 
-/// At the start only with the foot inside the triangle: towards its border the direction would lie sideways
-/// and make cloth sticky. What is beyond is the neighbouring triangles' or the edges' matter.
+/// At the start, only with the foot inside the triangle: near its border the normal would tilt sideways and
+/// make cloth stick. The neighbouring triangles or the edges handle points beyond it.
 bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c) const {
   const Triangle& triangle = proximity_.surface().triangles[pair.b];
   const int i = triangle[0], j = triangle[1], k = triangle[2];
@@ -120,7 +120,7 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   const double near = near_by(gap, share_nearby(c));
   if (distance > near && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > near) return false;
   if (is_on_closed_body(i)) {
-    // The outside is known, so that what is inside by a little is pushed out.
+    // The outside is defined, so slight penetration is pushed out.
     c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
     distance = c.normal.dot(c.sum(x));
   } else {
@@ -164,7 +164,7 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   return finish_pair(distance, gap, c);
 }
 
-/// When the four are in one plane, if they can have met by then: from `distance`, moving by `travel` at most.
+/// Time of coplanarity, if the four vertices can meet by then: from `distance`, with motion up to `travel`.
 std::optional<double> ContactSystem::find_meeting_time(const Constraint& c, double distance,
                                                        double travel) const {
   if (distance > travel + kMeeting) return std::nullopt;
@@ -181,34 +181,34 @@ std::array<Vec3, 4> ContactSystem::places_at(const Constraint& c, double time) c
   return p;
 }
 
-/// The features go through each other during the step: they are to stay on the side where they come from.
+/// Features that pass through each other during the step: they stay on the side they come from.
 bool ContactSystem::finish_crossing(const FeaturePair& pair, Constraint& c) const {
   const Vec3 approach = c.sum(motion_.end) - c.sum(motion_.start);
   if (c.normal.dot(approach) > 0) c.normal = -c.normal;
   return finish_pair(std::max(c.normal.dot(c.sum(motion_.start)), kTouching), gap_of(pair, c), c);
 }
 
-/// The pair's thickness, or what neighbours on the mesh may have of it. Cloth pressed into cloth is set apart
-/// little by little; its depth tells nothing, and none is left to it.
+/// The pair's thickness, or the share of it that mesh neighbours may keep. Cloth pressed into cloth is
+/// separated gradually; its depth carries no information, and none is left to it.
 double ContactSystem::gap_of(const FeaturePair& pair, const Constraint& c) const {
   const double thickness = motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
   return (is_on_body(c) ? 1 - pressed_in_ : 1) * std::min(thickness, double{pair.max_gap});
 }
 
-/// How near a pair must be to count. The solve is told of what lies on a collider or on another cloth though
-/// it does not quite touch: it would fall, be set apart again, and buzz.
+/// The distance below which a pair counts. The solve includes cloth that lies on a collider or on other cloth
+/// and almost touches it: it would otherwise fall, be separated again, and vibrate.
 double ContactSystem::near_by(double gap, double share) const {
   return (is_for_solve_ ? 1 + share : 1) * gap;
 }
 
-/// The share of its gap by which a pair may be farther apart and count for the solve.
+/// How much farther apart than its gap a pair may be to count for the solve, as a share of the gap.
 double ContactSystem::share_nearby(const Constraint& c) const {
   if (!is_for_solve_) return 0;
   if (is_on_body(c)) return kNearBy;
   return mesh_of(first_vertex_, c.vertex[0]) != mesh_of(first_vertex_, c.vertex[3]) ? kNearByCloth : 0;
 }
 
-/// By how much the pair's distance can change during the step, at most [m].
+/// Upper bound for the change of the pair's distance during the step [m].
 double ContactSystem::relative_travel(const Constraint& c) const {
   double travel = 0;
   const Vec3 common = motion_.end[c.vertex[0]] - motion_.start[c.vertex[0]];
@@ -218,7 +218,7 @@ double ContactSystem::relative_travel(const Constraint& c) const {
   return 2 * travel;
 }
 
-/// False if nothing of the pair can move.
+/// Returns false if no vertex of the pair can move.
 bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) const {
   const int first = c.vertex[0], last = c.vertex[3];
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
@@ -243,7 +243,7 @@ const ContactSystem::Body& ContactSystem::body_of(int vertex) const {
   return *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return vertex < b.end_vertex; });
 }
 
-/// Whether one side of the pair is a collider's mesh.
+/// Whether one side of the pair is a collider mesh.
 bool ContactSystem::is_on_body(const Constraint& c) const {
   return std::max(c.vertex[0], c.vertex[3]) >= first_vertex_.back();
 }

@@ -1,4 +1,4 @@
-/// ContactSystem's contact points, and the repair of what starts crossed.
+/// ContactSystem's contact points, and the repair of initial intersections.
 
 #include <algorithm>
 #include <tuple>
@@ -29,7 +29,7 @@ std::vector<ContactPoint> ContactSystem::contact_points() const {
 ContactPoint ContactSystem::describe(const Touch& touch) const {
   struct Side {
     Vec3 point = Vec3::Zero();
-    int vertex = -1;  // with the greatest weight
+    int vertex = -1;  // the one with the greatest weight
     double weight = 0;
   };
   Side sides[2];
@@ -43,7 +43,7 @@ ContactPoint ContactSystem::describe(const Touch& touch) const {
   }
   ContactPoint point{.normal = touch.normal, .force = touch.force};
   point.position = touch.shape >= 0 ? sides[0].point : Vec3(0.5 * (sides[0].point + sides[1].point));
-  if (place_of(sides[0].vertex).cloth < 0) {  // told from the cloth's side
+  if (place_of(sides[0].vertex).cloth < 0) {  // reported from the cloth's side
     std::swap(sides[0], sides[1]);
     point.normal = -point.normal;
     point.force = -point.force;
@@ -72,7 +72,7 @@ ContactSystem::Place ContactSystem::place_of_triangle(int triangle) const {
   return place;
 }
 
-/// After begin_step.
+/// Call it after begin_step.
 Tangle ContactSystem::make_tangle() const {
   Tangle tangle{.surface = &surface(),
                 .first_vertex = first_vertex_,
@@ -104,7 +104,7 @@ Tangle ContactSystem::make_tangle() const {
   return tangle;
 }
 
-/// After begin_step: of cloths, and of colliders now.
+/// Positions of cloth and of colliders now. Call it after begin_step.
 std::vector<Vec3> ContactSystem::positions_now() const {
   std::vector<Vec3> positions = motion_.end;
   std::copy_n(motion_.start.begin(), first_vertex_.back(), positions.begin());

@@ -1,4 +1,4 @@
-/// ContactSystem's plain shapes: spheres, planes, capsules and boxes, against particles and triangles.
+/// ContactSystem's primitive shapes: spheres, planes, capsules and boxes, against particles and triangles.
 
 #include <algorithm>
 #include <cmath>
@@ -10,20 +10,20 @@
 namespace weft::engine {
 namespace {
 
-/// An edge or a triangle counts beside its corners where it comes this much nearer to a shape than they do
-/// [m] …
+/// An edge or a triangle gets its own constraint, besides those of its corners, where it comes nearer to a
+/// shape than they do by this distance [m] …
 constexpr double kNearerThanCorners = 1e-6;
-/// … and for the solve by this share of half the thickness: what keeps edges and triangles out of the shape.
+/// … and for the solve by this share of half the thickness: it keeps edges and triangles out of the shape.
 constexpr double kMuchNearer = 0.6;
 
-/// A shape is round whose radius is so many times the longest edge at rest.
+/// A shape counts as round if its radius is at least this many times the longest edge at rest.
 constexpr double kRound = 2.4;
 
-/// Particles keep half the thickness from a shape. What is between them keeps this share of it, so that cloth
-/// rests on its particles alone unless cells are coarse: others would bear some of the same weight.
+/// Particles keep half the thickness from a shape. Edges and triangles keep this share of it, so that cloth
+/// rests on its particles only, unless cells are coarse: otherwise both would bear some of the same weight.
 constexpr double kBetweenKeeps = 0.2;
 
-/// Of balls and capsules; others are sharp.
+/// Radius of spheres and capsules; other shapes are sharp.
 double radius_of(const ColliderShape& shape) {
   if (const Sphere* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
   if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
@@ -37,13 +37,13 @@ bool ContactSystem::has_plain_shapes() const {
                      [](const MovingShape& shape) { return !shape.is_mesh(); });
 }
 
-/// `stretch`: how much longer than the lists have it an edge may be [m].
+/// `stretch`: how much longer than in the lists an edge may be [m].
 void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   is_near_shape_ = false;
   if (!has_plain_shapes()) return;
   longest_edge_ = proximity_.longest_edge() + stretch;
-  constexpr double kRoom = 1e-4;  // more than the last line looks for [m]
+  constexpr double kRoom = 1e-4;  // more than the CCD fail-safe needs [m]
   const double way = farthest_way(motion_, first_vertex_.back()),
                reach = 2 * thickest_ + longest_edge_ + kRoom;
   for (int s = 0; s < static_cast<int>(shapes_.size()); ++s) {
@@ -55,10 +55,10 @@ void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
   }
 }
 
-/// Particles nearer than their gap and as much again, and `share_of_travel` of their way in this step; and
-/// what is nearer than its corners: triangles, but for the solve on round shapes the middles of edges. A
-/// triangle's nearest point runs to and fro over it as it tilts, and a solve that holds it for a step by a
-/// point from before trembles.
+/// Particles nearer than twice their gap plus `share_of_travel` of their motion in this step; and triangles
+/// that are nearer than their corners. For the solve on round shapes edge midpoints replace triangles: a
+/// triangle's nearest point moves across it as it tilts, and a solve that keeps an earlier point for a step
+/// jitters.
 void ContactSystem::collect_shape(int shape, double share_of_travel) {
   const MovingShape& moving = shapes_[shape];
   shape_distance_.assign(first_vertex_.back(), std::numeric_limits<double>::infinity());
@@ -81,7 +81,7 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
   }
 }
 
-/// How near a vertex must be to count [m].
+/// The distance below which a vertex counts [m].
 double ContactSystem::shape_reach(int v, double share_of_travel) const {
   return 2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
 }
@@ -155,8 +155,8 @@ ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, c
   return nearest_of(signed_distance(shape, middle), middle, {0.5, 0.5, 0, 0});
 }
 
-/// The plane that touches the shape where the particle, edge or triangle is nearest at the end of the step,
-/// as `at_end` says; unless that lies beyond the shape's middle: then where it was nearest at the start.
+/// Tangent plane of the shape at its point nearest to the particle, edge or triangle at the end of the step
+/// (`at_end`). If that point lies beyond the shape's middle, the nearest point at the start is used.
 void ContactSystem::take_plane(const Nearest& at_end, Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
   Nearest nearest = at_end;
@@ -177,7 +177,7 @@ void ContactSystem::take_plane(const Nearest& at_end, Constraint& c) const {
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
 }
 
-/// Where hold_off has found triangles, for the last line.
+/// Separating axes for the CCD fail-safe, from the triangles that hold_off found.
 void ContactSystem::find_separations() {
   separations_.clear();
   for (const Constraint& c : constraints_) {
@@ -186,7 +186,7 @@ void ContactSystem::find_separations() {
   }
 }
 
-/// From a plain shape [m].
+/// Required distance from a primitive shape [m].
 double ContactSystem::clearance_of(const Constraint& c) const {
   const double share = c.num_vertices == 1 ? 1 - pressed_in_ : kBetweenKeeps;
   return share * motion_.half_thickness[c.vertex[0]];

@@ -9,25 +9,25 @@
 namespace weft::engine {
 namespace {
 
-/// How much stiffer than its inertia, m/h², a contact is in the solve: the higher, the less cloth is pressed
-/// in, and the less is left for hold_off to mend. At rest under gravity g h²/1000, 3 µm at 60 steps per
-/// second.
+/// Contact stiffness in the solve, relative to the inertia m/h². A higher value lets cloth penetrate less and
+/// leaves less to the contact projection. Penetration at rest under gravity is g h²/1000, 3 µm at 60 steps
+/// per second.
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
-/// What the solve has left pressed into a collider by less than this share of the gap stays so: a
-/// contact's depth is its force, and the next step's friction starts from it.
+/// Penetration that the solve leaves at a collider, below this share of the gap, is kept: a contact's depth
+/// is its force, and the next step's friction starts from it.
 constexpr double kPressedIn = 0.2;
 
-constexpr int kRounds = 8;            // planes of round shapes are taken anew this often
-constexpr int kPasses = 8;            // over all constraints between
-constexpr int kRoundsAfterSolve = 2;  // the same, where the solve knew of contacts: little is left to do
+constexpr int kRounds = 8;            // updates of the planes of round shapes
+constexpr int kPasses = 8;            // over all constraints, per round
+constexpr int kRoundsAfterSolve = 2;  // the same after a solve with contacts: little is left to do
 constexpr int kPassesAfterSolve = 4;
-constexpr double kSlidingSpeed = 0.01;  // slower, static friction holds [m/s]
-constexpr int kSearches = 6;            // after friction, contacts are looked for anew this often
+constexpr double kSlidingSpeed = 0.01;  // below, static friction applies [m/s]
+constexpr int kSearches = 6;            // maximum of repeated contact searches after friction
 constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
-/// How far cloth may move before pairs are searched again: a share of its cells, or of its thickness.
+/// Verlet slack, how far cloth may move before pairs are searched again: a share of its cells or thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
   constexpr double kMostOfEdge = 0.07, kNarrow = 0.3;
   double sum = 0;
@@ -41,8 +41,8 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
   return {std::max(thickness, kMostOfEdge * edge), thickness / 4, std::max(2 * thickness, kNarrow * edge)};
 }
 
-/// How much of the acceleration the particle has given way to in the step before, from none, where it hung or
-/// lay, to all: what is held is not expected to fall.
+/// The part of the acceleration that the particle followed in the last step: from none, where it hung or lay,
+/// to all. Supported particles are thus not predicted to fall.
 Vec3 felt_acceleration(const ClothState& state, int particle, const Vec3& acceleration) {
   const MotionHistory& history = state.history;
   const double size_sq = acceleration.squaredNorm();
@@ -80,10 +80,10 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   if (!may_survey()) place();
 }
 
-/// What the search for contacts needs of the step's start.
+/// Stores the start of the step, as the contact search requires it.
 void ContactSystem::place() {
   is_placed_ = true;
-  double travel_sq = 0;  // since the last step in which contacts were searched
+  double travel_sq = 0;  // since the last step with a contact search
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothModel& model = *cloths_[c].model;
     const Vec3& origin = cloths_[c].state->origin;
@@ -103,8 +103,7 @@ void ContactSystem::place() {
   remember_velocities();
 }
 
-/// Of two cloths the friction is the geometric mean of both, of a cloth and a collider the collider's, where
-/// nothing else is said.
+/// Default friction: for two cloths the geometric mean of both, for a cloth and a collider the collider's.
 void ContactSystem::set_laws() {
   const int num_cloths = static_cast<int>(cloths_.size()), num_shapes = static_cast<int>(shapes_.size());
   laws_.resize(num_cloths * (num_cloths + num_shapes));
@@ -127,7 +126,7 @@ void ContactSystem::set_laws() {
   set_passes();
 }
 
-/// Things are the cloths, then all colliders.
+/// Bodies are the cloths, followed by all colliders.
 void ContactSystem::set_passes() {
   passes_.clear();
   if (std::all_of(laws_.begin(), laws_.end(), [](const PairLaw& law) { return law.collide; }))
@@ -142,14 +141,14 @@ void ContactSystem::set_passes() {
   proximity_.let_pass(passes_);
 }
 
-/// Of a cloth and a cloth or collider, in laws_.
+/// Index into laws_ of a cloth and another cloth or collider.
 std::size_t ContactSystem::law_of(const Place& cloth, const Place& other) const {
   const std::size_t num_cloths = cloths_.size();
   return cloth.cloth * (num_cloths + shapes_.size()) +
          (other.cloth >= 0 ? other.cloth : num_cloths + other.collider);
 }
 
-/// The static coefficient where the two were not sliding when the step began.
+/// Applies the static coefficient if the two were not sliding at the start of the step.
 void ContactSystem::set_friction(const PairLaw& law, Constraint& c) const {
   c.friction = law.friction;
   if (law.static_friction <= law.friction) return;
@@ -159,8 +158,8 @@ void ContactSystem::set_friction(const PairLaw& law, Constraint& c) const {
   if (slide.norm() < kSlidingSpeed) c.friction = law.static_friction;
 }
 
-/// Those at the start of the step, of a collider's mesh the mean over the step; only where something has
-/// static friction.
+/// Stores velocities at the start of the step, for a mesh collider the mean over the step; only where static
+/// friction is set.
 void ContactSystem::remember_velocities() {
   velocity_before_.clear();
   const auto has_static = [](const PairLaw& law) { return law.static_friction > law.friction; };
@@ -328,14 +327,14 @@ void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Ve
   update_lists(jobs);
   constraints_.clear();
   if (proximity_.wildest() >= 0) return;
-  // What lies on a shape falls into it, for the solve to lift it out again; on cloth it lies where it is.
+  // Cloth on a shape is predicted to fall into it, and the solve lifts it out; cloth on cloth stays in place.
   std::swap(motion_.end, fallen_);
   collect_shapes(1.0, step_.step * step_.step * acceleration.norm());
   std::swap(motion_.end, fallen_);
   collect_pairs(jobs);
   if (constraints_.empty()) return;
-  // What is stopped far from where it was going is met by what comes behind it: pairs are looked for where
-  // cloth will more likely be.
+  // Cloth that is stopped far from its predicted end is hit by the cloth behind it: search pairs at the more
+  // likely positions.
   arrived_ = motion_.end;
   {
     const WorkScope scope(step_.clock, &WorkTimes::projection);
@@ -350,7 +349,7 @@ void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Ve
   collect_pairs(jobs);
 }
 
-/// motion_.end with as much of the acceleration as has been felt, fallen_ with all of it.
+/// Predicts motion_.end with the acceleration that acted in the last step, fallen_ with all of it.
 void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
   const double h = step_.step;
   fallen_ = motion_.end;
@@ -369,7 +368,7 @@ void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3
   }
 }
 
-/// What a constraint's features are to keep between them when all is well [m].
+/// The regular distance between a constraint's features [m].
 double ContactSystem::kept_gap(const Constraint& c) const {
   if (c.shape >= 0) return clearance_of(c);
   return motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
@@ -410,7 +409,8 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   }
 }
 
-/// In a collider, 0 in cloth. Of a plain shape from where it was: the plane's own motion is a straight line.
+/// Penetration of a collider, 0 for cloth. For a primitive shape relative to its start pose, because the
+/// constraint's plane moves in a straight line.
 double ContactSystem::depth_at_start(const Constraint& c) const {
   if (c.shape < 0) return is_on_body(c) ? c.target - c.normal.dot(c.sum(motion_.start)) : 0;
   return clearance_of(c) - find_nearest(shapes_[c.shape].before, c, motion_.start).distance;
@@ -420,7 +420,7 @@ int ContactSystem::wild_cloth() const {
   return is_clear_ || proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
 }
 
-/// Whether the solve has kept apart all cloths of a constraint.
+/// Whether the solve separated all cloths of a constraint.
 bool ContactSystem::is_solved(const Constraint& c) const {
   for (int k = 0; k < c.num_vertices; ++k) {
     const int v = c.vertex[k];
@@ -429,7 +429,7 @@ bool ContactSystem::is_solved(const Constraint& c) const {
   return true;
 }
 
-/// From now on it has not. Returns whether it had one of them.
+/// Marks the constraint's cloths as not separated. Returns whether this changed any of them.
 bool ContactSystem::mark_unsolved(const Constraint& c) {
   bool has_changed = false;
   for (int k = 0; k < c.num_vertices; ++k) {
@@ -441,7 +441,7 @@ bool ContactSystem::mark_unsolved(const Constraint& c) {
   return has_changed;
 }
 
-/// Whether the solve has kept apart all cloths, and each has gone where contacts were looked for.
+/// Whether the solve separated all cloths, and each ended where contacts were searched.
 bool ContactSystem::went_as_expected() const {
   if (expected_.empty()) return false;
   if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
@@ -452,7 +452,7 @@ bool ContactSystem::went_as_expected() const {
   return true;
 }
 
-/// Leaves out the constraints of cloths that the solve has kept apart, and that touch none which it has not.
+/// Drops the constraints of cloths that the solve separated and that touch only such cloths.
 void ContactSystem::leave_out_solved() {
   if (!is_predicted_) return;
   for (const Constraint& c : constraints_) {
@@ -520,8 +520,8 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
   return report;
 }
 
-/// Cloth of more than a kilometre has no places fine enough to keep it apart, and what moves by tens of
-/// metres in a step is no motion of cloth.
+/// CCD range: beyond a kilometre, floats are too coarse to separate cloth, and displacements of tens of
+/// metres per step are no cloth motion.
 bool ContactSystem::is_of_this_world() const {
   constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
@@ -566,7 +566,7 @@ void ContactSystem::project(JobSystem& jobs) {
   take_back_slides();
   settle_positions();
   mark_touched();
-  // What has been moved far may have met what was out of its reach.
+  // Vertices that were moved far may now touch features beyond the search radius.
   for (int search = 0; search < kSearches && has_left_reach(); ++search) {
     arrived_ = motion_.end;
     proximity_.update(motion_, jobs);
@@ -579,8 +579,8 @@ void ContactSystem::project(JobSystem& jobs) {
   }
 }
 
-/// Whether anything has been moved so far that contacts must be looked for again: by more than half of the
-/// margin within which they were.
+/// Whether any vertex was moved so far that contacts must be searched again: by more than half of the search
+/// margin.
 bool ContactSystem::has_left_reach() const {
   for (int v = 0; v < first_vertex_.back(); ++v) {
     const double reach = std::max(kSettled, 0.5 * motion_.half_thickness[v]);
@@ -589,7 +589,7 @@ bool ContactSystem::has_left_reach() const {
   return false;
 }
 
-/// Friction also takes back the slide of this step, so that what sticks does not creep.
+/// Friction also removes this step's sliding displacement, so that sticking cloth does not creep.
 void ContactSystem::take_back_slides() {
   mark_touched();
   for (int v = 0; v < first_vertex_.back(); ++v) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Holds cloth off colliders, off itself and off other cloth.
+/// Contact handling: cloth against colliders, itself and other cloth.
 
 #include <memory>
 #include <optional>
@@ -25,91 +25,92 @@
 
 namespace weft::engine {
 
-/// What contact sees of a cloth during a step.
+/// A cloth as contact handling sees it during a step.
 struct ContactCloth {
   const ClothModel* model = nullptr;
   ClothState* state = nullptr;
   const std::vector<char>* is_pinned = nullptr;  // (num_particles)
 };
 
-/// What is between a cloth and a collider, another cloth or itself.
+/// Contact settings for one pair: a cloth with a collider, another cloth or itself.
 struct ContactRule {
   int cloth = 0, other_cloth = -1, collider = -1;  // exactly one of the last two is not -1
-  std::optional<double> friction;                  // Coulomb's coefficient; empty: as they say themselves [1]
-  std::optional<double> static_friction;           // while nothing slides; likewise [1]
-  bool collide = true;                             // false: they go through each other
+  std::optional<double> friction;                  // Coulomb's coefficient; empty: from the bodies [1]
+  std::optional<double> static_friction;           // of sticking contacts; empty: likewise [1]
+  bool collide = true;                             // false: they do not collide
 };
 
 struct ContactStep {
   double time = 0;                          // at the end of the step [s]
-  double step = 0;                          // its length [s]
-  bool tracks = false;                      // whether contact_points() will be asked for
-  std::span<const ContactRule> rules = {};  // of two for the same pair the last one counts
+  double step = 0;                          // step size [s]
+  bool tracks = false;                      // records contacts for contact_points()
+  std::span<const ContactRule> rules = {};  // the last one for a pair wins
   WorkClock* clock = nullptr;               // of the whole step; null: not measured
 };
 
-/// Contact of all cloths with all colliders and with each other, step by step:
+/// Contact of all cloths with all colliders and with each other, in this order each step:
 ///
-///     begin_step        remembers where everything is, and takes the colliders through the step
-///     predict           for integrators that resolve contacts: what will probably meet
-///     find_contacts     … as planes in the cloths' way
-///     take_solved       the cloths have been moved
-///     hold_off          what has come too close all the same is set apart
-///     stop_crossings    and whatever would still go through anything is stopped (see last_line.h)
+///     begin_step        stores the start positions and moves the colliders through the step
+///     predict           for integrators that resolve contacts: finds the likely contacts
+///     find_contacts     … and returns them as half-space constraints
+///     take_solved       reads the cloths after the integrator's solve
+///     hold_off          contact projection of positions and velocities
+///     stop_crossings    CCD fail-safe for everything that would still intersect (see last_line.h)
 ///
 /// Cloth keeps half its thickness from colliders, and half of both thicknesses from other cloth. Pinned
-/// particles push others, and are not pushed. Keeps its work space between steps; what it does depends on the
-/// arguments alone.
+/// particles push others, and are not pushed. Work space is kept between steps; results depend on the
+/// arguments only.
 class ContactSystem {
  public:
   void begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                   const ContactStep& step);
 
-  /// Where inertia and `acceleration` would take each cloth; `pin_targets` are the places of pinned particles
-  /// at the end of the step, cloth after cloth in ascending order of particles.
+  /// Predicts contacts from ballistic motion under `acceleration`. `pin_targets` are the positions of pinned
+  /// particles at the end of the step, cloth after cloth in ascending order of particles.
   void predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);
 
-  /// The contacts of all cloths' particles, which are numbered through the cloths.
+  /// The contacts of all cloths. Particles are numbered through the cloths.
   void find_contacts(std::vector<Contact>& contacts);
 
-  /// The cloths' states now are those of the end of the step; `contacts` are those that were found, solved
-  /// for, or none.
+  /// Reads the cloths' states as the ends of the step. `contacts` are those from find_contacts, solved for,
+  /// or none.
   void take_solved(std::span<const Contact> contacts);
 
-  /// Sets apart what is too close, takes from velocities what approaches, and slows what slides (see
-  /// constraint.h). To be called when every cloth is at its end.
+  /// Contact projection: separates positions that are too close, removes approaching velocities, and applies
+  /// friction to sliding ones (see constraint.h). Call it when every cloth is at its end position.
   void hold_off(JobSystem& jobs);
 
-  /// Makes sure that nothing has gone through anything since begin_step. To be called last.
+  /// CCD fail-safe: stops all penetrations since begin_step. Call it last.
   LastLineReport stop_crossings(JobSystem& jobs);
 
-  /// Everything that has touched since begin_step, if the step is tracked, each pair of features once: what
-  /// the solve, hold_off and the impulses of stop_crossings have done to it, as a mean force over the step.
-  /// What zones of the last line do is not in it.
+  /// All contacts since begin_step, if the step is tracked, each feature pair once: the mean force over the
+  /// step from the solve, hold_off and the impulses of stop_crossings. The effect of rigid impact zones is
+  /// not included.
   std::vector<ContactPoint> contact_points() const;
 
-  /// What crosses as it is, colliders where they are, now, and sets it apart (see untangle.h).
+  /// Finds the intersections of the present state, with colliders at their present pose, and repairs them
+  /// (see untangle.h).
   Knots find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                    const ContactStep& now);
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                           const ContactStep& now);
   const Surface& surface() const { return proximity_.surface(); }
 
-  /// What a vertex of the common numbering belongs to, and its number there; exactly one of cloth and
-  /// collider is not -1.
+  /// The body of a vertex under the common numbering, and its number there; exactly one of cloth and collider
+  /// is not -1.
   struct Place {
     int cloth = -1, collider = -1, index = 0;
   };
   Place place_of(int vertex) const;
   Place place_of_triangle(int triangle) const;
 
-  /// The cloth that moved so far in this step that contact could not be looked for, -1 if none did.
+  /// The diverged cloth: it moved too far in this step for contact detection; -1 if none did.
   int wild_cloth() const;
 
  private:
   struct Body {
     int collider = 0;      // number
-    int first_vertex = 0;  // of the common numbering
+    int first_vertex = 0;  // under the common numbering
     int end_vertex = 0;
     bool is_closed = false;
     Vec3 min = Vec3::Zero(), max = Vec3::Zero();  // of its vertices, in its own coordinates [m]
@@ -118,7 +119,7 @@ class ContactSystem {
     std::pair<Vec3, Vec3> bounds_at(const MeshShape& shape) const;
   };
 
-  /// A box, and how near to it colliders may matter [m].
+  /// A box, and the distance from it within which colliders may matter [m].
   struct Region {
     Vec3 min, max;
     double reach;
@@ -126,24 +127,24 @@ class ContactSystem {
 
   struct PairLaw {
     double friction = 0;         // [1]
-    double static_friction = 0;  // while nothing slides, if it is more [1]
+    double static_friction = 0;  // of sticking contacts, if larger [1]
     bool collide = true;
   };
 
-  /// Where a particle, the middle of an edge or a triangle is nearest to a plain shape.
+  /// The point of a particle, edge midpoint or triangle that is nearest to a primitive shape.
   struct Nearest {
     double distance;
     Vec3 normal, foot;  // outwards; on the surface
     std::array<double, 4> weight;
   };
 
-  /// A force between two features, or on one.
+  /// A contact force between two features, or on one.
   struct Touch {
     std::array<int, 4> vertex;  // as in Constraint
     std::array<double, 4> weight;
     int num_vertices, shape;
     Vec3 normal;
-    Vec3 force;  // on what has positive weights [N]
+    Vec3 force;  // on the feature with positive weights [N]
   };
   void add_touch(const Constraint& c, const Vec3& force);
   ContactPoint describe(const Touch& touch) const;
@@ -216,55 +217,55 @@ class ContactSystem {
   void mark_touched();
   void store_touched();
 
-  // What does not change from step to step.
+  // Constant between renumberings.
   std::vector<std::shared_ptr<const ClothTopology>> numbered_cloths_;
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<ClosedMesh> closed_meshes_;
-  std::vector<char> passes_;      // (things, things) go through each other; empty: none do
+  std::vector<char> passes_;      // (bodies, bodies) 1: do not collide; empty: all collide
   double longest_rest_edge_ = 0;  // of cloth [m]
-  bool has_grids_ = false;        // all cloths are grids
+  bool has_grids_ = false;        // every cloth is a grid
   Proximity proximity_;
   ClothClearance cloth_clearance_;
   ShapeClearance clearance_;
-  bool is_clearance_known_ = false;  // of clearance_, what was measured in steps before
+  bool is_clearance_known_ = false;  // clearance_ holds distances from earlier steps
 
   // The step.
   std::vector<ContactCloth> cloths_;
   std::vector<MovingShape> shapes_;
   ContactStep step_;
-  bool is_predicted_ = false;      // the solve knows of contacts
+  bool is_predicted_ = false;      // the solve includes contacts
   bool is_for_solve_ = false;      // contacts are being predicted
-  bool is_near_shape_ = false;     // some vertex may touch a plain shape
-  bool is_placed_ = false;         // motion_ and what follows it are this step's
-  bool is_surveyed_ = false;       // only uncertain_ may meet on the way that was surveyed last
-  bool is_clear_ = false;          // nothing can meet anything on the way that hold_off has seen
-  int num_without_ = 0;            // steps to come that are not surveyed
-  double pressed_in_ = 0;          // share of the distance to be kept that may lack now [1]
+  bool is_near_shape_ = false;     // some vertex may touch a primitive shape
+  bool is_placed_ = false;         // motion_ and the members after it are this step's
+  bool is_surveyed_ = false;       // only uncertain_ may meet in the motion surveyed last
+  bool is_clear_ = false;          // no contact is possible in the motion that hold_off checked
+  int num_without_ = 0;            // number of upcoming steps without a survey
+  double pressed_in_ = 0;          // share of the gap that may be missing now [1]
   std::vector<Vec3Array> starts_;  // (cloths) offsets of particles
   SurfaceMotion motion_;
-  std::vector<Vec3> expected_;  // (cloth vertices) where contacts for the solve were looked for; or empty [m]
-  std::vector<Vec3> fallen_;    // where inertia and all of gravity would take it
-  double thinnest_ = 0, thickest_ = 0;  // half the thickness, of the thinnest and the thickest cloth [m]
-  double longest_edge_ = 0;             // of cloth, at most [m]
+  std::vector<Vec3> expected_;  // (cloth vertices) predicted ends used for the solve's contacts; or empty [m]
+  std::vector<Vec3> fallen_;    // (cloth vertices) ballistic prediction [m]
+  double thinnest_ = 0, thickest_ = 0;  // half thickness of the thinnest and the thickest cloth [m]
+  double longest_edge_ = 0;             // upper bound for cloth edges [m]
   std::vector<double> inverse_mass_;    // (num_vertices) 0 where prescribed [1/kg]
   std::vector<PairLaw> laws_;           // (cloths, cloths and then colliders)
   std::vector<Vec3> velocity_before_;   // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
-  std::vector<char> is_solved_;  // (cloths) the solve has kept it apart from all that it knew of
-  std::vector<int> found_;       // of these, those that find_contacts has given
-  std::vector<Touch> touches_;   // in this step
+  std::vector<char> is_solved_;  // (cloths) the solve separated it from all its known contacts
+  std::vector<int> found_;       // indices of the constraints that find_contacts returned
+  std::vector<Touch> touches_;   // contact forces of this step
 
   // Work space.
-  std::vector<Vec3Array> ends_;       // (cloths) offsets that are expected
+  std::vector<Vec3Array> ends_;       // (cloths) predicted offsets
   AlignedFloats felt_;                // (particles of a cloth)
   std::vector<ClothMotion> motions_;  // (cloths)
-  std::vector<ItemPair> uncertain_;   // pairs of patches
+  std::vector<ItemPair> uncertain_;   // patch pairs that may meet
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
-  std::vector<int> near_;  // of constraints_, for project_positions
+  std::vector<int> near_;  // indices into constraints_, for project_positions
   VelocityProjection velocity_projection_;
   std::vector<double> shape_distance_;
   std::vector<int> near_shape_;  // vertices
@@ -272,7 +273,7 @@ class ContactSystem {
   std::vector<Quad> velocity_, slowed_;
   LastLine last_line_;
   std::vector<Vec3> origins_;  // (cloths)
-  std::vector<Vec3> arrived_;  // where contacts were last looked for
+  std::vector<Vec3> arrived_;  // positions of the last contact search
 };
 
 }  // namespace weft::engine

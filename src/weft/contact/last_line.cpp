@@ -13,34 +13,34 @@ namespace weft::engine {
 namespace {
 
 constexpr int kPairGrain = 1024;     // pairs per chunk
-constexpr int kPushRounds = 6;       // of impulses, each followed by a search for new impacts
+constexpr int kPushRounds = 6;       // of impulses, each followed by a new detection
 constexpr int kPushPasses = 20;      // over all impulses in a round
-constexpr int kZoneRounds = 60;      // zones halve what is not rigid, and grow
-constexpr double kLeastShare = 0.1;  // of the rest of a zone's motion: below, it moves rigidly
+constexpr int kZoneRounds = 60;      // zones halve their non-rigid remainder, and grow
+constexpr double kLeastShare = 0.1;  // of a zone's remainder: below, it moves rigidly
 
-/// Features keep this share of what they are held apart by; where that is little, the floor [m].
+/// Separation in CCD: this share of the contact gap; where that is small, the floor [m].
 constexpr double kSeparation = 0.1;
 constexpr double kFloor = 1e-5;
 
-/// What stays farther than this many separations has no impact: gap and tolerance are at most 1.1.
+/// Features farther apart than this many separations have no hit: gap and tolerance are at most 1.1.
 constexpr double kFar = 1.15;
 
-/// Found nearer than their separation at the start, they are set apart by this share of what lacks.
+/// Features nearer than their separation at the start recover this share of the missing distance.
 constexpr double kRecovery = 0.2;
 
-/// Of positions that are stored as floats, relative to their size [1].
+/// Relative rounding error of positions stored as floats [1].
 constexpr double kRounding = 1.2e-7;
 
-/// How near features may come that are held apart by `thickness` [m].
+/// The separation of features whose contact gap is `thickness` [m].
 double separation_of(double thickness) { return std::max(kSeparation * thickness, kFloor); }
 
-/// The pair's distance that its impulse asks for [m].
+/// The target distance of the pair's impulse [m].
 double target_for(const ImpactLimit& limit, double start) {
   const double recovered = start + kRecovery * (limit.separation - start);
   return std::max(limit.gap(start) + 2 * limit.tolerance(start), std::min(limit.separation, recovered));
 }
 
-/// The rigid motion x ↦ R (x − from) + to that takes weighted points nearest to where they go.
+/// Best-fitting rigid motion of weighted points: x ↦ R (x − from) + to.
 class RigidFit {
  public:
   void add(double weight, const Vec3& start, const Vec3& end) {
@@ -95,7 +95,7 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
   return report;
 }
 
-/// Of all pairs, or those with a vertex that has moved since.
+/// Detects hits of all pairs, or of those with a vertex that has moved since.
 void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   hits_.clear();
   proximity_->update(*motion_, jobs);
@@ -119,7 +119,7 @@ void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   }
   std::fill(is_moved_.begin(), is_moved_.end(), char{0});
   only_moved_ = true;
-  // What has crossed before, what leaves a closed mesh, and what nobody may move.
+  // Drop pairs that intersected before, features that leave a closed mesh, and infeasible pairs.
   std::erase_if(hits_, [&](const Hit& hit) {
     if (is_tangled(hit) || comes_from_inside(hit.constraint)) return true;
     if (hit.constraint.inverse_mass > 0) return false;
@@ -138,8 +138,8 @@ bool LastLine::is_asked_for(const std::array<int, 4>& vertices, int count) const
   return std::any_of(vertices.begin(), vertices.begin() + count, [&](int v) { return is_moved_[v] != 0; });
 }
 
-/// All of one zone, and what moves rigidly meets nothing of its own: the straight lines between are an affine
-/// map at every time.
+/// Whether the whole pair is in one zone. Rigid motion causes no hits within a zone: the straight lines
+/// between are an affine map at every time.
 bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
   if (parent_.empty()) return false;
   const auto root = [&](int v) { return v < num_cloth_vertices() ? find_root(v) : -1; };
@@ -148,7 +148,7 @@ bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
          root(vertices[3]) == first;
 }
 
-/// `thickness` is what contact holds the pair apart by; `vertex` is one of the pair's.
+/// `thickness` is the pair's contact gap; `vertex` is one of the pair's.
 ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
   const int cloth = mesh_of(*step_.first_vertex, std::min(vertex, num_cloth_vertices() - 1));
   const Vec3 offset = motion_->start[vertex] - (*step_.origins)[cloth];
@@ -168,8 +168,8 @@ bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
   return test_pair(pair, {a[0], a[1], b[0], b[1]}, find_edge_edge_impact, hit);
 }
 
-/// Whether triangles at the one feature cross triangles at the other at the start. What has gone through each
-/// other must be free to come back; to hold it would hold it where it is.
+/// Whether triangles at the one feature intersect triangles at the other at the start. Intersected features
+/// must be free to separate; stopping them would lock them in place.
 bool LastLine::is_tangled(const Hit& hit) const {
   const Constraint& c = hit.constraint;
   if (c.shape >= 0) return false;
@@ -196,9 +196,9 @@ bool LastLine::is_tangled(const Hit& hit) const {
   return is_pierced;
 }
 
-/// Winding number: whether the point of cloth that meets a closed mesh is inside of it at the start. On which
-/// side of the faces it meets it starts does not tell: those of a mesh that turns come from far, and a point
-/// behind a face's plane may be outside, beyond the face's border.
+/// Winding number test: whether the point of cloth that meets a closed mesh is inside of it at the start. The
+/// side of the met face does not suffice: faces of a rotating mesh come from far, and a point behind a face's
+/// plane may be outside, beyond the face's border.
 bool LastLine::comes_from_inside(const Constraint& c) const {
   if (c.shape >= 0) return false;
   const int of_mesh = std::max(c.vertex[0], c.vertex[3]);
@@ -266,8 +266,8 @@ void LastLine::find_shape_hits(int s) {
   }
 }
 
-/// Whether the triangle stays beyond all of the shape by more than an impact needs, in the shape's own frame,
-/// where it stays and the triangle moves in straight lines.
+/// Whether the separating axis holds: the triangle stays beyond all of the shape by more than the separation.
+/// Tested in the shape's frame, where the shape is at rest and the triangle moves in straight lines.
 bool LastLine::keeps(const Separation& separation) const {
   const MovingShape& shape = (*step_.shapes)[separation.shape];
   const Vec3 normal_at_start = shape.turned_back(separation.normal);
@@ -281,7 +281,7 @@ bool LastLine::keeps(const Separation& separation) const {
   return room > kFar * separation_of(motion_->half_thickness[separation.triangle[0]]);
 }
 
-/// Whether a vertex of cloth and a shape go through each other.
+/// Whether a cloth vertex and a shape do not collide.
 bool LastLine::pass(int vertex, int shape) const {
   if (step_.passes->empty()) return false;
   const std::size_t num_cloths = step_.first_vertex->size() - 1,
@@ -289,8 +289,8 @@ bool LastLine::pass(int vertex, int shape) const {
   return (*step_.passes)[mesh_of(*step_.first_vertex, vertex) * num_things + num_cloths + shape] != 0;
 }
 
-/// In the shape's own frame, where it stays and the triangle moves in straight lines. What is in the shape at
-/// the start may be as deep at the end.
+/// Tested in the shape's frame, where the shape is at rest and the triangle moves in straight lines. A
+/// triangle that penetrates the shape at the start may be as deep at the end.
 bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   const MovingShape& shape = (*step_.shapes)[s];
   std::array<Vec3, 3> x, way;
@@ -304,7 +304,7 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   const double reach = travel + 3 * separation;
   const TriangleSignedDistance before = signed_distance(shape.before, x[0], x[1], x[2], reach);
   if (before.distance > reach) return false;
-  // The shape is convex: it lies behind the plane that touches it where the triangle is nearest.
+  // The shape is convex: it lies behind its tangent plane at the point nearest to the triangle.
   const Vec3 nearest = point_at(before.weights, x[0], x[1], x[2]);
   double least = before.distance;
   for (int k = 0; k < 3; ++k)
@@ -343,7 +343,7 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   return true;
 }
 
-/// To the nearest place that can be stored.
+/// Rounds to the nearest position that can be stored.
 void LastLine::move(int vertex, const Vec3& to) {
   const Vec3& origin = (*step_.origins)[mesh_of(*step_.first_vertex, vertex)];
   motion_->end[vertex] = origin + (to - origin).cast<float>().cast<double>();
@@ -390,7 +390,7 @@ int LastLine::find_root(int vertex) const {
   return root;
 }
 
-/// Its vertices become one zone, which keeps half of what it kept of its own motion.
+/// Merges the hit's vertices into one zone, which keeps half of its previous non-rigid share.
 void LastLine::add_to_zones(const Hit& hit) {
   const Constraint& c = hit.constraint;
   int root = -1;
@@ -440,8 +440,8 @@ void LastLine::gather_zones() {
   for (const Guide& guide : guides_) zones_[zone_of[find_root(guide.vertex)]].guides.push_back(&guide);
 }
 
-/// Guides count so much more than the zone's own motion that this only decides what they leave open; of a
-/// zone that is carried not even that, so that nothing can turn it into what guides it.
+/// Guides weigh so much more than the zone's own motion that the latter only decides the freedom they leave;
+/// for a carried zone not even that, so that it cannot rotate into its guides.
 void LastLine::scale_zone(const Zone& zone) {
   constexpr double kGuideWeight = 1e6;
   const bool is_carried = is_carried_[zone.root] && !zone.guides.empty();

@@ -1,20 +1,20 @@
 #pragma once
-/// The last line: whatever a step's solve and contact have done, nothing goes through anything.
+/// CCD fail-safe: whatever the solve and the contact projection leave, a step ends without penetrations.
 ///
-/// Looks at the whole motion of a step, in straight lines from start to end, and at every pair of features
-/// that could meet. Where a pair does:
+/// Continuous collision detection tests the whole motion of a step, as straight lines from start to end, for
+/// every pair of features that could meet. Hits are resolved in three stages:
 ///
-///     1. Impulses (Bridson, Fedkiw and Anderson 2002) move its end apart along the normal at the impact;
-///        again and again, for what this makes meet elsewhere.
+///     1. Impulses (Bridson, Fedkiw and Anderson 2002) separate the pair's end positions along the normal at
+///        the impact, repeatedly, because a correction may cause new hits.
 ///
-///     2. What still meets after that is joined into zones (Provot 1997; Harmon et al. 2008). A zone's motion
-///        is split into the rigid one that fits it best and the rest, and the rest is scaled down, in the end
-///        to nothing; zones that meet become one. Momentum is kept, and what moves rigidly meets nothing of
-///        its own. Where a zone meets something that moves by prescription, it takes that motion.
+///     2. Remaining hits are joined into rigid impact zones (Provot 1997; Harmon et al. 2008). The motion of
+///        a zone is split into the best-fitting rigid motion and a remainder, and the remainder is scaled
+///        down, in the end to zero; zones that meet are merged. Momentum is kept, and rigid motion causes no
+///        hits within the zone. A zone that meets a kinematic body takes that body's motion.
 ///
-///     3. What meets even then is between things whose prescribed motions leave no room. It is listed.
+///     3. Hits that remain are between bodies whose kinematic motions are infeasible. They are listed.
 ///
-/// The ends looked at are those that will be stored, rounded as they will be.
+/// The tested ends are the positions that will be stored, with their rounding.
 
 #include <vector>
 
@@ -26,21 +26,21 @@
 
 namespace weft::engine {
 
-/// A pair of features that prescribed motions have pushed through each other.
+/// Infeasible kinematic motions: a pair of features that they have pushed through each other.
 struct Infeasible {
-  int vertex = 0, other = 0;  // one of each feature, under the common numbering; `other` -1: of a plain shape
-  int shape = -1;             // number of the plain shape
+  int vertex = 0, other = 0;  // one of each feature, under the common numbering; `other` -1: primitive shape
+  int shape = -1;             // index of the primitive shape
 };
 
-/// What the last line had to do.
+/// Work done by the CCD fail-safe.
 struct LastLineReport {
-  int hits = 0;   // pairs that would have met, when first looked at
-  int zones = 0;  // zones that were left to move rigidly, wholly or in part
+  int hits = 0;   // pairs that would have met, in the first detection
+  int zones = 0;  // rigid impact zones that remained, wholly or partly rigid
   std::vector<Infeasible> infeasible;
 };
 
-/// A direction along which a triangle of cloth probably lies beyond all of a plain shape at the end of the
-/// step.
+/// Separating axis: a direction along which a cloth triangle probably lies beyond a whole primitive shape at
+/// the end of the step.
 struct Separation {
   int shape = 0;
   Triangle triangle = {};
@@ -53,39 +53,38 @@ struct ClosedMesh {
   int first_triangle = 0, end_triangle = 0;
 };
 
-/// What it must know of a step, besides the motion.
+/// The input of a step besides the motion.
 struct LastLineStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
-  const std::vector<MovingShape>* shapes = nullptr;   // those that are meshes are looked at as vertices
+  const std::vector<MovingShape>* shapes = nullptr;   // mesh colliders are tested as vertices instead
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
   const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
   const std::vector<ClosedMesh>* closed_meshes = nullptr;
-  const std::vector<char>* passes = nullptr;  // (cloths and shapes, the same) go through each other; or empty
-  const ShapeClearance* clearance = nullptr;  // of cloth from plain shapes
-  double thickest = 0;                        // half the thickness, of the thickest cloth [m]
+  const std::vector<char>* passes = nullptr;     // (cloths and shapes, the same) 1: do not collide; or empty
+  const ShapeClearance* clearance = nullptr;     // of cloth from primitive shapes
+  double thickest = 0;                           // half thickness of the thickest cloth [m]
   std::span<const Separation> separations = {};  // of some triangles, in the order of shapes and triangles
-  WorkClock* clock = nullptr;                    // counts looks; null: they are not counted
+  WorkClock* clock = nullptr;                    // counts detections; null: not counted
 };
 
 class LastLine {
  public:
-  /// Changes motion.end of vertices of cloth where it must. Pairs that touch or cross at the start are left
-  /// alone, and so is what is inside a closed mesh: it may leave. `proximity` holds for the motion
-  /// afterwards.
+  /// Changes motion.end of cloth vertices where necessary. Ignores pairs that touch or intersect at the
+  /// start, and features inside a closed mesh: they may leave. `proximity` then holds for the motion.
   LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
 
-  /// The impulses of the last hold(): `push` tells what each moved [kg m].
+  /// The impulses of the last hold(): `push` holds how much each moved [kg m].
   const std::vector<Constraint>& pushes() const { return pushes_; }
 
  private:
-  /// A pair that meets, as what would keep it apart.
+  /// A CCD hit, stored as the constraint that would separate the pair.
   struct Hit {
     Constraint constraint;
     bool is_edge_edge = false;
-    Vec3 foot_start, foot_end;  // of a plain shape: its point there, and where it goes
+    Vec3 foot_start, foot_end;  // primitive shape: contact point at start and end
   };
 
-  /// A point that moves by prescription, and the vertex in whose zone it is.
+  /// A kinematic point, and a vertex of the zone that it belongs to.
   struct Guide {
     int vertex;
     Vec3 start, end;
@@ -125,25 +124,25 @@ class LastLine {
   Proximity* proximity_ = nullptr;
   SurfaceMotion* motion_ = nullptr;
   std::vector<Hit> hits_;
-  bool only_moved_ = false;         // look at pairs with a vertex in is_moved_ alone
-  std::vector<char> is_moved_;      // (num_vertices) since hits were looked for
-  std::vector<Constraint> pushes_;  // impulses' constraints
+  bool only_moved_ = false;         // test only pairs with a vertex in is_moved_
+  std::vector<char> is_moved_;      // (num_vertices) since the last detection
+  std::vector<Constraint> pushes_;  // constraints of the impulses
   std::vector<int> near_pushes_;    // work space
   std::vector<Vec3> pushed_;        // (num_vertices) ends with impulses, before rounding
 
   // Zones.
-  std::vector<Vec3> wanted_;      // (cloth vertices) where impulses have left them
-  std::vector<int> parent_;       // (cloth vertices) of a union-find forest, -1: in no zone
-  std::vector<double> share_;     // (cloth vertices) of a root: how much of the rest its zone keeps
+  std::vector<Vec3> wanted_;      // (cloth vertices) ends after the impulses
+  std::vector<int> parent_;       // (cloth vertices) union-find forest, -1: in no zone
+  std::vector<double> share_;     // (cloth vertices) of a root: share of the remainder its zone keeps
   std::vector<char> is_halved_;   // (cloth vertices) of a root: share_ has been lowered in this round
-  std::vector<char> is_carried_;  // (cloth vertices) of a root: its zone goes where its guides take it
-  bool has_grown_ = false;        // this round has changed a zone
+  std::vector<char> is_carried_;  // (cloth vertices) of a root: its zone follows its guides
+  bool has_grown_ = false;        // a zone changed in this round
   std::vector<Guide> guides_;
   std::vector<Zone> zones_;
 
   std::vector<std::vector<Hit>> chunks_;
-  std::vector<int> near_;        // vertices that may come near to a plain shape
-  std::vector<char> is_near_;    // (cloth vertices) to a plain shape
+  std::vector<int> near_;        // vertices that may come near to a primitive shape
+  std::vector<char> is_near_;    // (cloth vertices) to a primitive shape
   std::vector<Vec3> shape_end_;  // (cloth vertices) of near ones: the end in the frame of the shape's start
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCellsPerPatch = 2;  // of a grid, along each side
 
-/// Sums in floats are good to this much of a gradient of about 1 [1].
+/// Rounding of float sums, for a gradient of about 1 [1].
 constexpr float kRounding = 1e-4f;
 
 Float4 normal_to(const Float4& a, const Float4& b) {
@@ -24,7 +24,7 @@ Float4 normal_to(const Float4& a, const Float4& b) {
   return result;
 }
 
-/// Lengths of the shortest ways from `from` along the edges of some triangles.
+/// Shortest path lengths from `from` along the edges of some triangles.
 class Ways {
  public:
   Ways(const Surface& surface, const std::vector<Vec3>& x, std::span<const int> triangles) {
@@ -90,7 +90,7 @@ double longest_side(const std::vector<Vec3>& x, const Triangle& t) {
   return std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});
 }
 
-/// σ_min² of the matrix of the columns a, b.
+/// σ_min² of the matrix with the columns a, b.
 float find_least_stretch_sq(const Float4& a, const Float4& b) {
   const float aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
   const float half = 0.5f * (aa - bb);
@@ -101,8 +101,8 @@ float difference_sq(const PatchDeformation& d, const PatchDeformation& e) {
   return (d.x - e.x).squaredNorm() + (d.y - e.y).squaredNorm() + (d.z - e.z).squaredNorm();
 }
 
-/// How far beyond the first `own` triangles, seen along `normal`, the surface of all of them reaches on every
-/// side. No triangle is turned away from `normal` [m].
+/// How far the surface of all triangles extends beyond the first `own` ones on every side, seen along
+/// `normal`. No triangle faces away from `normal` [m].
 double reach_around(const Surface& surface, const std::vector<Vec3>& rest, std::span<const int> region,
                     std::size_t own, const Vec3& normal) {
   const auto seen = [&](int v) -> Vec3 { return rest[v] - normal.dot(rest[v]) * normal; };
@@ -197,7 +197,7 @@ void Patches::add_body(const Surface& surface, int first_triangle, int end_trian
   group(surface, first_triangle, end_triangle);
 }
 
-/// Breadth first from the lowest triangle that is left.
+/// Breadth-first grouping from the lowest triangle that is left.
 void Patches::group(const Surface& surface, int first_triangle, int end_triangle) {
   std::vector<char> is_taken(end_triangle - first_triangle, 0);
   std::vector<int> patch;
@@ -226,7 +226,7 @@ void Patches::add_window(std::span<const int> members, const Window& window) {
   windows_.push_back(window);
 }
 
-/// Each patch from `first_patch` on, and those that share a vertex with it.
+/// For each patch from `first_patch` on, the patch and its neighbours.
 std::vector<std::vector<int>> Patches::find_rings(int first_patch) const {
   std::vector<std::pair<int, int>> uses;  // vertex, patch
   for (int p = first_patch; p < size(); ++p) {
@@ -250,7 +250,7 @@ std::vector<std::vector<int>> Patches::find_rings(int first_patch) const {
   return rings;
 }
 
-/// Of one cloth. A window of a mesh speaks for its first patch's pairs, one of a grid for all.
+/// Neighbours of one cloth. A mesh window covers its first patch's pairs, a grid window all pairs.
 void Patches::list_neighbours(int first_patch, int first_window) {
   struct Use {
     int a, b, window;
@@ -286,11 +286,11 @@ bool Patches::are_neighbours(int a, int b) const {
   return std::any_of(first, last, [&](const Neighbours& n) { return n.b == b; });
 }
 
-/// Of the first member's pairs. Near ones are joined by the line above the straight one between them, where
-/// the surface reaches so far; others by the way between two corners and by what each triangle adds.
+/// Bounds for the first member's pairs. Near pairs are joined by the path above the straight line between
+/// them, where the surface extends that far; others by a path between two corners plus the triangle sides.
 Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<Vec3>& rest,
                                       std::span<const int> members) const {
-  constexpr double kLeastFacing = 0.9;  // of normals that are said to point one way
+  constexpr double kLeastFacing = 0.9;  // cosine limit for normals that point one way
   const auto is_sound = [&](int q) {
     const std::vector<TrianglePart>& parts = mesh_parts_[parts_[q].index].triangles;
     return std::all_of(parts.begin(), parts.end(), [](const TrianglePart& t) {
@@ -324,7 +324,7 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
         for (int l = 0; l < 3; ++l) way = std::min(way, from[k][ways.number_of(b[l])]);
       }
       way += side_a + side_b;
-      // Far triangles: their corners tell enough.
+      // For far triangles the corners suffice.
       const double between = (rest[a[0]] - rest[b[0]]).norm() - side_a - side_b;
       const double distance = between > 2 * side_a ? between : feature_distance(rest, a, b);
       least = std::min(least, distance);
@@ -385,7 +385,7 @@ PatchDeformation Patches::measure(int patch, const std::vector<Float4>& x) const
                       : measure(mesh_parts_[part.index], vertices(patch), x);
 }
 
-/// In a grid's triangle the columns of F are two sides of its cell.
+/// In a grid triangle the columns of F are two sides of its cell.
 PatchDeformation Patches::measure(const GridPart& g, const std::vector<Float4>& x) const {
   const auto at = [&](int row, int column) -> const Float4& { return x[g.first + row * g.stride + column]; };
   Float4 along_x = Float4::Zero(), along_z = Float4::Zero();
@@ -403,7 +403,7 @@ PatchDeformation Patches::measure(const GridPart& g, const std::vector<Float4>& 
       most_z = std::max(most_z, (at(row + 1, column) - at(row, column) - along_z).squaredNorm());
   }
   const Float4 a = along_x / g.cell_x, b = along_z / g.cell_z;
-  // Nothing at rest points along y, so M's second column counts for nothing.
+  // At rest no vector points along y, so M's second column has no effect.
   return {a, Float4::Zero(), b, find_least_stretch_sq(a, b),
           std::sqrt(most_x / (g.cell_x * g.cell_x) + most_z / (g.cell_z * g.cell_z))};
 }

@@ -7,31 +7,31 @@
 namespace weft::engine {
 namespace {
 
-/// A tree this much looser than when it was built is built anew.
+/// A tree that is this much looser than after its build is rebuilt.
 constexpr double kLoosest = 1.6;
 
-/// The triangles around a vertex are its neighbours on the mesh. As long as their normals are near to their
-/// sum, seen along it they do not overlap, and nothing of them can come close: within 30° when lists are
-/// made, and such that none can turn over while they are kept.
+/// The triangles of a one-ring are mesh neighbours. While their normals are near to their sum, they do not
+/// overlap seen along it, and cannot come close: within 30° when lists are made, and such that none can turn
+/// over while the lists are valid.
 constexpr float kSharp = 0.87f;
 
-/// So few triangles may all be near to each other, as long as they do not fly off [m].
+/// Up to this many triangles may all be near to each other, unless they fly off [m].
 constexpr int kFewTriangles = 500;
 constexpr double kFarthest = 100;
 
-/// If more than this share of the vertices have moved, all pairs are looked for anew.
+/// If more than this share of the vertices moved, all pairs are searched again.
 constexpr double kManyMoved = 0.4;
 
-/// What has used up more than this share of its slack is looked for anew together with what has left it.
+/// Vertices that used more than this share of their slack are searched again with those that exceeded it.
 constexpr double kSoon = 0.3;
 
-/// No vertex may move farther against the rest than this many times the cloth's size [1].
+/// Limit of a vertex's motion relative to the others, in cloth sizes [1].
 constexpr double kMostOfSize = 10;
 
-/// Of two neighbours' distance at rest, what contact may ask for.
+/// The share of two neighbours' rest distance that contact may require.
 constexpr float kShareOfRest = 0.5f;
 
-constexpr int kFanGrain = 2048;  // pairs of triangles in a fan per chunk
+constexpr int kFanGrain = 2048;  // triangle pairs of a one-ring per chunk
 
 }  // namespace
 
@@ -45,9 +45,9 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
   slacks_ = slack;
   slack_ = slack.most;
   cloth_tree_ = body_tree_ = AabbTree();
-  // Room for the pairs of calm cloth, so that steps need not ask for it.
+  // Reserve for the pairs of calm cloth, so that steps do not allocate.
   const std::size_t room = 4 * surface_.num_vertices;
-  constexpr std::size_t kChunks = 4;  // that one thread fills at once
+  constexpr std::size_t kChunks = 4;  // filled by one thread at a time
   chunks_.resize(kChunks);
   for (auto* pairs : {&vertex_triangle_, &edge_edge_, &ordered_}) pairs->reserve(room);
   for (PairChunk& chunk : chunks_) {
@@ -70,7 +70,7 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
   made_for_.end.clear();
 }
 
-/// By the lists of cloths that lie at rest side by side along x, with all colliders beyond the last one.
+/// From the lists of cloths that lie at rest side by side along x, with all colliders beyond the last one.
 void Proximity::find_tight(const std::vector<double>& half_thickness, JobSystem& jobs) {
   tight_for_ = half_thickness;
   is_tight_.assign(surface_.num_vertices, 0);
@@ -112,7 +112,7 @@ void Proximity::find_tight(const std::vector<double>& half_thickness, JobSystem&
   num_calm_ = 0;
 }
 
-/// Of a cloth's vertex; those of no triangle are in none's way.
+/// The body of a cloth vertex; vertices of no triangle collide with none.
 int Proximity::thing_of(int vertex) const {
   const std::span<const int> fan = surface_.triangles_at(vertex);
   return fan.empty() || thing_of_triangle_.empty() ? 0 : thing_of_triangle_[fan[0]];
@@ -147,17 +147,17 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
   if (clock_) ++clock_->times.list_renewals;
 }
 
-/// What two features do in straight lines keeps their pair, as long as each corner stays within the slack of
-/// where it was, at every time. Once one has left it, those that will soon do so count as well.
+/// A pair stays valid while each corner, moving in straight lines, is at every time within the slack of its
+/// position at the last search. Once a vertex has left it, those that will soon do so count as well.
 void Proximity::find_moved(const SurfaceMotion& motion) {
   moved_.clear();
   find_drift(motion);
   const auto is_within = [&](int v, double slack) {
     const double at_start_sq = (motion.start[v] - made_for_.start[v] - drift_at_start_).squaredNorm(),
                  at_end_sq = (motion.end[v] - made_for_.end[v] - drift_at_end_).squaredNorm();
-    return (at_start_sq <= slack * slack) & (at_end_sq <= slack * slack);  // false for what is not a number
+    return (at_start_sq <= slack * slack) & (at_end_sq <= slack * slack);  // false for NaN
   };
-  constexpr int kBlock = 256;  // without a branch for each vertex
+  constexpr int kBlock = 256;  // no branch per vertex
   bool are_all_within = true;
   for (int begin = 0; begin < surface_.num_vertices && are_all_within; begin += kBlock) {
     const int end = std::min(begin + kBlock, surface_.num_vertices);
@@ -169,7 +169,7 @@ void Proximity::find_moved(const SurfaceMotion& motion) {
   }
 }
 
-/// What all cloth has moved in common.
+/// The common displacement of all cloth.
 void Proximity::find_drift(const SurfaceMotion& motion) {
   Vec3 at_start = Vec3::Zero(), at_end = Vec3::Zero();
   for (int v = 0; v < num_cloth_vertices_; ++v) {
@@ -181,7 +181,7 @@ void Proximity::find_drift(const SurfaceMotion& motion) {
   drift_at_end_ = at_end / count;
 }
 
-/// Of the vertices in is_moved_, and of the patches in is_renewed_patch_.
+/// Measures the vertices in is_moved_, and the patches in is_renewed_patch_.
 void Proximity::measure_patches(JobSystem& jobs) {
   constexpr int kGrain = 4096, kPatchGrain = 512;
   const auto num_vertices = static_cast<std::size_t>(surface_.num_vertices);
@@ -190,7 +190,7 @@ void Proximity::measure_patches(JobSystem& jobs) {
     moment->patches.resize(patches_.num_cloth());
   }
   patch_box_.resize(patches_.size());
-  constexpr float kRounding = 2e-6f;  // of sums of floats, relative to the size of what is measured
+  constexpr float kRounding = 2e-6f;  // of float sums, relative to the measured size
   margin_.resize(num_vertices);
   parallel_for(jobs, surface_.num_vertices, kGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
@@ -214,7 +214,7 @@ void Proximity::measure_patches(JobSystem& jobs) {
   });
 }
 
-/// Neighbours that no window keeps apart, of the windows that have changed.
+/// Neighbours that no window excludes, of the windows that have changed.
 void Proximity::find_folded() {
   is_flat_.resize(patches_.num_windows());
   for (int w = 0; w < patches_.num_windows(); ++w) {
@@ -252,14 +252,14 @@ SweptBox Proximity::box_of(std::span<const int> vertices) const {
   return box;
 }
 
-/// Over the patches [begin, end).
+/// Builds over the patches [begin, end).
 void Proximity::build_tree(AabbTree& tree, int begin, int end, JobSystem& jobs) {
   std::vector<Aabb> boxes;
   for (int p = begin; p < end; ++p) boxes.push_back(patch_box_[p].to_aabb().box);
   tree.build(boxes, {}, jobs);
 }
 
-/// False if the tree has become loose.
+/// Returns false if the tree has become loose.
 bool Proximity::refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, JobSystem& jobs) {
   if (extent == AabbTree::Extent::marked)
     tree.mark(std::span(is_renewed_patch_).subspan(begin, tree.num_items()));
@@ -267,7 +267,7 @@ bool Proximity::refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, J
   return tree.looseness() < kLoosest;
 }
 
-/// -1 if cloth moves against itself by less than its own size on the average.
+/// Returns -1 if cloth moves against itself by less than its own size on average.
 int Proximity::find_wildest(const SurfaceMotion& motion) const {
   if (num_cloth_vertices_ == 0) return -1;
   Vec3 low = motion.start[0], high = low, least = motion.end[0] - low, most = least;
@@ -349,7 +349,7 @@ void Proximity::update_among(const SurfaceMotion& motion, std::span<const ItemPa
   if (clock_) ++clock_->times.list_renewals;
 }
 
-/// The patches are measured, and the vertices around them.
+/// Marks the patches to measure, and the vertices around them.
 void Proximity::mark_patches(std::span<const ItemPair> patch_pairs) {
   is_moved_.assign(surface_.num_vertices, 0);
   is_near_.assign(surface_.num_vertices, 0);
@@ -367,7 +367,7 @@ void Proximity::mark_patches(std::span<const ItemPair> patch_pairs) {
   }
 }
 
-/// Only the pairs of moved_. False if the tree has become loose: everything is to be searched again.
+/// Searches only the pairs of moved_. Returns false if the tree has become loose: all pairs are searched.
 bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
   if (find_wildest(motion) >= 0) return false;
   mark_moved(motion);
@@ -382,7 +382,7 @@ bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
   return true;
 }
 
-/// … and where the lists now have them: where they would be had they not moved in common.
+/// … and stores their new positions in the lists, less the common drift.
 void Proximity::mark_moved(const SurfaceMotion& motion) {
   is_moved_.assign(surface_.num_vertices, 0);
   is_near_.assign(surface_.num_vertices, 0);
@@ -412,7 +412,7 @@ void Proximity::drop_pairs_of_moved() {
   std::erase_if(edge_edge_, [&](const FeaturePair& p) { return has_moved(p.a) || has_moved(p.b); });
 }
 
-/// The pairs of patches that may meet: those of which one has changed are searched, the others are kept.
+/// The pairs of patches that may meet: pairs with a changed patch are searched, the others are kept.
 void Proximity::find_near_patches(AabbTree::Extent extent, JobSystem& jobs) {
   near_patches_.clear();
   const int num_cloth = patches_.num_cloth();
@@ -450,7 +450,7 @@ void Proximity::find_near_patches(AabbTree::Extent extent, JobSystem& jobs) {
   }
 }
 
-/// Boxes of the triangles that may meet something.
+/// Boxes of the triangles that may meet others.
 void Proximity::measure_triangles(JobSystem& jobs) {
   constexpr int kGrain = 256;
   is_searched_.assign(patches_.size(), 0);
@@ -467,7 +467,7 @@ void Proximity::measure_triangles(JobSystem& jobs) {
   });
 }
 
-/// Of pairs of patches that are new, or of triangles of which one is in is_renewed_.
+/// Searches patch pairs that are new, and triangle pairs with one in is_renewed_.
 void Proximity::find_pairs(JobSystem& jobs) {
   constexpr int kGrain = 16;
   longest_edge_.reset();
@@ -480,14 +480,14 @@ void Proximity::find_pairs(JobSystem& jobs) {
   add_pairs(static_cast<int>(patch_pairs_.size()), kGrain, add_near, jobs);
   find_fans(jobs);
   add_pairs(static_cast<int>(fans_.size()), kFanGrain, add_fan, jobs);
-  // The tree's shape, and with it the order, depends on what came before; contact must not.
+  // The shape of the tree, and so the order, depends on earlier steps; contact must not.
   put_in_order(surface_.num_vertices, vertex_triangle_);
   put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
   choose_slack();
 }
 
-/// Halved where many pairs are listed, for each is tested several times a step; doubled again after a while
-/// of few.
+/// The slack is halved where many pairs are listed, because each is tested several times a step. It is
+/// doubled again after several searches with few.
 void Proximity::choose_slack() {
   constexpr int kCalm = 8;                    // searches that have found few pairs
   constexpr std::size_t kMany = 6, kFew = 1;  // pairs per vertex
@@ -499,7 +499,7 @@ void Proximity::choose_slack() {
   slack_ = std::min(slacks_.most, 2 * slack_);
 }
 
-/// Each end may move by the slack before edges are other ones.
+/// Each end may move by the slack before edges are searched again.
 double Proximity::longest_edge() {
   if (longest_edge_) return *longest_edge_;
   if (wildest_ >= 0) return std::numeric_limits<double>::infinity();
@@ -512,7 +512,7 @@ double Proximity::longest_edge() {
   return *longest_edge_;
 }
 
-/// What add(i, chunk) adds to a chunk for i from 0 to before `count`.
+/// Collects the pairs that add(i, chunk) appends to a chunk, for i in [0, count).
 template <class Add>
 void Proximity::add_pairs(int count, int grain, const Add& add, JobSystem& jobs) {
   const auto append = [](const std::vector<FeaturePair>& from, std::vector<FeaturePair>& to) {
@@ -524,7 +524,7 @@ void Proximity::add_pairs(int count, int grain, const Add& add, JobSystem& jobs)
   });
 }
 
-/// By a, then by b, each once; a is below `end_of_a`.
+/// Sorts by a, then by b, and removes duplicates; a is below `end_of_a`.
 void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
   if (pairs.empty()) return;
   begin_of_a_.assign(end_of_a + 1, 0);
@@ -533,7 +533,7 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
   ordered_.resize(pairs.size());
   std::vector<int>& next = begin_of_a_;
   for (const FeaturePair& p : pairs) ordered_[next[p.a]++] = p;
-  // Now next[a] is where a's pairs end.
+  // Now next[a] is the end of a's pairs.
   pairs.clear();
   for (int a = 0; a < end_of_a; ++a) {
     const auto begin = ordered_.begin() + (a > 0 ? next[a - 1] : 0), end = ordered_.begin() + next[a];
@@ -547,7 +547,7 @@ void Proximity::put_in_order(int end_of_a, std::vector<FeaturePair>& pairs) {
 void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const {
   if (!pair.is_new && !is_renewed_patch_[pair.a] && !is_renewed_patch_[pair.b]) return;
   const std::span<const int> first = patches_.triangles(pair.a), second = patches_.triangles(pair.b);
-  std::array<int, Patches::kMaxTriangles> near{};  // of the second, that may meet the first
+  std::array<int, Patches::kMaxTriangles> near{};  // triangles of the second patch that may meet the first
   std::size_t num_near = 0;
   for (const int t : second) {
     if (patch_box_[pair.a].may_meet(triangle_box_[t])) near[num_near++] = t;
@@ -569,8 +569,8 @@ void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) co
   }
 }
 
-/// Whether a plane keeps two triangles apart at all times, square to the line between their centres: along
-/// any direction, what moves in straight lines is nearest at the start or at the end.
+/// Whether a plane normal to the line between their centres separates two triangles at all times: along any
+/// direction, points that move in straight lines are nearest at the start or at the end.
 bool Proximity::stay_apart(int first, int second) const {
   const Triangle &a = surface_.triangles[first], &b = surface_.triangles[second];
   const std::vector<Float4>&x = at_start_.x, &y = at_end_.x;
@@ -615,8 +615,8 @@ void Proximity::add_pairs_of_triangles(int first, int second, const SweptBox& bo
   }
 }
 
-/// How near two features must be at the start to become close during the step: a and b are their corners.
-/// However far both move, only what they move against each other brings them nearer.
+/// The distance at the start below which two features may become close during the step: a and b are their
+/// corners. Only their relative motion counts, however far both move.
 template <std::size_t kA, std::size_t kB>
 double Proximity::reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const {
   const SurfaceMotion& motion = made_for_;
@@ -629,8 +629,8 @@ double Proximity::reach_between(const std::array<int, kA>& a, const std::array<i
   return motion.half_thickness[a[0]] + motion.half_thickness[b[0]] + 2 * made_with_ + std::sqrt(travel_sq);
 }
 
-/// a and b are the corners of the two features, distance(x) is theirs where vertices are at x. Neighbours on
-/// the mesh may always come nearer than at rest, other layers of a cloth as near.
+/// a and b are the corners of the two features, distance(x) is their distance with vertices at x. Mesh
+/// neighbours may always come nearer than at rest, other layers of a cloth as near as at rest.
 template <std::size_t kA, std::size_t kB, class Distance>
 void Proximity::add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b,
                          bool is_fan, const Distance& distance, std::vector<FeaturePair>& pairs) const {
@@ -647,7 +647,7 @@ bool Proximity::are_tight(int vertex, int other) const {
   return is_tight_[vertex] && is_tight_[other] && thing_of(vertex) == thing_of(other);
 }
 
-/// Whether the two share a vertex, or an edge joins them.
+/// Whether the two share a vertex, or are joined by an edge.
 bool Proximity::are_beside(std::span<const int> a, std::span<const int> b) const {
   for (const int v : a) {
     for (const int t : surface_.triangles_at(v)) {
@@ -685,10 +685,10 @@ EdgeEdgeDistance Proximity::distance_of_edges(const FeaturePair& pair, const std
   return edge_edge_distance(x[i], x[j], x[k], x[l]);
 }
 
-/// Whether the cloth makes a point there, where vertices are at x: seen along the sum of all normals at it, a
-/// triangle is turned away too far, or too narrow to stay so.
+/// Whether the cloth forms a sharp tip at a vertex, with vertices at x: seen along the sum of its normals, a
+/// triangle is tilted too far, or is too narrow to stay as it is.
 bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
-  constexpr std::size_t kMost = 16;  // triangles at a vertex that are measured
+  constexpr std::size_t kMost = 16;  // one-ring triangles that are measured
   const std::span<const int> fan = surface_.triangles_at(vertex);
   if (fan.size() > kMost) return true;
   struct Shape {
@@ -710,13 +710,13 @@ bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
   for (std::size_t f = 0; f < fan.size(); ++f) {
     const float facing = shapes[f].normal.dot(sum);
     const bool is_flat = facing >= kSharp * length && facing * shapes[f].height > width * length;
-    if (!is_flat) return true;  // what is not a number either
+    if (!is_flat) return true;  // NaN too
   }
   return false;
 }
 
-/// Triangles that share a vertex matter only where the cloth makes a point or a fold. Two that share an edge
-/// are found at both of its ends.
+/// One-ring pairs (triangles that share a vertex) matter only where the cloth forms a sharp tip or a fold.
+/// Two that share an edge are found at both of its ends.
 void Proximity::find_fans(JobSystem& jobs) {
   constexpr int kGrain = 2048;
   is_in_fold_.assign(num_cloth_vertices_, 0);

@@ -1,5 +1,5 @@
 #pragma once
-/// Which vertices and triangles, and which edges, may come close during a step.
+/// Broad phase: the vertex–triangle and edge–edge pairs that may come close during a step.
 
 #include <limits>
 #include <optional>
@@ -16,74 +16,73 @@
 
 namespace weft::engine {
 
-/// Where all vertices of the Surface are at the start and at the end of a step, and how much room they want.
+/// Positions of all vertices of the Surface at the start and at the end of a step, and their half thickness.
 struct SurfaceMotion {
   std::vector<Vec3> start, end;        // (num_vertices) [m]
-  std::vector<double> half_thickness;  // (num_vertices) two features are close within the sum of theirs [m]
+  std::vector<double> half_thickness;  // (num_vertices) features are close within the sum of both [m]
 };
 
 /// A vertex and a triangle, or two edges.
 struct FeaturePair {
   int a = 0, b = 0;
-  float max_gap = std::numeric_limits<float>::infinity();  // what is near at rest may come this close [m]
+  float max_gap = std::numeric_limits<float>::infinity();  // features near at rest may come this close [m]
 };
 
 /// Verlet lists of close pairs: a vertex's pairs stay valid while its motion, relative to the mean of all
-/// cloth, is within `slack`; otherwise they are searched again. A list may hold pairs that are not close,
-/// never misses one that is, and is in a fixed order.
+/// cloth, is within `slack`; otherwise they are searched again. Lists are conservative: they may hold pairs
+/// that are not close, never miss one that is, and have a fixed order.
 ///
-/// The search goes by patches (patches.h): those that cannot meet themselves are left out, and of others an
-/// AABB tree of moving boxes gives the pairs. What moves together does not meet, however fast it is.
+/// The search works on patches (patches.h): those that cannot meet themselves are skipped, and an AABB tree
+/// of moving boxes gives the pairs of the others. Parts that move together do not meet, at any speed.
 class Proximity {
  public:
-  /// How far vertices may move before pairs are searched again: the most where few pairs are near, the least
-  /// where many are [m].
+  /// Verlet slack: how far vertices may move before pairs are searched again. `most` where few pairs are
+  /// near, `least` where many are [m].
   struct Slack {
     double most = 0, least = 0;
-    double narrow = 0;  // where triangles at a vertex seem narrower than this, they may turn over [m]
+    double narrow = 0;  // triangles at a vertex that seem narrower than this may turn over [m]
   };
 
-  /// The first `num_cloth_triangles` triangles are cloth, the first `num_cloth_vertices` vertices too; the
-  /// others are colliders', which are not held against each other. `rest` (num_cloth_vertices) are the cloth
-  /// at rest, by which neighbours on the mesh are told from folds [m]. `patches` hold every triangle once.
+  /// The first `num_cloth_triangles` triangles and the first `num_cloth_vertices` vertices are cloth; the
+  /// others are colliders', which are not tested against each other. `rest` (num_cloth_vertices) are the rest
+  /// positions, which distinguish mesh neighbours from folds [m]. `patches` hold every triangle once.
   void reset(Surface surface, Patches patches, std::vector<Vec3> rest, int num_cloth_vertices,
              int num_cloth_triangles, const Slack& slack);
 
-  /// What each triangle belongs to (triangles), and which of these go through each other: `passes` (things,
-  /// things) is symmetric; empty: none do. Pairs of those that do are not listed.
+  /// Collision filter: the body of each triangle (triangles), and the symmetric table `passes` (bodies,
+  /// bodies) of those that do not collide; empty: all collide. Pairs of such bodies are not listed.
   void set_things(std::vector<int> thing_of_triangle) { thing_of_triangle_ = std::move(thing_of_triangle); }
   void let_pass(const std::vector<char>& passes);
 
-  /// Makes the lists hold for this motion. If cloth of many triangles moves against itself by more than its
-  /// own size, then all is near to all: the lists are left empty, and wildest() tells a vertex. Cloth that is
-  /// nearer to itself at rest than it is thick (short edges, pleats, a lining) may stay so:
-  /// FeaturePair::max_gap.
+  /// Updates the lists for this motion. If cloth of many triangles moves against itself by more than its own
+  /// size, all pairs are near: the lists are left empty, and wildest() returns a vertex. Cloth may be nearer
+  /// to itself at rest than its thickness (short edges, pleats, a lining) and stay so: FeaturePair::max_gap.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
 
-  /// The same where only some pairs of cloth's patches may meet, a <= b, each once: all others keep apart by
-  /// more than the sum of half thicknesses and twice the slack [m]. No colliders' meshes are near.
+  /// As update(), but only the given pairs of cloth patches may meet, a <= b, each once: all others stay
+  /// apart by more than the sum of half thicknesses and twice the slack [m]. No mesh colliders are near.
   void update_among(const SurfaceMotion& motion, std::span<const ItemPair> patch_pairs, double slack,
                     JobSystem& jobs);
 
-  /// From now on updates are measured; null: they are not.
+  /// Measures the time of updates from now on; null: off.
   void measure(WorkClock* clock) { clock_ = clock; }
 
-  /// The vertex that moved farthest when the last update gave up, -1 if it did not.
+  /// The fastest vertex when the last update gave up on diverged cloth, -1 if it did not.
   int wildest() const { return wildest_; }
 
   const Surface& surface() const { return surface_; }
   const std::vector<FeaturePair>& vertex_triangle() const { return vertex_triangle_; }
   const std::vector<FeaturePair>& edge_edge() const { return edge_edge_; }
 
-  /// No edge of cloth is longer now [m].
+  /// Upper bound for the present length of cloth edges [m].
   double longest_edge();
 
  private:
-  /// Two patches that may meet, or one twice.
+  /// Two patches that may meet, or one patch with itself.
   struct PatchPair {
     int a = 0, b = 0;  // a <= b
     bool are_neighbours = false;
-    bool is_new = true;  // all of its features are to be searched, not only what has moved
+    bool is_new = true;  // search all its features, not only those that moved
 
     auto operator<=>(const PatchPair& other) const { return a != other.a ? a <=> other.a : b <=> other.b; }
     bool operator==(const PatchPair& other) const { return a == other.a && b == other.b; }
@@ -98,7 +97,7 @@ class Proximity {
     }
   };
 
-  /// Where vertices are (num_vertices), from origin_, and how patches are deformed there (cloth patches).
+  /// Vertex positions (num_vertices) relative to origin_, and patch deformations (cloth patches) at one time.
   struct Moment {
     std::vector<Float4> x;
     std::vector<PatchDeformation> patches;
@@ -151,32 +150,32 @@ class Proximity {
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
   std::vector<int> thing_of_triangle_;
-  std::vector<char> is_tight_;     // (num_vertices) nearer to its own cloth at rest than it is thick …
-  std::vector<double> tight_for_;  // … with these half thicknesses; empty: to be found again [m]
+  std::vector<char> is_tight_;     // (num_vertices) nearer to its own cloth at rest than its thickness …
+  std::vector<double> tight_for_;  // … for these half thicknesses; empty: out of date [m]
   std::vector<char> passes_;
   std::size_t num_things_ = 0;
   Slack slacks_;
   double slack_ = 0;       // for the next lists [m]
-  double made_with_ = 0;   // for those at hand [m]
-  bool is_among_ = false;  // those at hand are of some patches, and no others are measured
-  int num_calm_ = 0;       // searches in a row that have found few pairs
+  double made_with_ = 0;   // of the present lists [m]
+  bool is_among_ = false;  // the present lists cover some patches; only these are measured
+  int num_calm_ = 0;       // consecutive searches that found few pairs
 
   Patches patches_;
   AabbTree cloth_tree_, body_tree_;  // of patches
-  SurfaceMotion made_for_;           // what the lists were made for, but for a motion in common; or empty
-  Vec3 origin_ = Vec3::Zero();       // of boxes
+  SurfaceMotion made_for_;           // motion at the last search, up to a common drift; or empty
+  Vec3 origin_ = Vec3::Zero();       // of the boxes
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
-  std::optional<double> longest_edge_;  // of what the lists were made for, if it has been asked for [m]
+  std::optional<double> longest_edge_;  // at the last search, if requested [m]
   int wildest_ = -1;
 
-  // Of what the lists were made for.
+  // State at the last search.
   Moment at_start_, at_end_;
-  std::vector<float> margin_;  // (num_vertices) slack, half the thickness, and what floats round off [m]
+  std::vector<float> margin_;           // (num_vertices) slack, half thickness and float rounding [m]
   std::vector<SweptBox> patch_box_;     // (patches)
-  std::vector<char> is_flat_;           // (windows) nothing in it can meet
+  std::vector<char> is_flat_;           // (windows) no self contact is possible
   std::vector<PatchPair> patch_pairs_;  // whose features are listed, in order
 
-  // What is to be searched again.
+  // Parts to be searched again.
   std::vector<int> moved_;  // vertices
   Vec3 drift_at_start_ = Vec3::Zero(), drift_at_end_ = Vec3::Zero();
   std::vector<char> is_moved_;          // (num_vertices)
@@ -190,12 +189,12 @@ class Proximity {
   std::vector<PairPart> parts_;
   std::vector<ItemPair> folded_pairs_;
   std::vector<char> is_folded_, is_searched_;  // (patches)
-  std::vector<SweptBox> triangle_box_;         // (triangles) of patches that are searched
+  std::vector<SweptBox> triangle_box_;         // (triangles) of the searched patches
   std::vector<char> is_sharp_, is_in_fold_;    // (num_cloth_vertices)
   std::vector<PairChunk> chunks_;
   std::vector<int> begin_of_a_;
   std::vector<FeaturePair> ordered_;
-  std::vector<ItemPair> fans_;  // triangles that share a vertex at which the cloth makes a point
+  std::vector<ItemPair> fans_;  // triangles that share a vertex at which the cloth forms a sharp tip
 };
 
 }  // namespace weft::engine

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How far the distance of any point from the one shape can differ from that from the other [m].
+/// The largest difference between any point's distances to the two shapes [m].
 double difference(const Sphere& a, const Sphere& b) {
   return (a.center - b.center).norm() + std::abs(a.radius - b.radius);
 }
@@ -34,7 +34,7 @@ double difference(const ColliderShape& a, const ColliderShape& b) {
   return std::visit([](const auto& x, const auto& y) { return difference(x, y); }, a, b);
 }
 
-/// No point of the box is nearer to the shape [m].
+/// Lower bound for the distance of the box to the shape [m].
 double box_distance(const Sphere& s, const Vec3& min, const Vec3& max) {
   return (s.center - s.center.cwiseMax(min).cwiseMin(max)).norm() - s.radius;
 }

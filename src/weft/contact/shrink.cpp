@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// (num_vertices) means over the triangles by area, of unit length.
+/// (num_vertices) area-weighted vertex normals of unit length.
 std::vector<Vec3> compute_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -23,7 +23,7 @@ std::vector<Vec3> compute_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-/// Finds the triangles across.
+/// Finds the opposite side of the solid.
 class OtherSide {
  public:
   explicit OtherSide(const TriangleMesh& mesh) : mesh_(mesh) {
@@ -38,7 +38,7 @@ class OtherSide {
 
   double inner_radius(const Vec3& p, const Vec3& normal) const {
     constexpr int kMaxRounds = 20;
-    constexpr double kEnough = 1e-3;  // of the radius
+    constexpr double kEnough = 1e-3;  // relative change of the radius that ends the search
     double radius = 1;                // [m]
     for (int round = 0; round < kMaxRounds; ++round) {
       const Vec3 q = nearest(p - radius * normal, normal);
@@ -52,7 +52,7 @@ class OtherSide {
   }
 
  private:
-  /// On the triangles that do not face along `normal`.
+  /// The nearest point on the triangles that do not face along `normal`.
   Vec3 nearest(const Vec3& c, const Vec3& normal) const {
     const auto distance_sq = [&](int t) {
       return facing_[t].dot(normal) > 0 ? kInfinity : to(t, c).distance_sq;
@@ -73,7 +73,7 @@ class OtherSide {
   AabbTree tree_;
 };
 
-/// Values become the means of their own and their neighbours'.
+/// Replaces values by the means of themselves and their neighbours.
 void smooth(const TriangleMesh& mesh, std::vector<Vec3>& values) {
   std::vector<Vec3> sums = values;
   std::vector<double> counts(values.size(), 1.0);

@@ -1,5 +1,5 @@
 #pragma once
-/// Solids made thinner, so that cloth that starts inside can be outside while they grow back.
+/// Shrinking of solid meshes: cloth that starts inside can be outside while they grow back.
 
 #include <vector>
 
@@ -9,17 +9,17 @@ namespace weft::engine {
 
 /// The radius of the largest ball inside a closed mesh that touches it at each vertex (num_vertices) [m]: the
 /// shrinking ball of Ma, Bae and Choi (2012, "3D medial axis point approximation using nearest neighbors and
-/// the normal field"). Triangles that face the way the vertex does belong to a sheet that the solid is
-/// covered by (hair, or skin that goes through itself), and are passed over.
+/// the normal field"). Triangles that face the same way as the vertex belong to a sheet that covers the solid
+/// (hair, or skin that intersects itself), and are skipped.
 ///
 ///         n ↑
 ///     ──────p──────      c = p − R n,   R ← |p − q|²/(2 n·(p − q))
-///        (  c  )         for the point q of the surface nearest to c, until there is none nearer than p
+///        (  c  )         for the surface point q nearest to c, until none is nearer than p
 ///     ──────q──────
 std::vector<double> compute_inner_radii(const TriangleMesh& mesh);
 
-/// Where the vertices of a closed mesh are when it is thinner by `depth` on all sides (num_vertices) [m];
-/// where it is not so thick, it keeps a tenth of its radius.
+/// Vertex positions of a closed mesh that is thinner by `depth` on all sides (num_vertices) [m]; where it is
+/// less thick than that, a tenth of its radius remains.
 std::vector<Vec3> shrink(const TriangleMesh& mesh, const std::vector<double>& inner_radii, double depth);
 
 }  // namespace weft::engine

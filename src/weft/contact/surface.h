@@ -1,6 +1,6 @@
 #pragma once
-/// The triangles of all cloths and mesh colliders under one numbering, and who stands for whose vertices and
-/// edges.
+/// The triangles of all cloths and mesh colliders under one numbering, and the owner triangle of each vertex
+/// and edge.
 
 #include <algorithm>
 #include <array>
@@ -13,27 +13,27 @@ namespace weft::engine {
 
 inline bool has_vertex(const Triangle& t, int v) { return v == t[0] || v == t[1] || v == t[2]; }
 
-/// Each vertex and each edge is owned by one of the triangles around it. Every vertex–triangle pair and every
+/// Each vertex and each edge is owned by one adjacent triangle. Every vertex–triangle pair and every
 /// edge–edge pair then belongs to exactly one pair of triangles, and is found once.
 struct Surface {
   struct OwnedFeatures {
-    std::array<int, 3> vertex = {-1, -1, -1};  // -1: another triangle's
+    std::array<int, 3> vertex = {-1, -1, -1};  // -1: owned by another triangle
     std::array<int, 3> edge = {-1, -1, -1};
   };
 
   std::vector<Triangle> triangles;        // vertices under the common numbering
   std::vector<std::array<int, 2>> edges;  // each once
   std::vector<OwnedFeatures> owned;       // (triangles)
-  std::vector<int> fan_begin;             // (vertices + 1) of `fan`
-  std::vector<int> fan;                   // the triangles around each vertex
+  std::vector<int> fan_begin;             // (vertices + 1) into `fan`
+  std::vector<int> fan;                   // one-rings: the triangles around each vertex
   int num_vertices = 0;
 
-  /// The triangles around a vertex, by ascending number.
+  /// The one-ring of a vertex: its triangles, in ascending order.
   std::span<const int> triangles_at(int vertex) const {
     return std::span(fan).subspan(fan_begin[vertex], fan_begin[vertex + 1] - fan_begin[vertex]);
   }
 
-  /// Calls body(triangle's number) for those that have all of these vertices.
+  /// Calls body(triangle number) for the triangles that have all of these vertices.
   template <class Body>
   void for_triangles_with(std::span<const int> vertices, const Body& body) const {
     for (const int t : triangles_at(vertices[0])) {
@@ -42,17 +42,17 @@ struct Surface {
     }
   }
 
-  /// Appends a mesh, whose vertex v becomes num_vertices (before) + v.
+  /// Appends a mesh, whose vertex v becomes num_vertices (before the call) + v.
   void add(const std::vector<Triangle>& mesh_triangles, int mesh_vertices);
 
-  /// To be called after the last add().
+  /// Builds the one-rings. Call it after the last add().
   void build_fans();
 };
 
-/// Vertices that the two triangles have in common, 0 to 3.
+/// Number of vertices that the two triangles share, 0 to 3.
 int num_shared_vertices(const Triangle& a, const Triangle& b);
 
-/// Which of several meshes a vertex belongs to; `first_vertex` (meshes + 1) ascends.
+/// The mesh, of several, that a vertex belongs to; `first_vertex` (meshes + 1) ascends.
 int mesh_of(const std::vector<int>& first_vertex, int vertex);
 
 }  // namespace weft::engine

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to contact/: a box of moving points in registers.
+/// Private to contact/: a swept AABB in SIMD registers.
 
 #include <Eigen/Core>
 
@@ -8,14 +8,14 @@
 
 namespace weft::engine {
 
-/// A point or a vector in floats; the last component is 0 and only fills the register.
+/// A point or a vector in floats; the last component is 0 and pads the register.
 using Float4 = Eigen::Vector4f;
 
 inline Float4 to_float4(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-/// A MovingAabb in registers: where points are at the start, and how far they move [m]. By default empty.
+/// A MovingAabb in registers: bounds of the start points, and of their displacements [m]. Empty by default.
 struct SweptBox {
   Float4 min = Float4::Constant(Aabb::kInfinity), max = -min;
   Float4 way_min = min, way_max = max;

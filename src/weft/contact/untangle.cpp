@@ -14,23 +14,23 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kMinRounds = 60, kMaxRounds = 600;  // that may be made …
-constexpr int kMaxTriangles = 4'000'000;          // … and triangles looked at in them: some seconds
+constexpr int kMinRounds = 60, kMaxRounds = 600;  // limits of rounds …
+constexpr int kMaxTriangles = 4'000'000;          // … and of triangles tested in them: some seconds
 constexpr int kPullPasses = 20;                   // over all edges in a round
-constexpr double kMostStretch = 1.1;              // of an edge, or as much as it has at the start
-constexpr double kLeastGap = 1e-4;                // that cloth is given from what it crossed [m]
+constexpr double kMostStretch = 1.1;              // of an edge, or its stretch at the start
+constexpr double kLeastGap = 1e-4;                // between cloth and the features it intersected [m]
 constexpr double kMostOfEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
 constexpr double kShortening = 0.1;  // of the mean edge: how far a cut's end moves in a round
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A closed mesh where it is, with what finds the nearest place on it.
+/// A closed mesh at its pose, with a tree for nearest-point queries.
 struct SolidMesh {
   TriangleMesh mesh;
   AabbTree tree;
 };
 
-/// How deep a particle is in a solid, and the nearest way out.
+/// A particle's depth in a solid, and the shortest way out.
 struct Way {
   double depth;  // [m]
   Vec3 out;      // unit length
@@ -154,7 +154,7 @@ class Untangler {
     if (num > num_cloth) body_tree_.build({boxes.begin() + num_cloth, boxes.end()}, {}, *jobs_);
   }
 
-  // ---- What crosses ----
+  // ---- Intersections ----
 
   void add_pierced(int s, int t, std::vector<Pierced>& pierced) const {
     if (tangle_.pass(surface_.triangles[s][0], surface_.triangles[t][0])) return;
@@ -173,7 +173,7 @@ class Untangler {
 
   // ---- Out of solids ----
 
-  /// Free particles of cloth in a solid.
+  /// Free cloth particles in a solid.
   std::vector<int> find_inside(std::size_t s) const {
     const auto& [collider, shape, first_vertex, end_vertex] = tangle_.solids[s];
     std::vector<int> found;
@@ -188,7 +188,7 @@ class Untangler {
     return found;
   }
 
-  /// Of a particle that is inside.
+  /// The way out for a particle that is inside.
   Way way_out(std::size_t s, const Vec3& p) const {
     const ColliderShape& shape = tangle_.solids[s].shape;
     if (!std::holds_alternative<MeshShape>(shape)) {
@@ -212,7 +212,7 @@ class Untangler {
 
   double gap(int v) const { return std::max(kLeastGap, (*tangle_.half_thickness)[v]); }
 
-  /// Takes all cloth out of a solid; triangles that only their corners have left are pushed out whole.
+  /// Moves all cloth out of a solid; triangles that only their corners have left are pushed out whole.
   void leave(std::size_t s) {
     const std::vector<int> inside = find_inside(s);
     std::vector<Way> ways;
@@ -230,8 +230,8 @@ class Untangler {
     if (!std::holds_alternative<MeshShape>(shape)) lift_triangles(shape);
   }
 
-  /// Where neighbours would leave by opposite sides: the one direction in which all leave, that which is
-  /// nearest to all their ways, or else across the cloth.
+  /// One common direction where neighbours would leave by opposite sides: the one nearest to all their ways,
+  /// or else across the cloth.
   std::optional<Vec3> find_common_way(const std::vector<int>& inside, const std::vector<Way>& ways) const {
     std::vector<int> number(x_.size(), -1);
     for (std::size_t n = 0; n < inside.size(); ++n) number[inside[n]] = static_cast<int>(n);
@@ -246,14 +246,14 @@ class Untangler {
     for (const int v : inside) {
       for (const int t : surface_.triangles_at(v)) across += area(surface_.triangles[t]);
     }
-    constexpr double kTelling = 0.3;  // the ways' mean is a direction
+    constexpr double kTelling = 0.3;  // a longer mean of the ways is a direction
     if (mean.norm() > kTelling || across.norm() == 0) return mean.stableNormalized();
     return Vec3(across.normalized() * (across.dot(mean) < 0 ? -1.0 : 1.0));
   }
 
   Vec3 area(const Triangle& t) const { return (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]); }
 
-  /// No step goes farther than the nearest surface is, so that the first way out is found.
+  /// Sphere tracing: no step is longer than the distance to the surface, so that the first way out is found.
   void go_along(std::size_t s, const Vec3& direction, Vec3& p) const {
     constexpr int kMostSteps = 1000;
     for (int step = 0; step < kMostSteps && is_in(s, p); ++step)
@@ -288,20 +288,20 @@ class Untangler {
                        [&](const Tangle::Solid& s) { return v >= s.first_vertex && v < s.end_vertex; });
   }
 
-  /// Where a surface is cut by another one, or by itself: by which part of it the lighter one is.
+  /// The cut of a surface by another one, or by itself, with the lighter of its two parts.
   struct Cut {
     int mesh = 0;
     std::vector<Pierced> crossings;
-    int side = 0;  // of the triangles that cut, where the lighter part is: +1 where normals point
-    double weight = kInfinity;  // of it [kg]
+    int side = 0;               // of the cutting triangles on which the lighter part is: +1 along normals
+    double weight = kInfinity;  // of the lighter part [kg]
   };
 
   int mesh_at(int vertex) const { return mesh_of(tangle_.first_vertex, vertex); }
 
   int side_of(int vertex, const Triangle& t) const { return area(t).dot(x_[vertex] - x_[t[0]]) > 0 ? 1 : -1; }
 
-  /// A cut's name: the mesh, and the other one that cuts it; of a mesh that cuts itself each curve has its
-  /// own number, those of different meshes have 0.
+  /// Key of a cut: the mesh, the mesh that cuts it, and the curve if a mesh cuts itself; for different meshes
+  /// the curve is 0.
   using CutKey = std::array<int, 3>;
 
   CutKey key_of(const Pierced& p) const {
@@ -326,7 +326,7 @@ class Untangler {
     }
   }
 
-  /// Edges that are pierced at the same triangle of their own are of one curve.
+  /// Edges that are pierced at a common adjacent triangle belong to one curve.
   void join_curves(const std::vector<Pierced>& pierced) {
     curve_.resize(surface_.edges.size());
     std::iota(curve_.begin(), curve_.end(), 0);
@@ -341,8 +341,8 @@ class Untangler {
     }
   }
 
-  /// Finds the lighter part: each particle is on the side of the nearest cut edge's end on its side of the
-  /// cut. A cut that ends before the cloth's border is thus prolonged.
+  /// Finds the lighter part: each particle takes the side of the nearest end of a cut edge on its side. This
+  /// extends a cut that ends before the cloth's border.
   void weigh(Cut& cut) const {
     const int begin = tangle_.first_vertex[cut.mesh], end = tangle_.first_vertex[cut.mesh + 1];
     std::vector<int> side(end - begin, 0), queue;
@@ -368,11 +368,11 @@ class Untangler {
     cut.weight = std::min(above, below);
   }
 
-  static constexpr int kNobody = -1;     // this crossing is the others' matter
-  static constexpr int kUndecided = -2;  // nothing can tell
+  static constexpr int kNobody = -1;     // another cut handles this intersection
+  static constexpr int kUndecided = -2;  // both parts are fixed
 
-  /// The end of the edge that has to go over: if the lighter part of its own surface is lighter than that of
-  /// the other one.
+  /// The end of the edge that must move to the other side, if the lighter part of its own surface is lighter
+  /// than that of the other one.
   int find_wrong(const Pierced& p) const {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
@@ -392,7 +392,7 @@ class Untangler {
     return side_of(i, t) == own.side ? i : j;
   }
 
-  /// Whether a triangle has an edge of a curve.
+  /// Whether a triangle has an edge of the given curve.
   bool has_edge_of(int curve, int triangle) const {
     const Triangle& t = surface_.triangles[triangle];
     bool has = false;
@@ -427,7 +427,7 @@ class Untangler {
 
   double limited(double length) const { return std::min(length, kMostOfEdge * mean_edge_); }
 
-  /// The outward direction at an edge of a closed mesh; nothing at an open one's.
+  /// The outward direction at an edge of a closed mesh; empty for an open one.
   std::optional<Vec3> ridge_direction(int edge) const {
     Vec3 sum = Vec3::Zero();
     bool is_on_solid = false;
@@ -438,7 +438,7 @@ class Untangler {
     return is_on_solid ? std::optional(sum.stableNormalized()) : std::nullopt;
   }
 
-  /// Cloth whose corners are all outside, but not all of it.
+  /// Pushes out cloth that penetrates a solid although all its corners are outside.
   void push_from_solid(const Pierced& p, const Vec3& out) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
@@ -447,8 +447,8 @@ class Untangler {
          (is_cloth(i) ? 1.0 : -1.0) * limited(kShortening * mean_edge_) * out);
   }
 
-  /// Moves the edge against the triangle such that the cut's end there, where the triangles at the edge meet
-  /// the pierced one, moves towards the cut's inside:
+  /// Moves the edge against the triangle so that the end of the cut, where the triangles at the edge meet the
+  /// pierced one, moves towards the inside of the cut:
   ///
   ///     Σ R − (E·R)/(E·N) N        R along the cut from the edge, E along the edge, N the triangle's normal
   void shorten_cut(const Pierced& p) {
@@ -473,7 +473,7 @@ class Untangler {
     move(std::array{i, j}, std::array{1 - d.s, d.s}, t, d.weights, length * way.normalized());
   }
 
-  /// Moves points of an edge and a triangle against each other, each vertex by its share.
+  /// Moves points of an edge and a triangle against each other; vertices share by weight.
   template <std::size_t kCount>
   void move(const std::array<int, kCount>& first, const std::array<double, kCount>& weights,
             const Triangle& second, const Vec3& second_weights, const Vec3& way) {
@@ -490,9 +490,9 @@ class Untangler {
     for (int k = 0; k < 3; ++k) add(second[k], -second_weights[k]);
   }
 
-  // ---- Threads ----
+  // ---- Edge lengths ----
 
-  /// Shortens what has become too long.
+  /// Shortens edges that have become too long.
   void pull() {
     for (int pass = 0; pass < kPullPasses; ++pass) {
       bool is_done = true;
@@ -513,7 +513,7 @@ class Untangler {
     }
   }
 
-  /// To places that can be stored.
+  /// Rounds to positions that can be stored.
   void round() {
     for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
       const Vec3& origin = tangle_.origins[v];
@@ -526,15 +526,15 @@ class Untangler {
   const std::vector<double>& inverse_mass_;
   std::vector<Vec3>& x_;
   std::shared_ptr<JobSystem> jobs_ = make_serial_jobs();
-  std::vector<double> longest_;    // (edges) that each may become [m]
+  std::vector<double> longest_;    // (edges) length limit [m]
   double mean_edge_ = 0;           // of cloth [m]
   std::vector<SolidMesh> meshes_;  // (solids)
   AabbTree cloth_tree_, body_tree_;
-  std::vector<int> curve_;  // (edges) of a union-find forest: those that one curve cuts
+  std::vector<int> curve_;  // (edges) union-find forest of the edges that one curve cuts
   std::map<CutKey, Cut> cuts_;
   std::vector<std::vector<std::pair<int, int>>> neighbours_;  // (num_vertices) and the edge to each
   std::vector<Vec3> push_;                                    // (num_vertices) sum of a round's moves [m]
-  std::vector<int> count_;                                    // (num_vertices) of them
+  std::vector<int> count_;                                    // (num_vertices) number of these moves
 };
 
 }  // namespace

@@ -68,7 +68,7 @@ WEFT_ALWAYS_INLINE double stop_approach(Row& row, Quad* velocities) {
   return change * change * (row.inverse_mass * row.inverse_mass);
 }
 
-/// Friction against the slide; returns the squared change [m²/s²].
+/// Friction against sliding; returns the squared change [m²/s²].
 template <int kVertices>
 WEFT_ALWAYS_INLINE double slow_slide(Row& row, Quad* velocities, Quad* slowed) {
   const double most = row.friction * row.impulse;
@@ -78,7 +78,7 @@ WEFT_ALWAYS_INLINE double slow_slide(Row& row, Quad* velocities, Quad* slowed) {
   const Quad slide = relative - dot(relative, row.normal) * row.normal;
   Quad impulse = row.friction_impulse - slide / row.inverse_mass;
   const double length = std::sqrt(dot(impulse, impulse));
-  // Shortened to µ P if it is longer; of several vertices without a branch, which no processor could predict.
+  // Clamped to µ P; for several vertices without a branch, which processors cannot predict.
   if (kVertices > 1)
     impulse = most / std::max(length, std::max(most, kLeast)) * impulse;
   else if (length > most)
@@ -96,7 +96,7 @@ WEFT_ALWAYS_INLINE double relax(Row& row, Quad* velocities, Quad* slowed) {
   return row.friction > 0 ? std::max(stopped, slow_slide<kVertices>(row, velocities, slowed)) : stopped;
 }
 
-/// One pass over all rows; `largest_sq` gets the largest squared change [m²/s²].
+/// One pass over all rows; `largest_sq` receives the largest squared change [m²/s²].
 WEFT_ALWAYS_INLINE void relax_all_body(std::span<Row> rows, Quad* velocities, Quad* slowed,
                                        double& largest_sq) {
   double largest = 0;

@@ -1,11 +1,11 @@
 #pragma once
-/// Contact projection of velocities: what approaches is stopped, what slides is slowed by Coulomb's law.
+/// Contact projection of velocities: stops approaching pairs, and slows sliding ones by Coulomb friction.
 ///
-///     P >= 0,  v_n >= 0,  |T| <= µ P,  T against the slide          (v relative, P and T impulses)
+///     P >= 0,  v_n >= 0,  |T| <= µ P,  T against the sliding direction     (v relative, P and T impulses)
 ///
-/// Projected Gauss–Seidel in the order of the constraints. Its rows are scheduled by levels: a row comes one
-/// level after the last of the rows before it that share a vertex with it. Rows of one level are independent,
-/// so that the processor overlaps them; the result is that of the order given.
+/// Projected Gauss–Seidel in the order of the constraints, with level scheduling: a row comes one level after
+/// the last earlier row that shares a vertex with it. Rows of one level are independent, so the processor
+/// overlaps them; the result is the same as in the given order.
 
 #include <array>
 #include <vector>
@@ -25,8 +25,8 @@ inline Quad to_quad(const Vec3& v) { return {{v.x(), v.y(), v.z(), 0}}; }
 
 class VelocityProjection {
  public:
-  /// Constraints that pushed positions act; their impulses are set. `slowed` gets the part of each velocity's
-  /// change that friction made. All (num_vertices) [m/s].
+  /// Processes the constraints that are active after the position projection, and sets their impulses.
+  /// `slowed` receives the part of each velocity change that friction made. All (num_vertices) [m/s].
   void project(const std::vector<double>& inverse_masses, std::vector<Constraint>& constraints,
                std::vector<Quad>& velocities, std::vector<Quad>& slowed);
 
@@ -42,10 +42,10 @@ class VelocityProjection {
  private:
   void schedule(const std::vector<double>& inverse_masses, const std::vector<Constraint>& constraints);
 
-  std::vector<Row> rows_;            // by levels
+  std::vector<Row> rows_;            // sorted by level
   std::vector<int> active_, level_;  // (rows) in the order of the constraints
-  std::vector<int> level_begin_;     // (levels) of rows_
-  std::vector<int> next_level_;      // (num_vertices) of the next row with it; 0 between calls
+  std::vector<int> level_begin_;     // (levels) into rows_
+  std::vector<int> next_level_;      // (num_vertices) level of the next row with it; 0 between calls
 };
 
 }  // namespace weft::engine

@@ -1,5 +1,5 @@
 #pragma once
-/// Axis-aligned boxes in floats: what collision detection looks at first.
+/// Axis-aligned bounding boxes in floats, for the broad phase of collision detection.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace weft::engine {
 
-/// { p : min <= p <= max }, component by component. By default empty: it overlaps nothing, not even itself.
+/// { p : min <= p <= max }, component by component. Empty by default: it overlaps nothing, not even itself.
 struct Aabb {
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::array<float, 3> min = {kInfinity, kInfinity, kInfinity};
@@ -25,7 +25,7 @@ struct Aabb {
            other.min[1] <= max[1] && min[2] <= other.max[2] && other.min[2] <= max[2];
   }
 
-  /// The same, and counts the comparisons of numbers that it takes.
+  /// The same, with a count of the number comparisons.
   bool overlaps(const Aabb& other, std::int64_t& num_comparisons) const {
     const auto is_below = [&](float a, float b) {
       ++num_comparisons;
@@ -44,7 +44,7 @@ struct Aabb {
     }
   }
 
-  /// Half its surface, 0 if empty.
+  /// Half the surface area, 0 if empty.
   float half_area() const {
     const float a = std::max(0.0f, max[0] - min[0]), b = std::max(0.0f, max[1] - min[1]),
                 c = std::max(0.0f, max[2] - min[2]);
@@ -62,13 +62,13 @@ struct Aabb {
   }
 };
 
-/// What is somewhere in `box` at first and moves by something in `way`, in a straight line.
+/// Bounds of moving points: start points in `box`, straight displacements in `way`.
 struct MovingAabb {
   Aabb box;  // at the start [m]
-  Aabb way;  // displacements, not places [m]
+  Aabb way;  // displacements, not positions [m]
 
-  /// False if nothing in the one can be where something in the other is at the same time: however far both
-  /// move, only what they move against each other counts. Six comparisons at most.
+  /// False if no point of the one can coincide with a point of the other at the same time. Only the relative
+  /// motion counts, however far both move. Six comparisons at most.
   bool may_meet(const MovingAabb& other) const {
     for (int k = 0; k < 3; ++k) {
       if (box.min[k] > other.box.max[k] + std::max(0.0f, other.way.max[k] - way.min[k])) return false;
@@ -83,14 +83,14 @@ struct MovingAabb {
   }
 };
 
-/// The next larger float: what std::nextafter(x, infinity) gives for any x below infinity, and faster.
+/// The next larger float: equals std::nextafter(x, infinity) for any x below infinity, and is faster.
 inline float next_above(float x) {
   if (x == 0) return std::numeric_limits<float>::denorm_min();
   const auto bits = std::bit_cast<std::int32_t>(x);
   return std::bit_cast<float>(x > 0 ? bits + 1 : bits - 1);
 }
 
-/// The smallest box in floats that holds everything from min to max and `margin` around it.
+/// The smallest float box that contains the box from min to max, enlarged by `margin`.
 inline Aabb make_aabb(const Vec3& min, const Vec3& max, double margin = 0) {
   Aabb box;
   for (int k = 0; k < 3; ++k) {

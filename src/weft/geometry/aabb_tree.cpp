@@ -10,12 +10,11 @@ namespace {
 
 constexpr int kNodesPerPart = 256;      // of a query
 constexpr int kCopyGrain = 16;          // parts whose results are copied by one job
-constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are dealt with side by side
-constexpr std::size_t kNumRanges = 32;  // parts of a tree that are built side by side
+constexpr std::size_t kMaxStarts = 32;  // parts of a tree that are refitted in parallel
+constexpr std::size_t kNumRanges = 32;  // parts of a tree that are built in parallel
 
-/// Sorts items into leaves: halves a range of whole leaves by the median of its longest side, again and
-/// again. Ties are broken by the item's number, so that the parts do not depend on how the library finds a
-/// median.
+/// Sorts items into leaves: recursive halving of a range of whole leaves by the median of its longest side.
+/// Ties are broken by the item number, so that the parts do not depend on the library's median algorithm.
 class Splitter {
  public:
   Splitter(const std::vector<Aabb>& boxes, int leaf_size)
@@ -57,7 +56,7 @@ class Splitter {
     split_below({middle, range.end});
   }
 
-  /// Where the right half begins; the range's end if all of it fits into a leaf.
+  /// The start of the right half; the range's end if all of it fits into a leaf.
   int halve(const Range& range) {
     const int num_leaves = (range.end - range.begin + leaf_size_ - 1) / leaf_size_;
     if (num_leaves <= 1) return range.end;
@@ -94,7 +93,7 @@ class Splitter {
 
 using aabb_tree::kLanes;
 
-// Before a loop over a leaf's items: unrolled first, it is not turned into vector instructions.
+// Before a loop over a leaf's items: if unrolled first, it is not vectorised.
 #if defined(__GNUC__) && !defined(__clang__)
 #define WEFT_ROLLED _Pragma("GCC unroll 1")
 #else
@@ -125,7 +124,7 @@ WEFT_ALWAYS_INLINE unsigned find_overlapping(const Leaf& leaf, const float* min,
   return bits;
 }
 
-/// Bit j: the leaf's item j may meet what is in the box from min to max and moves by way_min to way_max.
+/// Bit j: the leaf's item j may meet points in the box from min to max that move by way_min to way_max.
 template <class Leaf>
 WEFT_ALWAYS_INLINE unsigned find_meeting(const Leaf& leaf, const aabb_tree::LeafWays& ways, const float* min,
                                          const float* max, const float* way_min, const float* way_max) {
@@ -159,9 +158,9 @@ WEFT_ALWAYS_INLINE unsigned find_joined(const Leaf& leaf, int p, int q, int r) {
   return bits;
 }
 
-/// Appends the pairs of items of each pair of leaves; of a leaf with itself each pair once. First the items
-/// of one leaf are held against the whole other one, then those that overlap it against its items. Returns
-/// how many boxes were compared with boxes.
+/// Appends the pairs of items of each pair of leaves; for a leaf with itself each pair once. First the items
+/// of one leaf are tested against the whole other leaf, then those that overlap it against its items. Returns
+/// the number of box–box comparisons.
 template <bool kIsSelf, bool kMoves>
 WEFT_ALWAYS_INLINE std::int64_t test_leaf_pairs(const TreeView& left, const TreeView& right,
                                                 const std::vector<aabb_tree::NodePair>& leaf_pairs,
@@ -255,7 +254,7 @@ void AabbTree::build(const std::vector<Aabb>& boxes, const std::vector<Keys>& ke
     set_box(slot / kLanes, lane, item < 0 ? Aabb() : boxes[item]);
     const bool has_keys = item >= 0 && !keys.empty();
     for (int k = 0; k < 3; ++k) {
-      const int own = -2 - 3 * slot - k;  // nobody else's
+      const int own = -2 - 3 * slot - k;  // unique
       leaf.key[k][lane] = has_keys && keys[item] != kNoKeys ? keys[item][k] : own;
     }
   }
@@ -296,11 +295,11 @@ bool AabbTree::meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direct
     near = std::max(near, std::min(a, b));
     far = std::min(far, std::max(a, b));
   }
-  constexpr double kRounding = 1e-12;  // of the quotients: rather a box too many
+  constexpr double kRounding = 1e-12;  // of the quotients; errs towards a hit
   return near <= far + kRounding * (std::abs(near) + std::abs(far));
 }
 
-/// Goes down both trees at once, always into the larger part, to the pairs of leaves that overlap.
+/// Descends both trees at once, always into the larger node, to the pairs of leaves that overlap.
 template <class MayMeet>
 void AabbTree::collect(const AabbTree& other, NodePair start, const MayMeet& may_meet,
                        PairPart& found) const {
@@ -369,7 +368,7 @@ void AabbTree::test_leaves(const AabbTree& other, bool is_self, PairPart& found)
   std::int64_t box_pairs = 0;
   test(view(*this), view(other), found, box_pairs);
   found.box_pairs += box_pairs;
-  found.comparisons += 6 * box_pairs;  // side by side: none is left out
+  found.comparisons += 6 * box_pairs;  // in SIMD: none is skipped
 }
 
 int AabbTree::num_self_parts() const {
@@ -380,7 +379,7 @@ void AabbTree::find_self_part(int part, Extent extent, PairPart& found) const {
   find_self_part(part, extent, false, found);
 }
 
-/// Each node's two halves are held against each other, and each leaf against itself.
+/// Tests each node's two halves against each other, and each leaf against itself.
 void AabbTree::find_self_part(int part, Extent extent, bool counts, PairPart& found) const {
   found.clear();
   const int begin = part * kNodesPerPart,
@@ -411,7 +410,7 @@ void AabbTree::find_part(const AabbTree& other, int part, Extent extent, bool co
   test_leaves(other, false, found);
 }
 
-/// Runs find_part(part, found) for all parts, and strings their results together in order.
+/// Runs find_part(part, found) for all parts, and concatenates their results in order.
 template <class FindPart>
 void AabbTree::find_all(int num_parts, const FindPart& find_part, JobSystem& jobs, PairSearch& search) {
   if (static_cast<int>(search.parts.size()) < num_parts) search.parts.resize(num_parts);
@@ -448,7 +447,7 @@ void AabbTree::find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& se
   find_all(num_parts_with(other), find, jobs, search);
 }
 
-/// Halves the tree, and its halves, into a few dozen parts.
+/// Splits the tree recursively into a few dozen subtrees.
 void AabbTree::choose_starts() {
   starts_ = {0};
   while (starts_.size() < kMaxStarts) {

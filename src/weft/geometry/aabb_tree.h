@@ -1,11 +1,11 @@
 #pragma once
-/// A hierarchy of axis-aligned boxes over triangles, edges, points or whatever else has a box.
+/// Bounding volume hierarchy of AABBs over triangles, edges, points or any items with a box.
 ///
-///                    [ all ]                  Leaves hold up to eight items, side by side for vector
-///               [ ... ]   [ ... ]             instructions. A tree is built once, refitted to moved items in
-///            [8][8][8]     [8][8][5]          linear time, and built anew when it has become loose.
+///                    [ all ]                  Leaves hold up to eight items, interleaved for SIMD. A tree is
+///               [ ... ]   [ ... ]             built once, refitted to moved items in linear time, and
+///            [8][8][8]     [8][8][5]          rebuilt when it has become loose.
 ///
-/// What a query reports does not depend on the tree's shape; the order in which it does, does.
+/// The result of a query does not depend on the tree's shape; the order of the result does.
 
 #include <cstdint>
 #include <span>
@@ -28,14 +28,14 @@ namespace aabb_tree {
 
 constexpr int kLanes = 8;
 
-/// Eight items side by side; the empty lanes of the last leaf have empty boxes.
+/// Eight items, interleaved for SIMD; the empty lanes of the last leaf have empty boxes.
 struct Leaf {
   float min[3][kLanes], max[3][kLanes];
   int key[3][kLanes];
   int item[kLanes];
 };
 
-/// The ways of a leaf's items.
+/// Displacement bounds of a leaf's items.
 struct LeafWays {
   float min[3][kLanes], max[3][kLanes];
 };
@@ -53,14 +53,14 @@ struct NodePair {
 
 }  // namespace aabb_tree
 
-/// The result of a part of a query. Reuse it, too.
+/// The result of a part of a query. Reuse it to avoid allocations.
 struct PairPart {
   std::vector<ItemPair> pairs;
 
   // Private to the tree.
-  std::vector<aabb_tree::NodePair> leaf_pairs;  // nodes that are leaves
+  std::vector<aabb_tree::NodePair> leaf_pairs;  // pairs of leaf nodes
   std::int64_t box_pairs = 0, comparisons = 0;
-  std::size_t first = 0;  // where its pairs go
+  std::size_t first = 0;  // position of its pairs in the whole result
 
   void clear() {
     pairs.clear();
@@ -69,34 +69,34 @@ struct PairPart {
   }
 };
 
-/// The result of a query for pairs. Reuse it, and queries allocate nothing once it has grown.
+/// The result of a query for pairs. Reuse it: queries do not allocate once it has grown.
 struct PairSearch {
   std::vector<ItemPair> pairs;
   std::int64_t num_box_pairs = 0;  // boxes compared with boxes, by six comparisons at most [1]
 
-  bool counts_comparisons = false;   // set it to have them counted, which is slower
-  std::int64_t num_comparisons = 0;  // of numbers, for the boxes compared [1]
+  bool counts_comparisons = false;   // set it to count comparisons, which is slower
+  std::int64_t num_comparisons = 0;  // number comparisons in box tests [1]
 
   std::vector<PairPart> parts;  // private to the tree
 };
 
 class AabbTree {
  public:
-  /// What an item hangs on, such as a triangle's vertices: a query on the tree itself does not report pairs
-  /// of items that have a key in common. Items without: kNoKeys.
+  /// Shared features of items, such as a triangle's vertices: a query of the tree with itself does not report
+  /// pairs of items with a common key. Items without keys: kNoKeys.
   using Keys = std::array<int, 3>;
   static constexpr Keys kNoKeys = {-1, -1, -1};
 
-  /// What refit() and queries look at: everything, or what hangs on marked items alone.
+  /// The items that refit() and queries process: all, or only marked ones.
   enum class Extent { all, marked };
 
   /// Builds the tree over `boxes` (num_items), split at medians. `keys` is (num_items) or empty.
   void build(const std::vector<Aabb>& boxes, const std::vector<Keys>& keys, JobSystem& jobs);
 
-  /// Fits the tree to boxes that have moved: box_of(item) gives an item's box, an Aabb or a MovingAabb.
-  /// Pairs that are looked for in trees of which both were last fitted to moving boxes are those that may
-  /// meet; in all others, those that overlap where they are.
-  /// Where only marked items are looked at, the others must be as they were at the last time.
+  /// Refits the tree to moved boxes: box_of(item) returns an item's box, an Aabb or a MovingAabb.
+  /// If both trees of a query were last fitted to moving boxes, it returns the pairs that may meet; otherwise
+  /// the pairs that overlap at present.
+  /// With Extent::marked, the boxes of all other items must be unchanged since the last time.
   template <class BoxOf>
   void refit(const BoxOf& box_of, JobSystem& jobs, Extent extent = Extent::all) {
     moves_ = std::is_same_v<decltype(box_of(0)), MovingAabb>;
@@ -118,22 +118,22 @@ class AabbTree {
 
   int num_items() const { return num_items_; }
 
-  /// The surface of all nodes over what it was when the tree was built: about 1 while it fits, and the more
-  /// above, the more boxes a query has to look at. 2 is a good moment to build anew.
+  /// The total surface area of all nodes, relative to that after the build: about 1 for a tight tree. The
+  /// larger it is, the more boxes a query tests. 2 is a good value for a rebuild.
   double looseness() const;
 
-  /// All pairs of items whose boxes overlap and that share no key, each once with a < b. To the extent of
-  /// marked items: all pairs that have one, and perhaps others.
+  /// All pairs of items whose boxes overlap and that share no key, each once with a < b. With Extent::marked:
+  /// all pairs with a marked item, and perhaps others.
   void find_self_pairs(JobSystem& jobs, PairSearch& search, Extent extent = Extent::all) const;
 
   /// All pairs of an item a of this tree and an item b of another one whose boxes overlap, whatever their
-  /// keys. To the extent of marked items, for which both trees must be marked, as above.
+  /// keys. With Extent::marked, for which both trees must be marked, as above.
   void find_pairs(const AabbTree& other, JobSystem& jobs, PairSearch& search,
                   Extent extent = Extent::all) const;
 
-  /// The same queries in parts, each for itself and on any thread, for pairs that need not all be kept:
-  /// together the parts from 0 to before num_self_parts(), or num_parts_with(other), find what the whole
-  /// query finds.
+  /// The same queries in independent parts, on any thread, for callers that need not keep all pairs: the
+  /// parts in [0, num_self_parts()), or [0, num_parts_with(other)), together find the pairs of the whole
+  /// query.
   int num_self_parts() const;
   void find_self_part(int part, Extent extent, PairPart& found) const;
   int num_parts_with(const AabbTree& other) const;
@@ -145,8 +145,8 @@ class AabbTree {
     descend([&](const Aabb& node) { return node.overlaps(box); }, always_left_first, visit);
   }
 
-  /// Calls visit(item) for all items whose boxes the ray may meet: { origin + t direction : 0 <= t <= max_t
-  /// }. visit returns the t beyond which it wants to hear no more (max_t to hear all).
+  /// Calls visit(item) for all items whose boxes the ray may meet:
+  /// { origin + t direction : 0 <= t <= max_t }. visit returns the new limit of t (max_t to visit all).
   template <class Visit>
   void for_each_along_ray(const Vec3& origin, const Vec3& direction, double max_t, const Visit& visit) const {
     double reach = max_t;
@@ -154,8 +154,8 @@ class AabbTree {
             [&](int item) { reach = std::min(reach, visit(item)); });
   }
 
-  /// The item nearest to p, or -1 if none is nearer than `max_distance_sq`: distance_sq(item) gives an item's
-  /// own squared distance, at least that of its box. Of equally near ones the lowest item.
+  /// The item nearest to p, or -1 if none is nearer than `max_distance_sq`: distance_sq(item) returns an
+  /// item's squared distance, at least that of its box. Of equally near items, the lowest one.
   template <class DistanceSq>
   int find_nearest(const Vec3& p, double max_distance_sq, const DistanceSq& distance_sq) const {
     int nearest = -1;
@@ -196,8 +196,8 @@ class AabbTree {
 
   static bool meets_ray(const Aabb& box, const Vec3& origin, const Vec3& direction, double max_t);
 
-  /// Visits the items whose boxes, and all boxes above them, are wanted; of two parts the left one first
-  /// where is_left_first(left box, right box) says so.
+  /// Visits the items for which IsWanted accepts their box and all boxes above it; the left child first where
+  /// is_left_first(left box, right box) returns true.
   template <class IsWanted, class IsLeftFirst, class Visit>
   void descend(const IsWanted& is_wanted, const IsLeftFirst& is_left_first, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -280,8 +280,8 @@ class AabbTree {
   bool moves_ = false;  // fitted to moving boxes
   std::vector<aabb_tree::LeafWays> leaf_ways_;
   std::vector<Aabb> node_ways_;
-  std::vector<char> is_marked_;  // (nodes) whether a marked item is below
-  std::vector<int> starts_;  // nodes side by side that hold everything: parts that can be dealt with at once
+  std::vector<char> is_marked_;    // (nodes) a marked item is below
+  std::vector<int> starts_;        // roots of disjoint subtrees that cover all items, for parallel refits
   std::vector<int> start_ends_;    // one past the last node below each
   std::vector<int> above_starts_;  // all nodes above them, ascending
 };

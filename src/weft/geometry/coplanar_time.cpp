@@ -12,7 +12,7 @@ struct Cubic {
   double at(double t) const { return a + t * (b + t * (c + t * d)); }
 };
 
-/// V(t), from the edges' motions.
+/// V(t), from the motions of the edges.
 Cubic volume(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end) {
   Vec3 p[3], v[3];
   for (int k = 0; k < 3; ++k) {
@@ -37,7 +37,7 @@ double bisect(const Cubic& f, double low, double high) {
 
 std::optional<double> find_coplanar_time(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end) {
   const Cubic f = volume(start, end);
-  // Between these times it only rises or only falls: f' = b + 2 c t + 3 d t².
+  // Between these times it is monotonic: f' = b + 2 c t + 3 d t².
   std::array<double, 4> times = {0, 1, 1, 1};
   const double root_sq = f.c * f.c - 3 * f.b * f.d;
   if (root_sq > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-/// When four moving points come to lie in one plane.
+/// The time at which four moving points become coplanar.
 
 #include <array>
 #include <optional>
@@ -13,9 +13,9 @@ namespace weft::engine {
 ///
 ///     V(t) = (x₁ − x₀) × (x₂ − x₀) · (x₃ − x₀),
 ///
-/// a cubic in t, changes its sign; nothing if it never does. A vertex that goes through a triangle, and an
-/// edge that goes through another, do so at such a time (Provot 1997); where the points are then tells
-/// whether they really meet. Found by bisection between the cubic's extremes, to 1e-9.
+/// a cubic in t, changes its sign; empty if it never does. A vertex that passes through a triangle, and an
+/// edge that passes through another, do so at such a time (Provot 1997); the positions at that time decide
+/// whether they really meet. Bisection between the cubic's extrema, to 1e-9.
 std::optional<double> find_coplanar_time(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end);
 
 }  // namespace weft::engine

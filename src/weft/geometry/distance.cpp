@@ -14,7 +14,7 @@ Vec3 edge_weights(int from, double t) {
 
 SegmentTriangleDistance segment_triangle_distance(const Vec3& p0, const Vec3& p1, const Vec3& a,
                                                   const Vec3& b, const Vec3& c) {
-  // From a on, so that far from the origin no digits are lost.
+  // Relative to a, to keep all digits far from the origin.
   const Vec3 x[4] = {Vec3::Zero(), b - a, c - a, Vec3::Zero()};
   const Vec3 start = p0 - a, end = p1 - a, along = p1 - p0;
   SegmentTriangleDistance best{std::numeric_limits<double>::infinity(), 0, Vec3::UnitX()};
@@ -26,15 +26,15 @@ SegmentTriangleDistance segment_triangle_distance(const Vec3& p0, const Vec3& p1
     consider({d.distance_sq, s, d.weights});
   };
 
-  // Closest is an end of the segment, a side of the triangle ...
+  // The closest point is an end of the segment, a side of the triangle ...
   consider_point(0, start);
   consider_point(1, end);
   for (int i = 0; i < 3; ++i) {
     const EdgeEdgeDistance d = edge_edge_distance(start, end, x[i], x[i + 1]);
     consider({d.distance_sq, d.s, edge_weights(i, d.t)});
   }
-  // ... or where the segment goes through the face. Of a needle's normal only the part across its longest
-  // side is worth anything; and the segment's point is improved by seeing it from the triangle's.
+  // ... or the intersection of the segment with the face. For a needle triangle only the component of the
+  // normal across its longest side is accurate; the segment's point is refined from the triangle's point.
   const Vec3 sides[3] = {x[1], x[2] - x[1], x[2]};
   const Vec3* longest = std::max_element(
       sides, sides + 3, [](const Vec3& u, const Vec3& v) { return u.squaredNorm() < v.squaredNorm(); });

@@ -1,6 +1,6 @@
 #pragma once
-/// Distances between the features of triangle meshes: which points are closest, and where on each feature
-/// they lie.
+/// Distances between the features of triangle meshes: the closest points, and their positions on each
+/// feature.
 ///
 ///               p                            a1
 ///               |\                            \        b1
@@ -15,17 +15,15 @@
 /// one feature count positive and those of the other negative, and n be the unit vector from the second
 /// feature's closest point to the first's. Then, as long as d > 0,
 ///
-///     d = n · Σ w_i x_i,     ∂d/∂x_i = w_i n     (the weights change too, but to first order without
-///     effect).
+///     d = n · Σ w_i x_i,     ∂d/∂x_i = w_i n     (changes of the weights have no effect to first order)
 ///
 ///     point–triangle:  d = |p − q|,      w = (1; −w0, −w1, −w2)
 ///     edge–edge:       d = |q_a − q_b|,  w = (1−s, s; −(1−t), −t)
 ///
-/// Everything is for finite coordinates of any size from 1e-60 to 1e60, and for features of any shape: edges
-/// of no length, triangles of no area, parallel edges. The answer is always a pair of points on the two
-/// features, the squared distance is that pair's, and their distance is the smallest to within
-/// kDistanceTolerance times the largest distance between any two of the corners. Where several pairs are
-/// closest, it is one of them.
+/// Valid for finite coordinates of any size from 1e-60 to 1e60, and for features of any shape: zero-length
+/// edges, zero-area triangles, parallel edges. The result is always a pair of points on the two features,
+/// with their squared distance. Their distance is the smallest to within kDistanceTolerance times the largest
+/// distance between any two of the corners. Where several pairs are closest, it is one of them.
 
 #include <algorithm>
 #include <cmath>
@@ -36,12 +34,12 @@
 
 namespace weft::engine {
 
-inline constexpr double kDistanceTolerance = 1e-14;  // some forty roundings of a double [1]
+inline constexpr double kDistanceTolerance = 1e-14;  // about forty roundings of a double [1]
 
-/// Where on an edge: at its first end, at its second, or between.
+/// Position on an edge: at its first end, at its second, or between.
 enum class EdgeRegion : std::uint8_t { start, end, interior };
 
-/// Where on a triangle: whose Voronoi region the other point lies in.
+/// Position on a triangle: the Voronoi region that contains the other point.
 enum class TriangleRegion : std::uint8_t { vertex_0, vertex_1, vertex_2, edge_01, edge_12, edge_20, face };
 
 struct PointSegmentDistance {
@@ -71,7 +69,7 @@ struct EdgeEdgeDistance {
 };
 
 struct SegmentTriangleDistance {
-  double distance_sq;  // exactly 0 where they cross [m²]
+  double distance_sq;  // exactly 0 where they intersect [m²]
   double s;            // (1 − s) p0 + s p1 [1]
   Vec3 weights;        // of the triangle's corners [1]
 
@@ -83,7 +81,7 @@ inline Vec3 point_at(const Vec3& weights, const Vec3& a, const Vec3& b, const Ve
   return weights[0] * a + weights[1] * b + weights[2] * c;
 }
 
-/// The segment p0–p1 and the triangle abc.
+/// Distance between the segment p0–p1 and the triangle abc.
 SegmentTriangleDistance segment_triangle_distance(const Vec3& p0, const Vec3& p1, const Vec3& a,
                                                   const Vec3& b, const Vec3& c);
 
@@ -91,20 +89,20 @@ namespace detail {
 
 inline double clamp_01(double x) { return std::min(std::max(x, 0.0), 1.0); }
 
-/// 1/x, or 0 where x is the square of no length at all.
+/// 1/x, or 0 if x is the square of a zero length.
 inline double inverse_or_zero(double x) { return x < std::numeric_limits<double>::min() ? 0.0 : 1 / x; }
 
 inline EdgeRegion edge_region(double t) {
   return t <= 0 ? EdgeRegion::start : t >= 1 ? EdgeRegion::end : EdgeRegion::interior;
 }
 
-/// Closest point of an edge e, from its start's offset to the point.
+/// Closest point of an edge e, from the point's offset to the edge's start.
 inline PointSegmentDistance offset_edge_distance(const Vec3& offset, const Vec3& e, double length_sq) {
   const double t = clamp_01(offset.dot(e) * inverse_or_zero(length_sq));
   return {(offset - t * e).squaredNorm(), t, edge_region(t)};
 }
 
-/// The nearest of the three edges' points, for p whose projection is not on the triangle.
+/// The nearest point of the three edges, for p whose projection is not on the triangle.
 inline PointTriangleDistance point_triangle_edges(const Vec3 (&to_p)[3], const Vec3 (&e)[3],
                                                   const Vec3& length_sq) {
   const PointSegmentDistance on[3] = {offset_edge_distance(to_p[0], e[0], length_sq[0]),
@@ -124,21 +122,21 @@ inline PointTriangleDistance point_triangle_edges(const Vec3 (&to_p)[3], const V
 
 }  // namespace detail
 
-/// The point p and the segment a–b.
+/// Distance between the point p and the segment a–b.
 inline PointSegmentDistance point_segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 e = b - a;
   return detail::offset_edge_distance(p - a, e, e.squaredNorm());
 }
 
-/// The point p and the triangle abc.
+/// Distance between the point p and the triangle abc.
 ///
-/// The areas that p's projection spans with the edges are the weights: all positive, it is on the face;
-/// otherwise the closest point is on an edge. A needle's areas leave the place along it uncertain, but not
-/// that across, so a projection onto the longest edge follows. Where that leads to a side, and on the
-/// thinnest triangles, an edge may be closer after all.
+/// The weights are the areas that p's projection spans with the edges. If all are positive, it is on the
+/// face; otherwise the closest point is on an edge. On a needle triangle the areas determine the position
+/// across it well, but not along it, so a projection onto the longest edge follows. If that ends at a side,
+/// and on the thinnest triangles, an edge may still be closer.
 inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b,
                                                      const Vec3& c) {
-  constexpr double kThinSq = 1e-12;  // of height over length: from there the areas may be all rounding
+  constexpr double kThinSq = 1e-12;  // height over length: below, the areas may be rounding only
   const Vec3 e[3] = {b - a, c - b, a - c};
   const Vec3 to_p[3] = {p - a, p - b, p - c};
   const Vec3 length_sq(e[0].squaredNorm(), e[1].squaredNorm(), e[2].squaredNorm());
@@ -151,7 +149,7 @@ inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& 
   i = length_sq[2] > length_sq[i] ? 2 : i;
   const int j = i == 2 ? 0 : i + 1;
   const int k = 3 - i - j;
-  // p − q = (p − x_i) − w_j (x_j − x_i) − w_k (x_k − x_i), then q moves along x_j − x_i, not past the sides.
+  // p − q = (p − x_i) − w_j (x_j − x_i) − w_k (x_k − x_i), then q moves along x_j − x_i, within the sides.
   const Vec3 rest = to_p[i] - w[j] * e[i] + w[k] * e[k];
   const double move = rest.dot(e[i]) / length_sq[i];
   const bool stays_inside = move >= -w[j] && move <= w[i];
@@ -164,13 +162,13 @@ inline PointTriangleDistance point_triangle_distance(const Vec3& p, const Vec3& 
   return edge.distance_sq < face.distance_sq ? edge : face;
 }
 
-/// The edges a0–a1 and b0–b1. Of parallel edges side by side, the points are the middle of where they
-/// overlap.
+/// Distance between the edges a0–a1 and b0–b1. For parallel edges that overlap, the points are the middle of
+/// the overlap.
 ///
-/// s is where the lines come closest; projecting there and back gives t and s on the edges themselves.
-/// Between almost parallel edges s is uncertain, but the distance then hardly depends on it.
+/// s is the closest point of the lines; projecting there and back gives t and s on the edges themselves. For
+/// almost parallel edges s is uncertain, but then the distance hardly depends on it.
 inline EdgeEdgeDistance edge_edge_distance(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
-  constexpr double kParallelSq = 4e-30;  // of the angle's sine: closer to parallel there is only rounding
+  constexpr double kParallelSq = 4e-30;  // sin² of the angle: below, only rounding is left
   const Vec3 u = a1 - a0, v = b1 - b0, r = b0 - a0;
   const double uu = u.squaredNorm(), vv = v.squaredNorm();
   const double inv_uu = detail::inverse_or_zero(uu), inv_vv = detail::inverse_or_zero(vv);

@@ -14,7 +14,7 @@ Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
   return length > 0 ? Vec3(v / length) : otherwise;
 }
 
-/// Up, made perpendicular to the axis; x for an upright axis; up for none.
+/// Up, made perpendicular to the axis; x for an upright axis; up for a zero axis.
 Vec3 across(const Vec3& axis) {
   const double length_sq = axis.squaredNorm();
   if (length_sq == 0) return Vec3::UnitY();
@@ -24,7 +24,7 @@ Vec3 across(const Vec3& axis) {
 
 // --- Boxes, in their own frame: the box is |p_k| <= h_k. ---
 
-/// Signed distance to the box: max_k |p_k| − h_k inside, the length of what is beyond h outside.
+/// Signed distance to the box: max_k |p_k| − h_k inside, the length of the excess over h outside.
 double box_distance(const Vec3& p, const Vec3& h) {
   const Vec3 beyond = p.cwiseAbs() - h;
   const double deepest = beyond.maxCoeff();
@@ -56,12 +56,12 @@ struct BoxSearch {
   }
 };
 
-/// Where max_k (|p_k| − h_k) is smallest on p + t d, 0 <= t <= 1.
+/// The minimum of max_k (|p_k| − h_k) on p + t d, 0 <= t <= 1.
 ///
 /// It is the larger of two functions, one rising and one falling: max_k (u_k + m_k t) and max_k (v_k − m_k
-/// t), with m = |d|. Of all pairs of lines u_i, v_j the one that meets highest meets as high as the two
-/// functions do: at the mean of u_i and v_j, each weighted by the other's slope. From there follows the
-/// stretch of t where no line is higher.
+/// t), with m = |d|. Of all pairs of lines u_i, v_j the one that meets highest meets at the height where the
+/// two functions do: the mean of u_i and v_j, each weighted by the other's slope. This height gives the
+/// interval of t where no line is higher.
 double deepest_inside(const Vec3& p, const Vec3& d, const Vec3& h) {
   const Vec3 m = d.cwiseAbs();
   Vec3 u, v;
@@ -77,7 +77,7 @@ double deepest_inside(const Vec3& p, const Vec3& d, const Vec3& h) {
       if (slopes > 0) highest = std::max(highest, (u[i] * m[j] + v[j] * m[i]) / slopes);
     }
   }
-  // Rounding must not tip a line that hardly slopes.
+  // Rounding must not tilt a nearly flat line.
   highest += 1e-15 * (p.cwiseAbs() + m + h).maxCoeff();
   double first = 0, last = 1;
   for (int k = 0; k < 3; ++k) {
@@ -88,8 +88,8 @@ double deepest_inside(const Vec3& p, const Vec3& d, const Vec3& h) {
   return 0.5 * (detail::clamp_01(first) + detail::clamp_01(last));
 }
 
-/// Where the squared distance φ = Σ_k max(|p_k| − h_k, 0)² is smallest on p + t d, 0 <= t <= 1. Its slope
-/// rises with t and is linear between the places where the line passes the faces' planes.
+/// The minimum of the squared distance φ = Σ_k max(|p_k| − h_k, 0)² on p + t d, 0 <= t <= 1. Its slope rises
+/// with t and is linear between the points where the line crosses the faces' planes.
 double nearest_outside(const Vec3& p, const Vec3& d, const Vec3& h) {
   const auto slope = [&](double t) {  // half of φ'
     const Vec3 q = p + t * d;
@@ -100,7 +100,7 @@ double nearest_outside(const Vec3& p, const Vec3& d, const Vec3& h) {
   if (slope_high <= 0) return 1;
   for (int k = 0; k < 3; ++k) {
     for (const double face : {-h[k], h[k]}) {
-      const double t = (face - p[k]) / d[k];  // not a number, or infinite, for a line along the face
+      const double t = (face - p[k]) / d[k];  // NaN or infinite for a line along the face
       if (!(t > low && t < high)) continue;
       const double slope_t = slope(t);
       (slope_t < 0 ? low : high) = t;
@@ -112,8 +112,8 @@ double nearest_outside(const Vec3& p, const Vec3& d, const Vec3& h) {
 
 Vec3 mix(const Vec3& w0, const Vec3& w1, double t) { return (1 - t) * w0 + t * w1; }
 
-/// The smallest max_k (|p_k| − h_k): on an edge, on the face where three faces of the box are equally far, or
-/// where the triangle passes the box's middle and no point is deeper than half of the least size.
+/// The minimum of max_k (|p_k| − h_k): on an edge, on the face where three faces of the box are equally far,
+/// or where the triangle passes the box's middle and no point is deeper than half of the least size.
 void search_inside(BoxSearch& search) {
   const auto& [h, x, weights, distance] = search;
   const auto along = [&](const Vec3& w0, const Vec3& w1) {
@@ -133,7 +133,7 @@ void search_inside(BoxSearch& search) {
   for (int k = 0; k < 3; ++k) p[k] = std::copysign(f + h[k], n[k]);
   search.consider(point_triangle_distance(p, x[0], x[1], x[2]).weights);
 
-  // The cut with the middle plane p_k = 0 between the two faces that are closest to each other.
+  // The cut with the middle plane p_k = 0 between the two closest faces.
   int k;
   h.minCoeff(&k);
   Vec3 ends[2];
@@ -162,7 +162,7 @@ void search_outside(BoxSearch& search) {
   if (below.region == TriangleRegion::face) search.consider(below.weights);
 }
 
-/// Of the faces that the deepest point p is equally far from, the one that all corners pass soonest.
+/// Of the faces equally near to the deepest point p, the one that all corners pass soonest.
 Vec3 shortest_way_out(const BoxSearch& search, const Vec3& p) {
   const double tie = 1e-12 * search.h.maxCoeff();
   double shortest = std::numeric_limits<double>::infinity();
@@ -259,7 +259,7 @@ TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, co
                    {to_box * (a - box.center), to_box * (b - box.center), to_box * (c - box.center)}};
   const auto& x = search.x;
   const Vec3& h = search.h;
-  // No point of the triangle is nearer to the middle, along any axis, than its bounds are.
+  // Along any axis, no point of the triangle is nearer to the middle than its bounds.
   const Vec3 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]), high = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
   const double least = box_distance(low.cwiseMax(-high).cwiseMax(0.0), h);
   if (least > reach) return {least, Vec3::UnitX(), Vec3::UnitY()};

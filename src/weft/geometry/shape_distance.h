@@ -2,22 +2,18 @@
 /// Signed distances from points and triangles to the solid shapes of core/shapes.h: negative inside.
 ///
 ///            o-------o             o p                       For a triangle: the smallest signed distance of
-///            all its
-///             \     /              |  distance > 0           points, so that it is negative as soon as a
-///             corner, an
-///              \   /               ^ normal                  edge or the face reaches into the solid. Every
-///              shape
-///          _____\ /______     _____|________                 here is convex, its signed distance then is a
-///          convex
-///         |      o       |   |              |                function, and the smallest is one number.
-///         | distance < 0 |   |              |
+///             \     /              |  distance > 0           all its points, so that it is negative as soon
+///              \   /               ^ normal                  as a corner, an edge or the face reaches into
+///          _____\ /______     _____|________                 the solid. Every shape here is convex, so its
+///         |      o       |   |              |                signed distance is a convex function, and the
+///         | distance < 0 |   |              |                smallest is one number.
 ///
 /// The normal is the gradient of the signed distance at that point: the unit direction out of the solid. For
 /// a triangle with weights w the distance changes with the corners by ∂d/∂x_i = w_i normal.
 ///
-/// Distances are exact to some 1e-14 of the largest length in play (shape, triangle, and how far they are
-/// apart), normals to as much over the distance; where two features are equally near to within rounding, the
-/// normal is that of either.
+/// Distances are accurate to about 1e-14 of the largest length involved (shape, triangle, and distance
+/// between them), normals to that over the distance. Where two features are equally near to within rounding,
+/// the normal is that of either.
 
 #include <limits>
 
@@ -33,25 +29,25 @@ struct SignedDistance {
 
 struct TriangleSignedDistance {
   double distance;  // [m]
-  Vec3 weights;     // of the triangle's deepest point: in [0, 1], sum 1 [1]
+  Vec3 weights;     // of the deepest point: in [0, 1], sum 1 [1]
   Vec3 normal;      // outwards there, unit length [1]
 };
 
-/// Of a point. Where the gradient has no one direction the normal is a fixed one: at a sphere's centre and on
-/// a capsule's axis up, inside a box that of the nearest face (of equally near ones the first, x before y
-/// before z).
+/// Signed distance of a point. Where the gradient is not unique, the normal is fixed: at a sphere's centre
+/// and on a capsule's axis up, inside a box that of the nearest face (of equally near ones the first, x
+/// before y before z).
 SignedDistance signed_distance(const Sphere& sphere, const Vec3& p);
 SignedDistance signed_distance(const Plane& plane, const Vec3& p);
 SignedDistance signed_distance(const Capsule& capsule, const Vec3& p);
 SignedDistance signed_distance(const OrientedBox& box, const Vec3& p);
 
-/// Of the triangle abc, which may be an edge or a point. A caller that has no use for distances above `reach`
-/// [m] says so: where the distance is surely greater, the result is found sooner and is only known to be >
-/// reach. Of several deepest points it is one of them.
+/// Signed distance of the triangle abc, which may be an edge or a point. `reach` [m] is a search limit: if
+/// the distance is surely greater, the search ends early and the result is only guaranteed to be > reach. Of
+/// several deepest points the result is one.
 
 constexpr double kNoReach = std::numeric_limits<double>::infinity();
 
-/// Normal where the centre is on the triangle: the triangle's own (b − a) × (c − a); up where it has no area.
+/// Normal if the centre is on the triangle: the triangle's, (b − a) × (c − a); up if it has no area.
 TriangleSignedDistance signed_distance(const Sphere& sphere, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
@@ -59,23 +55,23 @@ TriangleSignedDistance signed_distance(const Sphere& sphere, const Vec3& a, cons
 TriangleSignedDistance signed_distance(const Plane& plane, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
-/// Normal where the axis goes through the triangle (the distance is −radius): the triangle's own, on the side
-/// of the axis' nearer end, so that it is pushed off the shorter part; some direction across the axis if it
-/// has no area.
+/// Normal if the axis pierces the triangle (the distance is −radius): the triangle's, on the side of the
+/// nearer end of the axis, so that the triangle is pushed off the shorter part; some direction across the
+/// axis if it has no area.
 TriangleSignedDistance signed_distance(const Capsule& capsule, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
-/// Where the triangle meets the box the distance is −(the largest, over the triangle's points, of the
-/// distance to the nearest face), and the normal is that face's. Of faces equally near (a deepest point
-/// inside the triangle or on its edge has two or three), it is the one through which the whole triangle has
-/// the shortest way out.
+/// If the triangle meets the box, the distance is −(the largest, over the triangle's points, of the distance
+/// to the nearest face), and the normal is that face's. Of faces equally near (a deepest point inside the
+/// triangle or on its edge has two or three), it is the one through which the whole triangle has the shortest
+/// way out.
 TriangleSignedDistance signed_distance(const OrientedBox& box, const Vec3& a, const Vec3& b, const Vec3& c,
                                        double reach = kNoReach);
 
-/// How far two axis-aligned boxes, given by their corners, are apart; 0 if they meet [m].
+/// Distance between two axis-aligned boxes, given by their corners; 0 if they meet [m].
 double boxes_distance(const Vec3& min_a, const Vec3& max_a, const Vec3& min_b, const Vec3& max_b);
 
-/// The largest normal · p of all points p of the shape, which lies behind that plane [m].
+/// Support function: the largest normal · p of all points p of the shape [m].
 double support(const Sphere& sphere, const Vec3& normal);
 double support(const Capsule& capsule, const Vec3& normal);
 double support(const OrientedBox& box, const Vec3& normal);

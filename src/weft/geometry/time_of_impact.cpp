@@ -8,7 +8,7 @@ namespace weft::engine {
 namespace {
 
 struct Corners {
-  std::array<Vec3, 4> start, way;  // `way` without what is common to all, which changes no distance
+  std::array<Vec3, 4> start, way;  // `way` without the common motion, which changes no distance
 
   Corners(const std::array<Vec3, 4>& from, const std::array<Vec3, 4>& to) : start(from) {
     Vec3 common = Vec3::Zero();

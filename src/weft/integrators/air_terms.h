@@ -1,10 +1,11 @@
 #pragma once
-/// Private to integrators/: drag and lift of the air (forces/air.h) in the potential of an implicit step.
+/// Private to integrators/: aerodynamic drag and lift (forces/air.h) in the potential of an implicit step.
 ///
 ///     Σ_i 1/(2 rate) (s_i − rate e_i)ᵀ G_i (s_i − rate e_i)
 ///
-/// where e_i is the particle's displacement from where its slip is s_i, and `rate` is by how much velocity
-/// changes with it [1/s]. G_i is a third of the triangles' around it, from the start of the step.
+/// where e_i is the particle's displacement from the position with slip s_i, and `rate` is the derivative of
+/// velocity with respect to it [1/s]. G_i is a third of those of the one-ring's triangles, at the start of
+/// the step.
 
 #include <vector>
 
@@ -16,10 +17,10 @@ namespace weft::engine {
 
 class AirTerms {
  public:
-  /// `state` is that at the start of the step.
+  /// `state` is the state at the start of the step.
   void begin(const ClothModel& model, const Environment& environment, const ClothState& state);
 
-  /// The particle's velocity where its displacement is zero, and how it changes with that.
+  /// Sets each particle's velocity at zero displacement, and its derivative with respect to displacement.
   void set_velocities(const Vec3Array& velocity, double rate);
   void set_still(double rate);
 
@@ -32,7 +33,7 @@ class AirTerms {
   Vec3 force(int i, const Vec3& e) const { return matrix_[i] * (slip_[i] - rate_ * e); }
   Mat3 hessian(int i) const { return rate_ * matrix_[i]; }
 
-  /// The same over particles laid out by `rows`: the value [J]; adds to forces; q += H p, and p·Hp [J].
+  /// The same for particles laid out by `rows`: the value [J]; adds to forces; q += H p, and p·Hp [J].
   double energy(const PaddedRows& rows, const Vec3Array& e) const;
   double linearise(const PaddedRows& rows, const Vec3Array& e, Vec3Array& force) const;
   double add_product(const PaddedRows& rows, const Vec3Array& p, Vec3Array& q) const;

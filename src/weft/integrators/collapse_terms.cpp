@@ -3,7 +3,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kMargin = 1.4;  // narrow triangles: those below so many times kCollapseBegin [1]
+constexpr double kMargin = 1.4;  // narrow triangles are below kCollapseBegin times this [1]
 
 TriangleCorners corners_at(const std::array<int, 3>& at, const Vec3Array& x) {
   return {x.get(at[0]), x.get(at[1]), x.get(at[2])};

@@ -15,14 +15,14 @@
 namespace weft::engine {
 
 /// Σ W over the narrow triangles of the last linearise(): those with W > 0, and those that a Newton step may
-/// narrow so far. All others have W = 0. Positions are laid out by the rows, in floats; the sums are in
-/// doubles, one triangle after the other. The preconditioner needs no change: see CollapseHessian.
+/// narrow that far. All others have W = 0. Positions are floats, laid out by the rows; the sums are doubles,
+/// one triangle after the other. The preconditioner needs no change: see CollapseHessian.
 class CollapseTerms {
  public:
-  /// Forgets the triangles of the step before.
+  /// Discards the triangles of the last step.
   void begin(const ClothModel& model, const PaddedRows& rows);
 
-  /// Finds the narrow triangles; the value [J]; adds the forces, and keeps the Hessian.
+  /// Finds the narrow triangles; returns the value [J]; adds the forces, and stores the Hessian.
   double linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force);
 
   double energy(const Vec3Array& x) const;
@@ -32,7 +32,7 @@ class CollapseTerms {
 
  private:
   struct Narrow {
-    std::array<int, 3> at;  // indices by the rows
+    std::array<int, 3> at;  // indices into the rows
     RestTriangle rest;
   };
   struct Active {

@@ -3,7 +3,7 @@
 namespace weft::engine {
 namespace {
 
-/// External forces, as velocities at the start of the step.
+/// Adds external forces as velocities at the start of the step.
 void add_external(const Environment& environment, double step, ClothState& state) {
   for (std::size_t i = 0; i < environment.acceleration.size(); ++i)
     state.v.set(i, state.v.get(i) + step * environment.acceleration[i]);

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: what several of them need.
+/// Private to integrators/: shared parts.
 
 #include <algorithm>
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace weft::engine {
 
-/// An integrator that knows neither contacts nor other cloths.
+/// An integrator for a single cloth without contacts.
 class ClothIntegrator {
  public:
   virtual ~ClothIntegrator() = default;
@@ -22,11 +22,11 @@ class ClothIntegrator {
                                    JobSystem& jobs, ClothState& state) = 0;
 };
 
-/// Moves each cloth by an integrator of its own.
+/// Advances each cloth by a separate integrator.
 std::unique_ptr<Integrator> make_one_by_one(std::function<std::unique_ptr<ClothIntegrator>()> make);
 
-/// Masses and the weights w_i = 1/(m_i + h² Σ_j k_ij) as the kernels want them; h = 0 gives 1/m_i. Kept while
-/// model and step stay the same.
+/// Masses and the weights w_i = 1/(m_i + h² Σ_j k_ij) in the layout of the kernels; h = 0 gives 1/m_i. Cached
+/// while model and step are unchanged.
 class Weights {
  public:
   void fit(const ClothModel& model, double step);
@@ -40,21 +40,21 @@ class Weights {
   std::vector<float> mass_, weight_;
 };
 
-/// The velocities that take pinned particles to their targets: (target − x)/h. Made before the step, set
+/// The velocities that take pinned particles to their targets: (target − x)/h. Computed before the step, set
 /// after it.
 class PinMotion {
  public:
   void prepare(const PinTargets& pins, double step, const ClothState& state);
   void finish(const PinTargets& pins, ClothState& state) const;
 
-  /// Of each pin, at the end of the step (pins) [m/s].
+  /// Velocity of each pin at the end of the step (pins) [m/s].
   const std::vector<Vec3>& velocity() const { return velocity_; }
 
  private:
   std::vector<Vec3> velocity_;
 };
 
-/// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1. elastic(i) is
+/// The share of a cloth's weight that its springs do not carry, from 0 (it hangs at rest) to 1. elastic(i) is
 /// their force on particle i, zero on pins [N].
 template <class Elastic>
 double free_share(const ClothModel& model, const std::vector<int>& pinned, const Vec3& gravity,
@@ -70,8 +70,7 @@ double free_share(const ClothModel& model, const std::vector<int>& pinned, const
   return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
 }
 
-/// The settings of the fast kernels that follow from model and environment: no gravity, damping as in the
-/// material.
+/// Settings of the fast kernels, from model and environment: no gravity, damping as in the material.
 IncrementSettings make_increment_settings(const ClothModel& model, const Environment& environment,
                                           double step);
 

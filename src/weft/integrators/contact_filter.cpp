@@ -3,7 +3,7 @@
 namespace weft::engine {
 namespace {
 
-/// Normals that differ by less than this from those a particle has already are none of their own [1].
+/// Normals that differ by less than this from a particle's earlier normals are not stored separately [1].
 constexpr double kNewDirection = 0.3;
 
 }  // namespace

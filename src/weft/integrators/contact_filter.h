@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: what a preconditioner that is the same for x, y and z does about contacts.
+/// Private to integrators/: contacts in a preconditioner that is the same for x, y and z.
 
 #include <array>
 #include <memory>
@@ -10,25 +10,25 @@
 
 namespace weft::engine {
 
-/// Contacts are a thousand times stiffer than inertia, but along their normals alone. A scalar matrix stiff
-/// enough for them holds cloth fast along the surface too, where it slides. So there are two,
+/// Contacts are a thousand times stiffer than inertia, but only along their normals. A scalar matrix stiff
+/// enough for them also blocks sliding along the surface. The preconditioner therefore combines two:
 ///
 ///     P⁻¹ = V_stiff + S V_free S,     S = I − Σ n nᵀ
 ///
-/// with contacts in the diagonal of the first and their friction alone in that of the second, which is for
-/// what moves along the surface: n are, of each particle, up to three orthonormal directions in which
-/// contacts hold it. Symmetric and positive definite if the first is.
+/// The first has contacts in its diagonal, the second only their friction, for motion along the surface. n
+/// are, for each particle, up to three orthonormal contact normals. Symmetric and positive definite if the
+/// first is.
 class ContactFilter {
  public:
   void clear();
 
   bool empty() const { return held_.empty(); }
 
-  /// A contact that holds the particle at this index along this unit vector; `size` is that of the arrays.
+  /// Adds a contact on the particle at this index, along this unit vector; `size` is that of the arrays.
   void hold(int at, const Vec3& normal, std::size_t size);
 
-  /// z = P⁻¹ r; stiff(r, jobs, z) and free(r, jobs, z) compute V r and return r·V r. Returns r·z. Of few
-  /// threads each takes one of the two: within them threads have little to do before they must wait.
+  /// z = P⁻¹ r; stiff(r, jobs, z) and free(r, jobs, z) compute V r and return r·V r. Returns r·z. With few
+  /// threads the two run in parallel on one thread each: inside, threads would mostly wait.
   template <class Stiff, class Free>
   double apply(const Stiff& stiff, const Free& free, const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
     if (held_.empty()) return free(r, jobs, z);
@@ -54,7 +54,7 @@ class ContactFilter {
 
  private:
   struct Held {
-    int at = 0;  // index by the rows
+    int at = 0;  // index into the rows
     int num_normals = 0;
     std::array<Vec3, 3> normal;
   };
@@ -65,7 +65,7 @@ class ContactFilter {
   void add_slid(Vec3Array& z) const;
 
   std::vector<Held> held_;
-  std::vector<int> index_;          // (rows) in held_, -1: none
+  std::vector<int> index_;          // (rows) index into held_, -1: none
   Vec3Array along_surface_, slid_;  // S r, S V_free S r
   std::unique_ptr<JobSystem> serial_ = make_serial_jobs();
 };

@@ -46,7 +46,7 @@ void ContactGroups::Parts::sort(const std::vector<int>& group, int num_groups) {
   items.resize(group.size());
   std::vector<int>& next = begin;
   for (std::size_t i = 0; i < group.size(); ++i) items[next[group[i]]++] = static_cast<int>(i);
-  for (int g = num_groups; g > 0; --g) begin[g] = begin[g - 1];  // now next[g] is where g ends
+  for (int g = num_groups; g > 0; --g) begin[g] = begin[g - 1];  // now next[g] is the end of g
   begin[0] = 0;
 }
 

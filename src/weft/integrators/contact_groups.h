@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: which cloths must be solved for together.
+/// Private to integrators/: groups of cloths that are solved together.
 
 #include <span>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace weft::engine {
 
 /// The connected components of cloths under their contacts, in the order of their first cloths. They depend
-/// on what is in contact alone.
+/// on the contacts only.
 class ContactGroups {
  public:
   void find(std::span<const Body> bodies, std::span<const Contact> contacts);
@@ -19,7 +19,7 @@ class ContactGroups {
   std::span<const int> bodies(int group) const { return bodies_of_.part(group); }      // ascending
   std::span<const int> contacts(int group) const { return contacts_of_.part(group); }  // likewise
 
-  /// Numbers of particles through all bodies.
+  /// Particle numbers through all bodies.
   int first_particle(int body) const { return first_particle_[body]; }
   int num_particles() const { return first_particle_.back(); }
   int body_of(int particle) const;
@@ -31,14 +31,14 @@ class ContactGroups {
     std::span<const int> part(int n) const {
       return std::span(items).subspan(begin[n], begin[n + 1] - begin[n]);
     }
-    /// Items by the group of each.
+    /// Sorts items by their group.
     void sort(const std::vector<int>& group, int num_groups);
   };
 
   int root_of(int body) const;
 
   std::vector<int> first_particle_;  // (bodies + 1)
-  std::vector<int> parent_;          // (bodies) the lowest of a group is its root
+  std::vector<int> parent_;          // (bodies) union-find forest: the lowest of a group is its root
   std::vector<int> group_of_body_, group_of_contact_;
   Parts bodies_of_, contacts_of_;
 };

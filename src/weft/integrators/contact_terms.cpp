@@ -7,11 +7,11 @@ namespace weft::engine {
 namespace {
 
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
-constexpr int kGuesses = 2;           // linearisations for which friction goes by guessed forces
-constexpr double kMostOfGuess = 3;    // … and then by no more than so many times as much
-constexpr double kLeastOfSlide = 0.7, kMostOfSlide = 1.5;  // that the next slide is expected to be
-constexpr double kBarely = 0.01;                           // of the gap, that is left between what touches
-constexpr double kFrictionChange = 0.02;                   // of friction's limit, where the solve may stop
+constexpr int kGuesses = 2;           // linearisations with friction from estimated forces
+constexpr double kMostOfGuess = 3;    // … and after them, limit of forces over the estimate
+constexpr double kLeastOfSlide = 0.7, kMostOfSlide = 1.5;  // bounds of the next slide over the last
+constexpr double kBarely = 0.01;                           // of the gap: opening that counts as touching
+constexpr double kFrictionChange = 0.02;                   // tolerance, as a share of the friction limit
 
 }  // namespace
 
@@ -121,9 +121,9 @@ void ContactTerms::find_pushed(std::span<const Positions> x, std::vector<char>& 
   }
 }
 
-/// From where inertia alone has taken the particles: the larger of what stops them, where many contacts bear
-/// the same particle each its share, which is right where weight presses, and of what pressed at the depth so
-/// far, carried along by the surface, which is right where tension does.
+/// Force estimate from the inertial prediction, the larger of two. One is the force that stops the particles,
+/// shared among the contacts that bear the same particle: right under weight. The other is the force at the
+/// depth so far, moved along with the surface: right under tension.
 void ContactTerms::guess(std::span<const Positions> y) {
   gather(y);
   borne_.assign(points_.size(), 0.0);
@@ -141,7 +141,7 @@ void ContactTerms::guess(std::span<const Positions> y) {
     }
     t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * depth_of(t), c.depth_before);
     const Vec3 slide = slide_of(t);
-    // Of mutual contacts both sides are driven alike.
+    // Mutual contacts: both sides are driven alike.
     Vec3 driven = c.is_mutual() ? Vec3(Vec3::Zero()) : driven_;
     driven -= driven.dot(c.normal) * c.normal;
     t.slide = (slide - driven).norm();
@@ -149,10 +149,10 @@ void ContactTerms::guess(std::span<const Positions> y) {
   }
 }
 
-/// µ N over the slide that is expected after the solve. At first that is what friction leaves of inertia's,
-/// but not less than if the velocity at the start went on: of the contacts that carry a sheet those that bear
-/// more must not hold it fast. Then it is the slide so far, and what friction has been too much or too little
-/// for by inertia alone: less would take many linearisations to let go of what sticks.
+/// µ N over the slide expected after the solve. At first that is the inertial slide less the part that
+/// friction stops, but at least the slide at the start velocity: of the contacts that carry a sheet those
+/// with a larger load must not lock. Later it is the slide so far, corrected for the friction error by
+/// inertia only: without the correction, releasing stuck contacts would take many linearisations.
 double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
   const double push =
@@ -186,8 +186,8 @@ void ContactTerms::set_solved(bool is_solved) {
   for (Term& t : terms_) t.contact->is_solved = is_solved;
 }
 
-/// Whether a contact that does not push yet soon will: what lies on a collider, and barely touches it, is
-/// pressed onto it by inertia.
+/// Whether an open contact will soon push: inertia presses cloth that lies on a collider, and barely touches
+/// it, onto that collider.
 bool ContactTerms::will_push(const Term& t, double beyond) {
   const Contact& c = *t.contact;
   return t.guess > 0 && !c.is_mutual() && beyond > -kBarely * c.gap;

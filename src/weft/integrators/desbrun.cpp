@@ -38,7 +38,7 @@ class DesbrunIntegrator final : public ClothIntegrator {
   }
 
  private:
-  /// What the matrix depends on.
+  /// The values that the matrix depends on.
   struct Key {
     std::uint64_t model_id = 0;
     double step = 0, drag = 0;
@@ -46,7 +46,7 @@ class DesbrunIntegrator final : public ClothIntegrator {
     bool operator==(const Key&) const = default;
   };
 
-  /// The matrix's off-diagonal element of a spring, without its sign [kg].
+  /// Magnitude of a spring's off-diagonal matrix element [kg].
   static double coupling(const ClothModel& model, int spring, double step) {
     return step * step * model.stiffness(spring) + step * model.material.damping;
   }
@@ -58,7 +58,7 @@ class DesbrunIntegrator final : public ClothIntegrator {
     is_pinned_.assign(model.num_particles(), 0);
     for (const int i : environment.pins.particle) is_pinned_[i] = 1;
 
-    // Pinned rows become Δv = known; their columns go to the right side. The pattern stays.
+    // Pinned rows become Δv = prescribed; their columns go to the right side. The pattern is unchanged.
     const ClothTopology& topology = *model.topology;
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < model.num_particles(); ++i) {

@@ -10,18 +10,18 @@ namespace {
 /// `reach` is 13.7, half as many at 200 N/m and twice as many at 20000.
 constexpr double kUsualReach = 13.7;
 constexpr double kUsualIterations = 10;
-constexpr double kStiffReach = 70;  // from here on a second Newton step pays
+constexpr double kStiffReach = 70;  // from here on a second Newton step pays off
 
-/// Where the usual iterations are too few (pins in the midst of the cloth, noise), up to this many times as
+/// Where the usual iterations are too few (pins in the middle of the cloth, noise), up to this many times as
 /// many are made, as long as they still lower the potential.
 constexpr int kMostTimes = 4;
 constexpr int kFewest = 5;
 
-/// Many short Newton steps find out what touches, and how it slides, sooner than few long ones.
+/// With many short Newton steps contacts and their slides are found sooner than with few long ones.
 constexpr double kShareInContact = 0.8;  // of the usual iterations, at least …
 constexpr int kFewestInContact = 8;
 
-/// The share of the decrease so far below which an iteration is not worth it [1].
+/// Iterations end below this share of the total decrease so far [1].
 double enough_for(NewtonQuality quality) {
   switch (quality) {
     case NewtonQuality::fast:
@@ -34,7 +34,7 @@ double enough_for(NewtonQuality quality) {
   return 3e-3;
 }
 
-/// Of the usual iterations, so many are always made: near rest little is gained in each, but it adds up.
+/// Minimum share of the usual iterations: near rest each gains little, but the gains add up.
 int fewest_for(NewtonQuality quality, int usual) {
   return quality == NewtonQuality::fast ? (usual + 1) / 2 : (3 * usual + 3) / 4;
 }
@@ -58,7 +58,7 @@ Effort choose_effort(const NewtonSettings& settings, double reach) {
     effort.in_contact = {std::max(settings.iterations, kFewestInContact), 0};
     return effort;
   }
-  // The power 5/16, by square roots: they have the same bits everywhere.
+  // The power 5/16 by square roots: bit-identical on all platforms.
   const double fourth = std::sqrt(std::sqrt(reach / kUsualReach));
   const double usual = std::min(kUsualIterations * fourth * std::sqrt(std::sqrt(fourth)), kMost);
   const int iterations = std::max(static_cast<int>(std::lround(usual)), kFewest);

@@ -29,7 +29,7 @@ void ElementTerms::begin_step(const ClothElements& elements, double step, const 
   damp_bending(elements.damping / step, shape);
 }
 
-/// δeᵀ C δe as three rows, by Cholesky's C = Σ d l lᵀ.
+/// δeᵀ C δe as three rows, by the Cholesky factorisation C = Σ d l lᵀ.
 void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& shape) {
   for (const MembraneElement& m : elements_->membranes) {
     const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, corners_of(m, shape));

@@ -1,9 +1,9 @@
 #pragma once
-/// Private to integrators/: what a cloth's elements add to the incremental potential of implicit Euler.
+/// Private to integrators/: the elements' terms in the incremental potential of implicit Euler.
 ///
 ///     Σ ½ A eᵀ C e + Σ ½ k |c|² (or Σ ½ k θ²) + τ/(2h) Σ (A δeᵀ C δe + k δc²)
 ///
-/// Damping acts on what has changed since the start of the step: δe = B₀ (x − x₀), B₀ the strain's derivative
+/// Damping acts on the change since the start of the step: δe = B₀ (x − x₀), B₀ the strain's derivative
 /// there, and δc = ĉ₀·Σ w (x − x₀), the change of the curvature's length: both are zero for a rigid rotation.
 /// Hinges are damped like stencils, by the change of their angle.
 
@@ -21,28 +21,27 @@ class ElementTerms {
  public:
   using AddBlock = std::function<void(int i, int j, const Mat3& block)>;  // i == j: to the diagonal
 
-  /// Strain and curvature change as they do where the cloth is in `shape`; an integrator of first order may
-  /// take `start`.
+  /// The damping terms are linearised at `shape`; a first-order integrator may pass `start`.
   void begin_step(const ClothElements& elements, double step, const std::vector<Vec3>& start,
                   const std::vector<Vec3>& shape);
 
   double energy(const std::vector<Vec3>& x) const;
 
-  /// Whether a principal stretch is further beyond a strain limit than a solver may leave it.
+  /// Whether a principal stretch exceeds a strain limit by more than the solver's tolerance.
   bool is_beyond_limit(const std::vector<Vec3>& x) const;
   void add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;
 
-  /// The Hessian's blocks, every pair i, j once or more often, in one order only. The stress term as `filter`
-  /// says; of hinges the Gauss–Newton part alone.
+  /// The Hessian's blocks, every pair i, j once or more often, in one order only. `filter` selects the stress
+  /// term; hinges contribute the Gauss–Newton part only.
   void add_hessian(const std::vector<Vec3>& x, StressFilter filter, const AddBlock& add) const;
 
-  /// Every two particles that add_hessian may name, i < j, sorted.
+  /// All particle pairs that add_hessian may use, i < j, sorted.
   static std::vector<std::pair<int, int>> find_pairs(const ClothElements& elements);
 
  private:
-  /// Vertices with weights whose sum, along a direction, is damped: ½ stiffness (direction·Σ w δx)².
+  /// Vertices with weights; their weighted sum along a direction is damped: ½ stiffness (direction·Σ w δx)².
   struct DampedRow {
-    int begin = 0, end = 0;  // in vertex_, weight_
+    int begin = 0, end = 0;  // range of vertex_ and weight_
     double stiffness = 0;
   };
 

@@ -8,7 +8,7 @@
 namespace weft::engine {
 namespace {
 
-/// Share of the stability limit that automatic substeps use: the limit is that of the cloth at rest.
+/// Safety factor on the stability limit for automatic substeps: the limit applies to the cloth at rest.
 constexpr double kSafety = 0.5;
 
 class ExplicitIntegrator final : public ClothIntegrator {
@@ -42,8 +42,8 @@ class ExplicitIntegrator final : public ClothIntegrator {
 }  // namespace
 
 double explicit_step_limit(const ClothModel& model, const Wind& wind) {
-  // Gershgorin bounds the squared frequency by 2 max Σk/m and the damping rate by 2 max Σd/m, so that
-  // h²ω² + 2hγ < 4 is enough for every mode.
+  // Gershgorin bounds the squared frequency by 2 max Σk/m and the damping rate by 2 max Σd/m, so
+  // h²ω² + 2hγ < 4 is sufficient for every mode.
   const double omega_sq = 2 * model.max_stiffness_rate;
   const double gamma = 2 * model.max_damping_rate + wind.drag / model.material.density;
   if (omega_sq == 0 && gamma == 0) return std::numeric_limits<double>::infinity();

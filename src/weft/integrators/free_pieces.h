@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: the pieces of cloth that no pin holds.
+/// Private to integrators/: floating components, the pieces of cloth without pins.
 
 #include <array>
 #include <span>
@@ -11,41 +11,41 @@
 
 namespace weft::engine {
 
-/// Pieces of a cloth that hang together by springs or elements, without a pinned particle among them.
+/// Floating components: pieces of a cloth connected by springs or elements, without a pinned particle.
 class FreePieces {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);
 
   int size() const { return count_; }
-  int piece_of(int particle) const { return piece_.empty() ? -1 : piece_[particle]; }  // -1: it is held
+  int piece_of(int particle) const { return piece_.empty() ? -1 : piece_[particle]; }  // -1: held by a pin
 
  private:
   int count_ = 0;
   std::vector<int> piece_;  // (num_particles) -1: pinned or tied to a pin; empty if there are no free pieces
 };
 
-/// The free pieces of several cloths, joined by the contacts between them: neither springs nor such contacts
-/// move the middle of what nothing else touches, which is how momentum is kept.
+/// The floating components of several cloths, joined by the contacts between them. Neither springs nor such
+/// contacts move the centre of a component that nothing else touches: this conserves momentum.
 class FreeBodies {
  public:
   struct Member {
     const FreePieces* pieces = nullptr;
     const PaddedRows* rows = nullptr;
     const std::vector<float>* weight = nullptr;  // D, laid out by the rows [N/m]
-    bool is_held = false;                        // something outside acts on all of it
+    bool is_held = false;                        // an external force acts on all of it
   };
   void begin(std::span<const Member> members);
 
-  /// A particle of the member of this number.
+  /// A particle of a member.
   struct Place {
     int member = 0, particle = 0;
   };
 
-  /// What a contact does: joins the pieces of its particles if they push each other, else holds them.
+  /// Effect of a contact: joins the pieces of its particles if they push each other, else holds them.
   void release();
   void touch(std::span<const Place> places, bool is_mutual);
 
-  /// Takes from the displacements of each free body their mean, weighted by D (members).
+  /// Subtracts from the displacements of each floating component their mean, weighted by D (members).
   void remove_mean(std::span<Vec3Array* const> displacements);
 
  private:

@@ -34,7 +34,7 @@ void ImplicitCloth::begin(const Body& body, double step, Order order, Keeps keep
   if (order_ == Order::second && state_->history.step == 0) invent_history();
 }
 
-/// Every edge of a triangle is a spring of the topology: the pattern has its block.
+/// Every triangle edge is a spring of the topology, so the pattern has its block.
 void ImplicitCloth::find_triangles() {
   if (topology_ == model_->topology) return;
   topology_ = model_->topology;
@@ -44,7 +44,7 @@ void ImplicitCloth::find_triangles() {
     triangles_.push_back({mesh.triangles[t], make_rest_triangle(mesh, t)});
 }
 
-/// The state at the start of the step, as precisely as it is kept.
+/// The state at the start of the step, in the stored precision.
 void ImplicitCloth::load() {
   static const std::vector<Vec3> kNone;
   const auto copy = [&](const Vec3Array& values, const std::vector<Vec3>& precise, std::vector<Vec3>& to) {
@@ -59,7 +59,7 @@ void ImplicitCloth::load() {
   copy(state_->history.velocity, state_->precise.velocity, before_.velocity);
 }
 
-/// A step of implicit Euler from there [s].
+/// Starts a step of implicit Euler from x and v [s].
 void ImplicitCloth::start_from(const std::vector<Vec3>& x, const std::vector<Vec3>& v, double time) {
   step_ = time;
   start_ = x;
@@ -68,7 +68,7 @@ void ImplicitCloth::start_from(const std::vector<Vec3>& x, const std::vector<Vec
     inertial_[i] = x[i] + time * v[i] + time * time * (environment_->gravity + environment_->external(i));
 }
 
-/// As `newton` has it: of cloth that falls freely as far as nothing carries it.
+/// Initial history, as in `newton`: of cloth in free fall as far as nothing carries it.
 void ImplicitCloth::invent_history() {
   const double step = whole_step_;
   std::vector<Vec3> gradient(before_.x.size(), Vec3::Zero());
@@ -108,7 +108,7 @@ void ImplicitCloth::place_pins() {
   for (std::size_t p = 0; p < pins.particle.size(); ++p) {
     const int i = pins.particle[p];
     placed_[i] = pins.position[p] - state_->origin;
-    if (step_ < whole_step_)  // velocity: its whole way
+    if (step_ < whole_step_)  // velocity: over the whole step
       start_[i] = placed_[i] - step_ / whole_step_ * (placed_[i] - before_.x[i]);
   }
   damped_shape_ = step_ < whole_step_ ? placed_ : start_;
@@ -142,8 +142,8 @@ Vec3 ImplicitCloth::relative_velocity(const Spring& s, const std::vector<Vec3>& 
   return ((x[s.j] - start_[s.j]) - (x[s.i] - start_[s.i])) / step_;
 }
 
-/// Projected damping acts along the spring as it was at the start of the step, or for second order as it is
-/// predicted: the potential stays quadratic.
+/// Projected damping acts along the spring at the start of the step, or for second order along its
+/// prediction: the potential stays quadratic.
 Vec3 ImplicitCloth::damping_force(int k, const Vec3& w) const {
   const double b = model_->damping(k);
   if (model_->material.damping_kind == DampingKind::plain) return plain_damping_force(b, w);
@@ -166,7 +166,7 @@ LimitResponse ImplicitCloth::limit_of(const Spring& s, const std::vector<Vec3>& 
   return limit_response(model_->elements->spring_limit, (x[s.j] - x[s.i]).norm() / s.rest_length - 1);
 }
 
-/// Tension only pulls: positive semidefinite as it is.
+/// Tension-only: positive semidefinite without projection.
 Mat3 ImplicitCloth::limit_jacobian(const Spring& s, const std::vector<Vec3>& x) const {
   const Vec3 d = x[s.j] - x[s.i];
   const LimitResponse r = limit_of(s, x);

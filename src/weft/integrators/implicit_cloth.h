@@ -1,6 +1,6 @@
 #pragma once
-/// Private to integrators/: a cloth in the system that `implicit_euler` solves: its potential but for
-/// contacts, in double precision, and the step from start to state.
+/// Private to integrators/: a cloth in the system that `implicit_euler` solves: its potential without
+/// contacts, in double precision, and the step from start to end state.
 
 #include <functional>
 #include <memory>
@@ -18,36 +18,36 @@ enum class Keeps { floats, doubles };
 
 class ImplicitCloth {
  public:
-  /// Takes the cloth, and is ready for implicit Euler over the step: x is where inertia alone would take it.
+  /// Prepares the cloth for a step of implicit Euler: x is the inertial prediction.
   void begin(const Body& body, double step, Order order, Keeps keeps);
 
-  /// Whether contact took part in the step before.
+  /// Whether contact was active in the last step.
   bool is_first_order() const {
     return state_->history.is_held || (state_->history.step > 0 && state_->history.had_contact);
   }
 
-  /// Makes that BDF2.
+  /// Switches the step to BDF2.
   void begin_second_order();
 
-  /// Where the solve starts; to be called last.
+  /// Sets the start of the solve. Call it last.
   void place_pins();
 
   double energy(const std::vector<Vec3>& x) const;  // [J]
 
-  /// Adds its own gradient at x (num_particles) [N].
+  /// Adds the cloth's gradient at x (num_particles) [N].
   void add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;
 
-  /// Gives its Hessian at x block by block, i < j or i = j; the first num_springs() blocks off the diagonal
-  /// are those of springs, in order. Positive semidefinite where `is_true` is not asked for.
+  /// Passes the Hessian at x block by block, i < j or i = j; the first num_springs() blocks off the diagonal
+  /// are those of springs, in order. Positive semidefinite unless `is_true` is set.
   using AddBlock = std::function<void(int i, int j, const Mat3& block)>;
   using SetSpring = std::function<void(int spring, const Mat3& block)>;
   void add_hessian(const std::vector<Vec3>& x, bool is_true, const AddBlock& add,
                    const SetSpring& set_spring) const;
 
-  /// Pairs of particles besides springs that the Hessian joins.
+  /// Particle pairs besides springs that the Hessian couples.
   std::vector<std::pair<int, int>> find_element_pairs() const;
 
-  /// Whether a stretch is beyond a strain limit.
+  /// Whether a stretch exceeds a strain limit.
   bool is_beyond_limit(const std::vector<Vec3>& x) const;
 
   /// Stores the motion that ends at x.

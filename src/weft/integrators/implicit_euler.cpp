@@ -1,4 +1,4 @@
-/// Implicit Euler with the true forces: the yardstick. Each step minimises the incremental potential
+/// Implicit Euler with the true forces: the reference. Each step minimises the incremental potential
 ///
 ///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + membranes and bending (element_terms.h)
 ///            + Σ A [ψ(σ1) + ψ(σ2)], the triangles' resistance to collapse (forces/collapse.h)
@@ -6,9 +6,9 @@
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
 /// by Newton's method with line search and sparse Cholesky, in double precision. `newton` in double precision
-/// is the same from another start: BDF2 is implicit Euler over T = h/β from x₀ + m s with the velocity
-/// v + m (v − v₋₁), s being the displacement of the step before (newton_kernels.h: β, m). Where the true
-/// Hessian is not positive definite (compressed springs) that of spring_jacobian_clamped takes its place:
+/// is the same from another start: BDF2 is implicit Euler over T = h/β from x₀ + m s with the velocity v + m
+/// (v − v₋₁), s being the displacement of the last step (newton_kernels.h: β, m). Where the true Hessian is
+/// not positive definite (compressed springs), the SPD projection of spring_jacobian_clamped replaces it:
 /// with a line search it needs a third of the iterations that absolute values need (10 against 37 on a
 /// buckling 64 x 64 sheet).
 
@@ -25,19 +25,18 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kArmijo = 1e-4;              // share of the predicted decrease that a step must bring
-constexpr double kSmallestShare = 1e-8;       // of a Newton step that the line search tries
-constexpr double kFinest = 1e-6;              // of the tolerance: no more is asked for strain limits
+constexpr double kArmijo = 1e-4;              // minimum decrease over the predicted one
+constexpr double kSmallestShare = 1e-8;       // smallest share of a Newton step in the line search
+constexpr double kFinest = 1e-6;              // of the tolerance: smallest moves iterated for strain limits
 constexpr double kStickSpeed = 1e-3;          // slower slides count as sticking [m/s]
 constexpr double kReferenceTolerance = 1e-9;  // of `newton` in doubles [m/s]
 
-/// Cloths that contacts join, through a step: they are solved for together. Particles are numbered through
-/// all of them.
+/// Cloths joined by contacts, solved together in a step. Particles are numbered through all of them.
 class ImplicitGroup {
  public:
   explicit ImplicitGroup(const ImplicitEulerSettings& settings) : settings_(settings) {}
 
-  /// Cloths that have begun the step; contacts by the group's numbers.
+  /// The cloths have begun the step; contacts use the group's numbers.
   IntegratorReport advance(std::span<ImplicitCloth* const> cloths, std::vector<Contact>& contacts,
                            Order order, bool tells_forces) {
     cloths_.assign(cloths.begin(), cloths.end());
@@ -68,7 +67,7 @@ class ImplicitGroup {
     parts_.resize(cloths_.size());
   }
 
-  /// BDF2, unless contact takes part in this step or did in the one before (see `newton`).
+  /// BDF2, unless contact is active in this step or was in the last one (see `newton`).
   void begin_second_order() {
     if (std::any_of(cloths_.begin(), cloths_.end(), [](const auto* c) { return c->is_first_order(); })) return;
     x_.clear();
@@ -93,7 +92,7 @@ class ImplicitGroup {
     return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), particle) - first_.begin()) - 1;
   }
 
-  /// A cloth's own part of values.
+  /// A cloth's part of values.
   const std::vector<Vec3>& part_of(const std::vector<Vec3>& values, int cloth) {
     std::vector<Vec3>& part = parts_[cloth];
     part.assign(values.begin() + first_[cloth], values.begin() + first_[cloth + 1]);
@@ -116,7 +115,7 @@ class ImplicitGroup {
 
   using Pair = std::pair<int, int>;
 
-  /// What the lasting part of the pattern is made for.
+  /// Identity of the persistent part of the pattern.
   struct Layout {
     std::vector<std::shared_ptr<const ClothTopology>> topologies;
     std::vector<std::shared_ptr<const ClothElements>> elements;
@@ -124,8 +123,8 @@ class ImplicitGroup {
     bool operator==(const Layout&) const = default;
   };
 
-  /// Makes the matrix hold a block for every spring and for every two particles of a contact, and for no
-  /// others: the order of elimination, and with it rounding, must not depend on contacts of the past.
+  /// Gives the matrix a block for every spring and every particle pair of a contact, and no others: the
+  /// elimination order, and with it rounding, must not depend on past contacts.
   void fit_pattern() {
     Layout layout;
     for (const ImplicitCloth* cloth : cloths_) {
@@ -197,13 +196,13 @@ class ImplicitGroup {
     is_analyzed_ = true;
   }
 
-  /// Where the block of particles i and j is.
+  /// Index of the block of particles i and j.
   int index_of_pair(int i, int j) const {
     const Pair pair = std::minmax(i, j);
     return std::lower_bound(pair_index_.begin(), pair_index_.end(), std::pair(pair, 0))->second;
   }
 
-  /// Newton's method from x_. Afterwards x_ is the minimum, or the best that was found.
+  /// Newton's method from x_. Afterwards x_ is the minimum, or the best point found.
   IntegratorReport minimise() {
     bool use_true_hessian = false;
     for (int iteration = 1; iteration <= settings_.iterations; ++iteration) {
@@ -234,15 +233,14 @@ class ImplicitGroup {
     return energy;
   }
 
-  /// |slide|, rounded off to a parabola where the slide is slower than kStickSpeed: there friction grows with
-  /// it [m].
+  /// |slide|, smoothed to a parabola below kStickSpeed: there friction grows with the slide [m].
   double friction_length(double slide) const {
     const double sticking = kStickSpeed * step_;
     return slide < sticking ? 0.5 * slide * slide / sticking : slide - 0.5 * sticking;
   }
 
-  /// The normal forces that friction goes by: those at x_, taken anew before every Newton iteration. Before
-  /// the first one x_ is still where inertia alone would take it; then the force that stops a lone particle.
+  /// The normal forces of friction: those at x_, updated before every Newton iteration. Before the first one
+  /// x_ is the inertial prediction; then the force that stops a lone particle is used.
   void update_normal_forces(bool first) {
     normal_force_.resize(contacts_->size());
     for (std::size_t n = 0; n < normal_force_.size(); ++n) {
@@ -254,7 +252,7 @@ class ImplicitGroup {
     }
   }
 
-  /// How much of the contact's stiffness a lone stencil's inertia leaves of its force: a/(a + k) for inertia
+  /// The share of the contact's force that remains for a lone stencil with its inertia: a/(a + k) for inertia
   /// a = 1/(h² Σ w²/m).
   double inertia_share(const Contact& c) const {
     double inverse = 0;
@@ -266,7 +264,7 @@ class ImplicitGroup {
     return 1 / (1 + c.stiffness * step_ * step_ * inverse);
   }
 
-  /// On the contact's point at x_.
+  /// Force on the contact's point at x_.
   Vec3 contact_force(std::size_t n) const {
     const Contact& contact = (*contacts_)[n];
     const Vec3 s = contact.slide(x_);
@@ -292,7 +290,7 @@ class ImplicitGroup {
     }
   }
 
-  /// Pinned rows and columns become those of the identity.
+  /// Pinned rows and columns become those of the identity matrix.
   void assemble(bool is_true) {
     std::fill(matrix_.diagonal.begin(), matrix_.diagonal.end(), Mat3::Zero());
     std::fill(matrix_.off_diagonal.begin(), matrix_.off_diagonal.end(), Mat3::Zero());
@@ -338,8 +336,8 @@ class ImplicitGroup {
     }
   }
 
-  /// The contact's push along the normal, and friction across it; a slide that is under way resists only
-  /// sideways.
+  /// The contact's stiffness along the normal, and friction across it; friction of a moving slide has
+  /// stiffness only sideways.
   Mat3 contact_hessian(std::size_t n) const {
     const Contact& contact = (*contacts_)[n];
     const Mat3 normal = contact.normal * contact.normal.transpose();
@@ -351,8 +349,8 @@ class ImplicitGroup {
     return stiffness * normal + contact.friction * normal_force_[n] / std::max(length, sticking) * across;
   }
 
-  /// Newton's direction, with the true Hessian where wanted and possible. False if there is none (not
-  /// finite).
+  /// Newton direction, with the true Hessian where requested and possible. Returns false if there is none
+  /// (not finite).
   bool find_direction(bool try_true_hessian) {
     if (try_true_hessian) assemble(true);
     if (!try_true_hessian || !cholesky_.factorize(matrix_)) {
@@ -365,7 +363,8 @@ class ImplicitGroup {
     return true;
   }
 
-  /// Goes along direction_ as far as the energy falls enough; returns the share gone, 0 if it does not fall.
+  /// Backtracking line search along direction_; returns the accepted share, 0 if the energy does not
+  /// decrease.
   double search_line() {
     const double energy = compute_energy(x_);
     double slope = 0;
@@ -394,9 +393,9 @@ class ImplicitGroup {
   Layout layout_;
   bool is_analyzed_ = false;
   std::vector<Pair> lasting_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
-  std::size_t num_lasting_pairs_ = 0;             // of springs and elements, before those of contacts
-  std::vector<int> first_spring_;                 // (cloths) in the matrix' pairs
-  std::vector<std::pair<Pair, int>> pair_index_;  // of matrix_.pairs, sorted
+  std::size_t num_lasting_pairs_ = 0;             // those of springs and elements, before those of contacts
+  std::vector<int> first_spring_;                 // (cloths) index into the matrix's pairs
+  std::vector<std::pair<Pair, int>> pair_index_;  // into matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;
 
@@ -432,7 +431,7 @@ class ImplicitEulerIntegrator final : public Integrator {
  private:
   IntegratorReport advance_group(int g, std::span<Contact> contacts, const SystemStep& step) {
     std::vector<ImplicitCloth*> members;
-    std::vector<int> shift(groups_.bodies(g).back() + 1);  // from all bodies' numbers to the group's
+    std::vector<int> shift(groups_.bodies(g).back() + 1);  // from numbers of all bodies to the group's
     int size = 0;
     for (const int b : groups_.bodies(g)) {
       members.push_back(&cloths_[b]);
@@ -458,7 +457,7 @@ class ImplicitEulerIntegrator final : public Integrator {
   Keeps keeps_;
   std::vector<ImplicitCloth> cloths_;
   ContactGroups groups_;
-  std::map<int, ImplicitGroup> systems_;  // by their first cloth: patterns are kept while groups stay
+  std::map<int, ImplicitGroup> systems_;  // by first cloth: patterns are kept while groups stay
 };
 
 }  // namespace

@@ -1,15 +1,13 @@
 #pragma once
-/// Time integration: the one narrow interface, and the family behind it.
+/// Time integration: the common interface, and its implementations.
 ///
-///   explicit        semi-implicit Euler, v' = v + h F/m, x' = x + h v', cut into stable substeps
+///   explicit        semi-implicit Euler, v' = v + h F/m, x' = x + h v', in stable substeps
 ///   paper           Eq. 16 of the paper as printed: two Jacobi sweeps instead of a linear solve
 ///   paper_fixed     the same with gravity outside the filter, h·H·v kept, and pinned neighbours prescribed
 ///   desbrun         Eq. 12 with h·H·v: implicit Euler with a constant approximate Jacobian, solved exactly
 ///   implicit_euler  implicit Euler with the true Jacobian, Newton's method to a tolerance: slow and right
-///   newton          BDF2, one Newton step, conjugate gradients with a multigrid preconditioner: fast and
-///   right
-///   xpbd            many small substeps, each one pass over the springs one after the other: what most
-///   engines do
+///   newton          BDF2, one Newton step, multigrid-preconditioned conjugate gradients: fast and right
+///   xpbd            many small substeps, each one Gauss–Seidel pass over the springs, as in most engines
 
 #include <memory>
 #include <optional>
@@ -28,13 +26,13 @@
 
 namespace weft::engine {
 
-/// Particles whose motion is prescribed, and where they are at the end of the step.
+/// Particles with prescribed motion, and their positions at the end of the step.
 struct PinTargets {
   std::vector<int> particle;   // ascending
   std::vector<Vec3> position;  // in the world [m]
 };
 
-/// What acts on a cloth from outside during a step.
+/// External influences on a cloth during a step.
 struct Environment {
   Vec3 gravity = {0, -9.81, 0};  // [m/s²]
   double time = 0;               // at the end of the step [s]
@@ -56,44 +54,44 @@ struct Body {
 
 struct SystemStep {
   double step = 0;                    // [s]
-  bool tells_contact_forces = false;  // whether Contact::force is wanted
+  bool tells_contact_forces = false;  // computes Contact::force
   WorkClock* clock = nullptr;         // of the whole step; null: not measured
 };
 
 /// Adds a count to a sum; both may be empty.
 void add_count(const std::optional<int>& count, std::optional<int>& sum);
 
-/// What one call of advance() has to tell.
+/// Result of one call of advance().
 struct IntegratorReport {
-  bool converged = true;                 // false: the result is finite, but less exact than asked for
-  int unconverged = -1;                  // the first cloth of which that is so
+  bool converged = true;                 // false: the result is finite, but misses the tolerance
+  int unconverged = -1;                  // the first cloth that did not converge
   int iterations = 0;                    // of the nonlinear solver, summed [1]
   std::optional<int> linear_iterations;  // of the linear solver inside it, summed [1]
-  std::optional<int> guard_events;       // how often the guard stepped in: see newton [1]
+  std::optional<int> guard_events;       // number of guard interventions: see newton [1]
 
   /// Adds the report of other cloths, of which `cloth` is the first.
   void include(const IntegratorReport& other, int cloth);
 };
 
-/// Moves all cloths of a world together. The result depends on the arguments alone; what an integrator keeps
-/// between calls only saves time.
+/// Advances all cloths of a world together. The result depends on the arguments only; state that an
+/// integrator keeps between calls only saves time.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Into how many equal substeps a step must be cut for a cloth, each with its own contact response [1].
+  /// Number of equal substeps that a cloth's step requires, each with separate contact response [1].
   virtual int num_substeps(const ClothModel&, const Environment&, double /*step*/) const { return 1; }
 
-  /// Whether advance() resolves contacts; else there are to be none.
+  /// Whether advance() resolves contacts; if not, pass none.
   virtual bool resolves_contacts() const { return false; }
 
-  /// Moves the cloths from t to t + step. Pinned particles end at their targets, with velocity (x' − x)/step.
-  /// Anything may differ from the call before. Cloth that no contact joins to other cloth moves as it would
-  /// alone, bit by bit.
+  /// Advances the cloths from t to t + step. Pinned particles end at their targets, with velocity
+  /// (x' − x)/step. All arguments may differ from the last call. The motion of a cloth that no contact joins
+  /// to other cloth is bit-identical to that of the cloth on its own.
   virtual IntegratorReport advance(std::span<const Body> bodies, std::span<Contact> contacts,
                                    const SystemStep& step, JobSystem& jobs) = 0;
 
-  /// One cloth without contact.
+  /// Advances one cloth without contact.
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) {
     const Body body{&model, &environment, &state};
@@ -101,23 +99,23 @@ class Integrator {
   }
 };
 
-/// Whether the integrator of this name moves a fabric's membranes and bending (ClothModel::elements); the
-/// others know springs alone.
+/// Whether the integrator supports membrane and bending elements (ClothModel::elements); the others support
+/// springs only.
 bool moves_elements(std::string_view integrator);
 
-/// Whether it knows the air's drag and lift (Wind::air); the others know the paper's wind alone.
+/// Whether it supports aerodynamic drag and lift (Wind::air); the others support the paper's wind only.
 bool feels_air(std::string_view integrator);
 
-/// Whether a step of it can be divided where it is too long for an impact (World::set_division).
+/// Whether its steps can be divided where they are too long for an impact (World::set_division).
 bool can_divide_steps(std::string_view integrator);
 
-/// Whether it can work in double precision.
+/// Whether it supports double precision.
 bool has_double_precision(std::string_view integrator);
 
-/// Throws InputError for an unknown name, and for double precision where there is none.
+/// Throws InputError for an unknown name, and for double precision where it is not supported.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);
 
-// The family, one file each.
+// The implementations, one file each.
 std::unique_ptr<Integrator> make_explicit(const ExplicitSettings& settings);
 std::unique_ptr<Integrator> make_paper(const PaperSettings& settings);
 std::unique_ptr<Integrator> make_paper_fixed();
@@ -128,14 +126,14 @@ std::unique_ptr<Integrator> make_newton_in_double();
 std::unique_ptr<Integrator> make_newton(const NewtonSettings& settings);
 std::unique_ptr<Integrator> make_xpbd(const XpbdSettings& settings);
 
-/// The largest step with which `explicit` is sure to be stable near rest [s]; infinite without springs and
-/// damping.
+/// The largest step at which `explicit` is guaranteed to be stable near rest [s]; infinite without springs
+/// and damping.
 double explicit_step_limit(const ClothModel& model, const Wind& wind);
 
 /// The paper's stiffness number a = h² Σ_j k_ij / m_i, its largest value over the cloth [1].
 double compute_stiffness_number(const ClothModel& model, double step);
 
-/// The share of gravity that Eq. 16 lets through where neighbours share a: (1 + 2a)/(1 + a)² [1].
+/// The share of gravity that passes Eq. 16 where neighbours share a: (1 + 2a)/(1 + a)² [1].
 double gravity_factor(double stiffness_number);
 
 }  // namespace weft::engine

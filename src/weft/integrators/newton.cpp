@@ -4,15 +4,15 @@
 ///     E(x) = ½ |x − y|²_D + springs or elements + collapse + dissipation,   D = (β/h)² M + wind,
 ///     y from two past states and gravity
 ///
-/// (forces/potential.h, forces/collapse.h), starting from y: the bulk of the motion is right whatever the
-/// solve does.
+/// (forces/potential.h, forces/collapse.h), starting from y: most of the motion is right even with a poor
+/// solve.
 ///
-/// Cloths that touch each other are solved for together: E is the sum of all, contacts join them, conjugate
-/// gradients have one α and β, and each cloth has its own V-cycle.
+/// Cloths in contact are solved together: E is the sum of all, contacts couple them, conjugate gradients have
+/// one α and β, and each cloth has its own V-cycle.
 ///
-/// The guard: what the quadratic model missed, E − (E₀ − predicted decrease), asks for another Newton step if
-/// it is more than a fifth of E; so does, in stiff cloth, a last Newton step that has still lowered E by a
-/// third; a potential that rises makes the step shorter.
+/// The guard requests another Newton step if the error of the quadratic model, E − (E₀ − predicted decrease),
+/// is more than a fifth of E; for stiff cloth also if the last Newton step lowered E by a third. If the
+/// potential rises, a backtracking line search shortens the step.
 
 #include <algorithm>
 #include <cmath>
@@ -27,20 +27,20 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kMissedShare = 0.2;   // of the energy: if the model missed more, one more Newton step
-constexpr double kFallingShare = 0.5;  // of the energy that is left: likewise if the last step took off more
-constexpr int kFewestStepsInContact = 2;  // the first one knows neither what touches nor how hard
+constexpr double kMissedShare = 0.2;      // of the energy: a larger model error requests one more Newton step
+constexpr double kFallingShare = 0.5;     // of the remaining energy: likewise for a larger last decrease
+constexpr int kFewestStepsInContact = 2;  // the first one has no contacts and contact forces
 constexpr int kMostStepsInContact = 6;
-constexpr int kTimesCoasting = 2;          // as many iterations from x + h v: all of gravity is left to them
-constexpr double kNoise = 1e-9;            // of the decrease: below, iterations in floats only stir rounding
-constexpr int kMostStepsBeyondLimit = 24;  // as long as a stretch is further beyond it than allowed
-constexpr double kLimitFalling = 1e-4;     // … while it still takes so much off the energy
-constexpr int kMaxHalvings = 8;            // of a Newton step after which the potential is higher than before
+constexpr int kTimesCoasting = 2;          // factor on iterations from x + h v, which must add all of gravity
+constexpr double kNoise = 1e-9;            // of the decrease: below, float iterations change only rounding
+constexpr int kMostStepsBeyondLimit = 24;  // while a stretch exceeds the limit by more than allowed
+constexpr double kLimitFalling = 1e-4;     // … and a step still lowers the energy by this share
+constexpr int kMaxHalvings = 8;            // of a Newton step that raises the potential
 
-/// Cloths that contacts join, through a step.
+/// Cloths joined by contacts, in a step.
 class NewtonGroup {
  public:
-  /// Cloths that have begun the step, the numbers of their first particles, and which contacts are theirs.
+  /// The cloths have begun the step. Also takes the numbers of their first particles, and their contacts.
   void begin(std::span<NewtonCloth* const> cloths, std::span<const int> first_particles,
              std::span<Contact> contacts, std::span<const int> which, const SystemStep& step,
              JobSystem& jobs) {
@@ -80,9 +80,9 @@ class NewtonGroup {
   }
 
  private:
-  /// BDF2; implicit Euler while contact takes part in this step or did in the one before, for BDF2 remembers
-  /// velocities from before an impact and would bounce a part of them back. The same for all: what they give
-  /// each other is momentum only if their steps are alike.
+  /// BDF2; implicit Euler while contact is active in this step or was in the last one, because BDF2 uses
+  /// velocities from before an impact and would bounce part of them back. All cloths use the same scheme:
+  /// they exchange momentum correctly only if their steps are alike.
   void predict() {
     bool is_euler =
         std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->is_first_order(); });
@@ -97,9 +97,9 @@ class NewtonGroup {
     for (NewtonCloth* cloth : cloths_) cloth->predict(is_euler, *jobs_);
   }
 
-  /// From y; in contact, and of elements, from where velocities alone lead if the potential is lower there,
-  /// or from there with the mean acceleration of the step before. What lies on something is let fall by y,
-  /// and all that bears would have to be found anew.
+  /// The start is y. In contact, and with elements, it is x + h v if the potential is lower there, or that
+  /// plus the mean acceleration of the last step. The prediction y lets cloth in resting contact fall, and
+  /// all contact forces would have to be found again.
   void choose_start() {
     contacts_.guess(positions());
     coasts_ = false;
@@ -150,7 +150,7 @@ class NewtonGroup {
   /// Newton steps from the start.
   IntegratorReport minimise(const NewtonSettings& settings, const Effort& effort) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
-    int more = 1;  // times as many iterations, where the guard asks for another Newton step
+    int more = 1;  // factor on iterations, where the guard requests another Newton step
     for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(report.iterations == 0);
       if (contacts_.is_active()) asked = std::max(asked, kFewestStepsInContact);
@@ -174,7 +174,7 @@ class NewtonGroup {
           ++asked;
         continue;
       }
-      // The first step's decrease tells nothing: most of it is what the prediction had ignored.
+      // The first step's decrease carries no information: most of it is forces that the prediction ignored.
       const bool is_falling =
           effort.newton_steps > 1 && report.iterations > 0 && before - after > kFallingShare * after + noise_;
       const int most = is_beyond ? kMostStepsBeyondLimit : effort.most_newton_steps;
@@ -187,7 +187,7 @@ class NewtonGroup {
     return report;
   }
 
-  /// Whether all contacts that push are known, hold, and slide as Coulomb says.
+  /// Whether all pushing contacts are included, hold, and slide by Coulomb's law.
   bool is_settled() {
     const ContactTerms::Unrest unrest = contacts_.find_unrest(positions());
     return unrest.lack <= 1 && unrest.friction <= 1;
@@ -198,7 +198,7 @@ class NewtonGroup {
                        [](const NewtonCloth* c) { return c->is_beyond_limit(); });
   }
 
-  /// The potential with its forces and Hessian, and the preconditioners that go with it.
+  /// The potential with its forces and Hessian, and the preconditioners for it.
   double linearise(bool is_first) {
     double energy = 0;
     forces_.clear();
@@ -253,8 +253,8 @@ class NewtonGroup {
     return solve_conjugate_gradients(multiply, precondition, blocks_, settings, *jobs_);
   }
 
-  /// The potential after the given share of the step [J]. What an unfinished solve has moved the middle of
-  /// free bodies by is taken back.
+  /// The potential after the given share of the step [J]. Removes the spurious translation of floating
+  /// components by an unfinished solve.
   double try_step(double share) {
     trials_.clear();
     for (NewtonCloth* cloth : cloths_) {
@@ -279,7 +279,7 @@ class NewtonGroup {
   ContactTerms contacts_;
   FreeBodies bodies_;
   bool coasts_ = false;  // the step started from x + h v
-  double noise_ = 0;     // of energies, from the rounding of positions [J]
+  double noise_ = 0;     // rounding error of energies, from positions [J]
 
   // Work space (cloths).
   std::vector<ContactTerms::Member> members_;

@@ -9,7 +9,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kMuchStiffer = 8;  // a preconditioner that is off by less will do
+constexpr double kMuchStiffer = 8;  // a preconditioner within this factor is good enough
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void NewtonCloth::fit(const ClothModel& model, const PinTargets& pins) {
   key_ = {};
 }
 
-/// The past of cloth that has been moving with its present velocity, and falling freely as far as pins do
+/// Initial history: cloth that has been moving with its present velocity, and in free fall as far as pins do
 /// not hold it: x₋₁ = x − h v + ½ h² a, v₋₁ = v − h a. It halves the error of a plain first step.
 void NewtonCloth::invent_history(JobSystem& jobs) {
   MotionHistory& history = state_->history;
@@ -58,7 +58,7 @@ void NewtonCloth::invent_history(JobSystem& jobs) {
   history.had_contact = false;
 }
 
-/// How much of its weight a cloth's springs leave uncarried, from 0 (it hangs at rest) to 1.
+/// The share of a cloth's weight that its springs do not carry, from 0 (it hangs at rest) to 1.
 double NewtonCloth::free_share(JobSystem& jobs) {
   if (pinned_.empty()) return 1;
   potential_.fit(*model_, 0);
@@ -87,7 +87,7 @@ void NewtonCloth::add_outside(StepScheme& scheme) const {
   scheme.gain = scheme.keep * (time * gravity() + wind * environment_->wind.velocity);
 }
 
-/// External forces, beside gravity: they enter a prediction as it does.
+/// External forces besides gravity: they enter a prediction like gravity.
 void NewtonCloth::add_external(const StepScheme& scheme, ClothState& state, Vec3Array& y) const {
   const std::vector<Vec3>& acceleration = environment_->acceleration;
   const double time = scheme.step / scheme.beta;
@@ -175,8 +175,8 @@ double NewtonCloth::energy_at(const Vec3Array& offset, JobSystem& jobs) {
   return energy + air_.energy(rows_, offset) + collapse_.energy(potential_.positions());
 }
 
-/// What rounding makes of the energy of springs at rest: their ends are known to half a unit in the last
-/// place of the cloth's size.
+/// Rounding error of the energy of springs at rest: their ends are accurate to half a unit in the last place
+/// of the cloth's size.
 double NewtonCloth::energy_noise() const {
   constexpr double kHalfUnit = 6e-8;
   const double size = kHalfUnit * (state_->x.get(0).norm() + 1);
@@ -185,7 +185,7 @@ double NewtonCloth::energy_noise() const {
   return stiffness * size * size;
 }
 
-/// The velocities that go with y, as the potential wants them.
+/// Velocity offset: the velocities at y, in the potential's layout.
 void NewtonCloth::copy_lag() {
   const double time = step_ / scheme_.beta;
   for (std::size_t i = 0; i < state_->v.size(); ++i)
@@ -199,8 +199,8 @@ double NewtonCloth::linearise(JobSystem& jobs) {
   return energy;
 }
 
-/// Where strain limit or stretch curves make cloth stiffer, so they make the preconditioner. At the first
-/// linearisation of a step always: what it was made for in the step before must not show in the result.
+/// Stiffens the preconditioner where strain limits or stretch curves stiffen the cloth. Always at the first
+/// linearisation of a step: the result must not depend on the preconditioner of the last step.
 void NewtonCloth::update_stiffer_couplings(bool is_first, JobSystem& jobs) {
   if (!potential_.stiffens()) return;
   const bool any = potential_.compute_stiffening(stiffer_couplings_);
@@ -213,7 +213,7 @@ void NewtonCloth::update_stiffer_couplings(bool is_first, JobSystem& jobs) {
   has_stiff_springs_ = false;
 }
 
-/// Whether some coupling is several times as stiff as the preconditioner's, or the other way round.
+/// Whether some coupling and that of the preconditioner differ by a factor of more than kMuchStiffer.
 bool NewtonCloth::has_changed_much() const {
   for (std::size_t k = 0; k < stiffer_couplings_.size(); ++k) {
     const double own = model_->elements->couplings.empty() ? model_->stiffness(static_cast<int>(k))

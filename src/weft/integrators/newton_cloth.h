@@ -16,20 +16,20 @@
 
 namespace weft::engine {
 
-/// Its potential but for contacts, the preconditioner that goes with it, and the step from prediction to
-/// state. The functions are to be called in this order.
+/// Its potential without contacts, the preconditioner, and the step from prediction to state. Call the
+/// functions in this order.
 class NewtonCloth {
  public:
-  /// Takes the cloth, and gives it a past if it has none.
+  /// Prepares the cloth for a step, and initialises its history if it has none.
   void begin(const Body& body, const SystemStep& step, JobSystem& jobs);
 
-  /// Whether contact took part in the step before.
+  /// Whether contact was active in the last step.
   bool is_first_order() const { return state_->history.is_held || state_->history.had_contact; }
 
-  /// Where implicit Euler without springs would take it; its state stays as it is.
+  /// Ballistic prediction: implicit Euler without springs. The state is unchanged.
   ContactTerms::Positions place_freely(JobSystem& jobs);
 
-  /// Remembers the mean acceleration of the step before, for coast(). To be called before predict().
+  /// Stores the mean acceleration of the last step, for coast(). Call it before predict().
   void remember_gain();
 
   /// Predicts by BDF2 or implicit Euler. The correction e is zero.
@@ -37,21 +37,20 @@ class NewtonCloth {
 
   bool has_elements() const { return model_->elements != nullptr; }
 
-  /// Puts a start into the trial: where velocities alone lead, x + h v, or they and the cloth's mean
-  /// acceleration in the step before. Green strain's energy is quartic: of what gravity stretches in a step
-  /// beside a pin, one Newton step takes back two thirds alone, and cloth at rest would hang lower the longer
-  /// the step is.
+  /// Sets the trial to an inertial start: x + h v, or the same with the cloth's mean acceleration in the last
+  /// step. Green strain's energy is quartic: of the stretch that gravity causes beside a pin in a step, a
+  /// single Newton step removes only two thirds, and cloth at rest would hang lower the longer the step is.
   void coast(bool accelerates);
 
-  /// At e, or at the trial [J].
+  /// The potential at e, or at the trial [J].
   double energy(JobSystem& jobs) { return energy_at(correction_, jobs); }
   double trial_energy(JobSystem& jobs) { return energy_at(trial_, jobs); }
 
   /// The potential at e [J], with its force and Hessian.
   double linearise(JobSystem& jobs);
 
-  /// Makes the preconditioner go with it. Between the two contacts add what they need to preconditioners();
-  /// `is_active`: whether any pushes anything. `is_first`: linearisation of the step.
+  /// Updates the preconditioner. Between the two calls contacts add their part to preconditioners().
+  /// `is_active`: whether any contact pushes. `is_first`: the first linearisation of the step.
   void begin_preconditioner(bool is_first, bool is_active, JobSystem& jobs);
   ContactTerms::Preconditioners preconditioners() { return {&stiff_diagonal_, &diagonal_, &filter_}; }
   void finish_preconditioner(JobSystem& jobs);
@@ -61,11 +60,11 @@ class NewtonCloth {
   double multiply(JobSystem& jobs);
   double precondition(JobSystem& jobs);
 
-  /// The trial: e and a share of the solution.
+  /// Sets the trial: e plus a share of the solution.
   void try_step(double share, JobSystem& jobs);
   void accept_trial() { std::swap(correction_, trial_); }
 
-  /// Brings pins' forces and products to zero.
+  /// Sets the entries of pins to zero, in forces and products.
   void hold_pins(Vec3Array& field) const {
     for (const int p : pinned_) field.set(rows_.index(p), Vec3::Zero());
   }
@@ -73,7 +72,7 @@ class NewtonCloth {
   /// Stores the corrected motion; `is_pushed`: contact takes part in it.
   void finish(bool is_pushed, JobSystem& jobs);
 
-  /// All forces at e but those of contacts, inertia's too [N].
+  /// All forces at e except contact forces, including inertial ones [N].
   const Vec3Array& find_forces(JobSystem& jobs);
 
   Vec3Array& force() { return force_; }
@@ -87,12 +86,12 @@ class NewtonCloth {
     return {&free_pieces_, &rows_, &potential_.weight, air_.is_active()};
   }
   double reach() const { return step_ * step_ * reach_rate_; }  // see choose_effort() [1]
-  double noise() const { return noise_; }                       // of energies, from rounding [J]
+  double noise() const { return noise_; }                       // rounding error of energies [J]
   bool is_beyond_limit() const { return potential_.is_beyond_limit(); }
   const Vec3& gravity() const { return environment_->gravity; }
 
  private:
-  /// What the matrices depend on.
+  /// The values that the matrices depend on.
   struct Key {
     std::uint64_t model_id = 0;
     double step = 0, beta = 0, drag = 0;
@@ -120,16 +119,16 @@ class NewtonCloth {
   double reach_rate_ = 0;
   Key key_;
   IncrementalPotential potential_;
-  ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // with contacts' friction, with all of them
-  bool has_stiff_springs_ = false;                              // the latter, as they are now
-  ContactFilter filter_;                                        // between them
-  bool is_in_contact_ = false;                                  // the preconditioners know of contacts
+  ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // with friction only, with full contacts
+  bool has_stiff_springs_ = false;                              // stiff_preconditioner_ is up to date
+  ContactFilter filter_;                                        // combines the two
+  bool is_in_contact_ = false;                                  // the preconditioners include contacts
   AirTerms air_;
   CollapseTerms collapse_;
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
-  std::vector<float> least_weight_;               // D for the longest memory [N/m]
+  std::vector<float> least_weight_;               // D for the largest memory [N/m]
   std::vector<double> stiffer_couplings_,
-      built_stiffer_;                   // as they should be, as the preconditioner has them
+      built_stiffer_;                   // present values, and those in the preconditioner
   bool has_stiffer_couplings_ = false;  // in the preconditioner
 
   // The step.
@@ -141,11 +140,11 @@ class NewtonCloth {
   WorkClock* clock_ = nullptr;
   PinMotion pin_motion_;
   double noise_ = 0;
-  Vec3 mean_gain_ = Vec3::Zero();  // of velocity in the step before, no more than gravity's [m/s]
+  Vec3 mean_gain_ = Vec3::Zero();  // of velocity in the last step, at most gravity's [m/s]
   Vec3Array force_, solution_, trial_;
   Vec3Array correction_;  // e = x − y [m]
   CgBlock block_;         // of force_ and solution_
-  ClothState scratch_;    // where the cloth would go without springs
+  ClothState scratch_;    // ballistic prediction
 };
 
 }  // namespace weft::engine

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kGrain = 4096;  // particles per chunk of work
 
-/// body(particle, place, count) for runs of particles that stand side by side in the padded arrays.
+/// body(particle, place, count) for runs of particles that are contiguous in the padded arrays.
 template <class Body>
 void for_runs(JobSystem& jobs, const PaddedRows& rows, const Body& body) {
   if (rows.num_rows == 1) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to integrators/: what `newton` does to each particle before and after its solve.
+/// Private to integrators/: per-particle kernels of `newton` before and after its solve.
 
 #include "weft/core/job_system.h"
 #include "weft/core/padded_rows.h"
@@ -7,25 +7,25 @@
 
 namespace weft::engine {
 
-/// One step of BDF2, or of implicit Euler (memory 0, beta 1), as a prediction without springs:
+/// A step of BDF2, or of implicit Euler (memory 0, beta 1), as a ballistic prediction without springs:
 ///
 ///     v ← keep (v + memory (v − v₋₁)) + gain,   s ← memory s + (h/β) v,   y = x + s
 ///
-/// where s is the displacement of the step. Both are corrected after the solve by its result d:
-/// v += (β/h) d, s += d, x += s. So x never enters a difference, and free fall is exact to rounding.
+/// where s is the displacement of the step. The result d of the solve then corrects both: v += (β/h) d, s +=
+/// d, x += s. So x never enters a difference, and free fall is exact to rounding.
 struct StepScheme {
   double step = 0;           // h [s]
-  double beta = 1;           // β: x'' is taken from (β/h)² (x − …) [1]
-  double memory = 0;         // share of the change of the step before that goes on [1]
-  double keep = 1;           // share of velocity that wind leaves [1]
-  Vec3 gain = Vec3::Zero();  // from gravity and wind [m/s]
+  double beta = 1;           // β: x'' = (β/h)² (x − …) [1]
+  double memory = 0;         // weight of the change in the last step [1]
+  double keep = 1;           // drag factor: share of velocity that wind leaves [1]
+  Vec3 gain = Vec3::Zero();  // velocity gain from gravity and wind [m/s]
 };
 
-/// BDF2 for a step of `step` after one of `step_before`.
+/// BDF2 for a step of size `step` after one of size `step_before`.
 StepScheme make_bdf2(double step, double step_before);
 
-/// Predicts: state.v and the history's displacement become those of the prediction, the history's velocity
-/// the one at the start; y is laid out by `rows`.
+/// Predicts: state.v and the history's displacement become the predicted ones, the history's velocity that at
+/// the start; y is laid out by `rows`.
 void predict(const StepScheme& scheme, const PaddedRows& rows, JobSystem& jobs, ClothState& state,
              Vec3Array& y);
 

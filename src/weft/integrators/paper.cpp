@@ -3,8 +3,8 @@
 ///     Δv_j ≈ h F_j / (m_j + h² Σ_l k_jl)                                        (15)
 ///     Δv_i = (h F_i + h² Σ_j k_ij Δv_j) / (m_i + h² Σ_j k_ij)                    (14, 16)
 ///
-/// No linear system is solved; it is exactly two Jacobi sweeps from Δv = 0 on Eq. 12 without its term h·H·v.
-/// All forces, gravity included, go through this filter, and pinned neighbours count as free ones do.
+/// No linear system is solved: this is exactly two Jacobi sweeps from Δv = 0 on Eq. 12 without its term
+/// h·H·v. All forces, gravity included, go through this filter, and pinned neighbours count as free ones do.
 
 #include "weft/integrators/common.h"
 

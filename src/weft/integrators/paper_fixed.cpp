@@ -1,15 +1,15 @@
-/// Eq. 16 mended, at the same cost. What acts alike on all particles, gravity g and wind, stays outside the
-/// filter (wind implicitly, so that it is stable at any strength):
+/// Eq. 16 with fixes, at the same cost. Forces equal for all particles, gravity g and wind, stay outside the
+/// filter (wind implicitly, for stability at any strength):
 ///
 ///     v' = (v + h g + h r v_wind)/(1 + h r) + w,    r = c_w / density
 ///
-/// and for the rest
+/// and for the other forces
 ///
 ///     w_j ≈ h F̃_j / (m_j + h² Σ_l k_jl),    F̃ = elastic + damping + h Σ_j k_ij (v_j − v_i)
 ///     w_i = (h F̃_i + h² Σ_j k_ij w_j) / (m_i + h² Σ_j k_ij)
 ///
-/// The last term of F̃ is the h·H·v that the paper drops: the scheme's own numerical damping. A pinned
-/// neighbour's Δv is not guessed, for it is known.
+/// The last term of F̃ is the h·H·v that the paper drops: the scheme's own numerical damping. The Δv of a
+/// pinned neighbour is prescribed, not estimated.
 
 #include "weft/integrators/common.h"
 

@@ -6,7 +6,7 @@ namespace weft::engine {
 
 namespace {
 
-/// The particles that each one is coupled to, and how stiffly [N/m].
+/// For each particle the coupled particles, and their coupling [N/m].
 using Lists = std::vector<std::vector<std::pair<int, double>>>;
 
 Lists springs_of_mesh(const ClothModel& model, double step) {
@@ -26,10 +26,10 @@ Lists springs_of_mesh(const ClothModel& model, double step) {
 
 bool has_membranes(const ClothModel& model) { return model.elements && !model.elements->membranes.empty(); }
 
-/// What damping makes of the stiffness of elements.
+/// Factor of damping on the stiffness of elements.
 double stiffening(const ClothElements& elements, double step) { return 1 + elements.damping / step; }
 
-/// Of the elements' couplings, damping included [N/m].
+/// Stiffness of the elements' couplings, damping included [N/m].
 std::vector<double> coupling_stiffness(const ClothElements& elements, double step,
                                        const std::vector<double>& added) {
   std::vector<double> stiffness;
@@ -139,8 +139,8 @@ void ScalarPreconditioner::fill_grid_by_springs(const ClothModel& model, double 
   }
 }
 
-/// Structural springs and diagonals as stiff as they are each; bending springs, which are lumped into the
-/// former, as they are without factors.
+/// Structural springs and diagonals with their individual stiffness; bending springs, which are lumped into
+/// the former, without factors.
 void ScalarPreconditioner::scale_grid_springs(const ClothModel& model, double step,
                                               const std::vector<double>& added) {
   GridLevel& level = grid_.finest();
@@ -178,7 +178,7 @@ void ScalarPreconditioner::fill_grid_by_elements(const ClothElements& elements, 
   }
 }
 
-/// Couplings to pins become part of the other end's diagonal.
+/// Moves couplings to pins into the diagonal of the other end.
 void ScalarPreconditioner::pin_grid() {
   GridLevel& level = grid_.finest();
   const int stride = level.rows.stride();

@@ -13,21 +13,21 @@
 
 namespace weft::engine {
 
-/// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved roughly by one multigrid
-/// V-cycle. Bending springs are not in it: on grids they count as four times their stiffness along the
-/// structural springs, on meshes they are left out. A fabric's elements take the springs' place with their
-/// couplings; low shear, warp and weft, and bending need no other matrix.
+/// D + Σ k (e_i − e_j)(e_i − e_j)ᵀ over the springs, the same for x, y and z, solved approximately by one
+/// multigrid V-cycle. Bending springs are not in it: on grids they count as four times their stiffness along
+/// the structural springs, on meshes they are left out. For fabrics the elements' couplings replace the
+/// springs; low shear, warp and weft, and bending need no other matrix.
 class ScalarPreconditioner {
  public:
   /// Takes springs or elements, with their damping in steps of length `step`. Pinned particles drop out of
-  /// the matrix. `least` is less than any D that will be set, laid out by `rows` [N/m]. set_diagonal() must
-  /// follow. `added` is more stiffness of each of the elements' couplings, on a grid without
-  /// membranes of each spring, or empty [N/m].
+  /// the matrix. `least` is a lower bound for any D that will be set, laid out by `rows` [N/m].
+  /// set_diagonal() must follow. `added` is additional stiffness of each of the elements' couplings, on a
+  /// grid without membranes of each spring, or empty [N/m].
   void set_springs(const ClothModel& model, const PaddedRows& rows, double step,
                    const std::vector<float>& least, const std::vector<int>& pinned,
                    const std::vector<double>& added = {});
 
-  /// Takes D, laid out by `rows` [N/m], and computes all values anew.
+  /// Sets D, laid out by `rows` [N/m], and recomputes all values.
   void set_diagonal(const std::vector<float>& diagonal, JobSystem& jobs);
 
   /// z ≈ A⁻¹ r, zero at pinned particles. Returns r·z.

@@ -1,5 +1,5 @@
-/// XPBD with small steps, as most engines have it: the peer that `newton` is measured against. The method and
-/// its source are in xpbd_projection.h, that of fabrics in xpbd_elements.h.
+/// XPBD with small steps, as in most engines: the baseline for `newton`. xpbd_projection.h describes the
+/// method with its source, xpbd_elements.h that of fabrics.
 
 #include "weft/integrators/common.h"
 #include "weft/integrators/xpbd_projection.h"
@@ -32,7 +32,7 @@ class XpbdIntegrator final : public ClothIntegrator {
   }
 
  private:
-  /// What a projection is made for; numbers may change without a new one.
+  /// Identity of a projection; numbers may change without a new one.
   struct Layout {
     std::shared_ptr<const ClothTopology> topology;
     std::shared_ptr<const ClothElements> elements;
@@ -41,7 +41,7 @@ class XpbdIntegrator final : public ClothIntegrator {
     bool operator==(const Layout&) const = default;
   };
 
-  /// Whether the springs of each kind are all equal, and alone.
+  /// Whether the springs of each kind are all equal, and there are no other forces.
   static bool is_grid_of_equals(const ClothModel& model) {
     return model.has_equal_springs() && !model.elements && !model.material.structural_z &&
            model.material.damping_time == 0;

@@ -72,7 +72,7 @@ void project_stencil(const BendingRows& rows, int row, const Step& step, XpbdPar
   }
 }
 
-/// One whose gradient is worked out for `N` particles.
+/// Projects an element with a given gradient for `N` particles.
 template <std::size_t N>
 void project_scalar(const std::array<int, N>& vertices, const std::array<Vec3, N>& gradient,
                     const Scalar& response, const Step& step, XpbdParticles& particles) {
@@ -93,7 +93,7 @@ void project_hinge(const HingeElement& hinge, const Step& step, XpbdParticles& p
   project_scalar(hinge.vertices, hinge_angle_gradient(x), response, step, particles);
 }
 
-/// Its strain is that of the spring, its energy per rest length.
+/// A spring's strain limit, with the spring's strain and energy per rest length.
 void project_limit(const Spring& spring, const StrainLimit& limit, double h, XpbdParticles& particles) {
   const Vec3 d = particles.position(spring.j) - particles.position(spring.i);
   const double length = d.norm();
@@ -104,7 +104,7 @@ void project_limit(const Spring& spring, const StrainLimit& limit, double h, Xpb
                  {response.tension, response.stiffness / spring.rest_length}, {.h = h}, particles);
 }
 
-/// body(item) for all, a colour after the other.
+/// body(item) for all items, one colour after the other.
 template <class Body>
 void for_colours(const Colours& colours, JobSystem& jobs, const Body& body) {
   for (std::size_t colour = 0; colour + 1 < colours.begin.size(); ++colour) {

@@ -1,18 +1,18 @@
 #pragma once
 /// Private to integrators/: the pass of `xpbd` over a fabric's elements.
 ///
-/// Each element once moves its particles by what its own implicit Euler step would, linearised where they
-/// are; XPBD with one iteration, as for springs, with as many constraints at once as the element has strains.
-/// With B_c = ∂e/∂x_c, r_c the motion of corner c in the substep so far, and τ the fabric's damping time:
+/// Each element is projected once: it moves its particles as a separate implicit Euler step of this element,
+/// linearised at the present positions, would. As for springs this is XPBD with one iteration, with as many
+/// simultaneous constraints as the element has strains. With B_c = ∂e/∂x_c, r_c the motion of corner c in the
+/// substep so far, and τ the fabric's damping time:
 ///
-///     membrane   K = h² A ∂s/∂e,  S = Σ_c B_c B_cᵀ/m_c          e Green strain, s its stress
-///     (forces/membrane.h)
+///     membrane   K = h² A ∂s/∂e,  S = Σ_c B_c B_cᵀ/m_c     e Green strain, s its stress (forces/membrane.h)
 ///                (1 + (1 + τ/h) K S) λ = h² A s + (τ/h) K Σ_c B_c r_c,          x_c −= B_cᵀ λ/m_c
-///     bending    the same with one strain, the length of a stencil's curvature Σ w x (fabric/bending_rows.h)
-///                or a hinge's angle (forces/hinge.h)
+///     bending    the same with one strain: the length of a stencil's curvature Σ w x
+///                (fabric/bending_rows.h), or a hinge's angle (forces/hinge.h)
 ///     limit      of springs (fabric/membrane_law.h), without damping
 ///
-/// The stress term of a membrane's Hessian is left out, as that of springs is.
+/// The stress term of a membrane's Hessian is omitted, like that of springs.
 
 #include <memory>
 
@@ -26,7 +26,7 @@ class XpbdElements {
  public:
   explicit XpbdElements(const ClothModel& model);
 
-  /// Every element once, h = step [s].
+  /// Projects every element once, h = step [s].
   void project(double step, JobSystem& jobs, XpbdParticles& particles) const;
 
  private:

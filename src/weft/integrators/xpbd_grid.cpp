@@ -7,9 +7,9 @@
 ///     8 9 …             pitch: places per row of a plane, ⌈columns/4⌉
 ///
 /// No spring reaches further than two, so all springs of one direction that start in the same plane end in
-/// one other plane, at a constant distance in memory: they are a colour, and need neither gathers nor a lane
-/// left empty. Blocks of rows stay in the cache while all colours pass over them; springs between two blocks
-/// come last.
+/// one other plane, at a constant distance in memory: they form a colour, without gathers or empty SIMD
+/// lanes. Blocks of rows stay in the cache while all colours pass over them; springs between two blocks come
+/// last.
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +30,10 @@ struct Rows {
 
 /// Springs of one colour.
 struct Strip {
-  int from, to;         // the planes' first places; `to` includes the step to the neighbour
+  int from, to;         // first places of the planes; `to` includes the step to the neighbour
   int rows;             // of the plane that have such springs
   bool leaves_row;      // ends a row of the plane further down
-  int columns;          // −1, 0, 1: how many places further, within a row
+  int columns;          // −1, 0, 1: offset in places within a row
   const float* exists;  // 1 where a place of a block has such a spring, 0 beyond the last column
   float stiffness, rest_length;
 };
@@ -79,7 +79,7 @@ WEFT_ALWAYS_INLINE void store_sum(const Rows& a, std::ptrdiff_t i, const Pack3<W
   store(a.z + i, before.z + factor * by.z);
 }
 
-/// W springs, the first from place p to place q.
+/// Projects W springs, the first from place p to place q.
 template <int W, bool kDamped>
 WEFT_ALWAYS_INLINE void project_pack(const GridArrays& a, const SpringNumbers& spring, std::ptrdiff_t p,
                                      std::ptrdiff_t q, const float* exists) {
@@ -98,7 +98,7 @@ WEFT_ALWAYS_INLINE void project_pack(const GridArrays& a, const SpringNumbers& s
   store_sum(a.c, q, cj, 0.0f - mask * wj, by);
 }
 
-/// The springs of a strip that start in places [begin, end) of a block whose first place is `first`.
+/// Projects a strip's springs that start in places [begin, end) of a block whose first place is `first`.
 template <int W, bool kDamped>
 WEFT_ALWAYS_INLINE void project_places(const GridArrays& a, const Strip& strip, const SpringNumbers& spring,
                                        std::ptrdiff_t first, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -132,8 +132,8 @@ WEFT_ALWAYS_INLINE void project_strips(const GridPass& pass, const Block& block)
         std::min(strip.rows, block.leaving || !strip.leaves_row ? block.row_end : block.row_end - 1);
     const SpringNumbers spring{pass.step * pass.step * strip.stiffness, pass.step * pass.damping,
                                strip.rest_length};
-    // Springs that would start at a row's last place, or end before its first, do not exist: at the block's
-    // edge not even their ends may be touched, for they belong to another thread.
+    // Springs that would start at a row's last place, or end before its first, do not exist. At the block's
+    // edge their ends must not be accessed: they belong to another thread.
     const std::ptrdiff_t pitch = pass.arrays.pitch;
     project_places<W, kDamped>(pass.arrays, strip, spring, block.row_begin * pitch,
                                begin * pitch + (strip.columns < 0), end * pitch - (strip.columns > 0));
@@ -204,7 +204,7 @@ class GridProjection final : public ClothProjection {
         model_(topology.spring_model),
         pitch_(divide_up(grid_.num_columns(), kClasses)),
         plane_rows_(divide_up(grid_.num_rows(), kClasses)) {
-    // A multiple of a pack keeps planes aligned; one pack more keeps them out of step with the cache's pages.
+    // A multiple of a pack keeps planes aligned; one more pack avoids cache conflicts at page size.
     plane_pitch_ = round_up_to_pack(pitch_ * plane_rows_) + kPackLanes;
     const std::size_t size = static_cast<std::size_t>(plane_pitch_) * kClasses * kClasses + kPackLanes;
     storage_.assign(kArrays * size + kPackLanes, 0.0f);
@@ -284,7 +284,7 @@ class GridProjection final : public ClothProjection {
     rows.z[at] = static_cast<float>(value.z());
   }
 
-  /// Of column i of row j.
+  /// The place of column i of row j.
   int place(int i, int j) const {
     const int plane = kClasses * (j % kClasses) + i % kClasses;
     return plane * plane_pitch_ + j / kClasses * pitch_ + i / kClasses;
@@ -293,7 +293,7 @@ class GridProjection final : public ClothProjection {
     return place(particle % grid_.num_columns(), particle / grid_.num_columns());
   }
 
-  /// body(first particle, its place) for the rows of the grid.
+  /// body(first particle, its place) for each row of the grid.
   template <class Body>
   void for_rows(JobSystem& jobs, const Body& body) const {
     parallel_for(jobs, grid_.num_rows(), std::max(1, kGrain / grid_.num_columns()), [&](int begin, int end) {
@@ -301,7 +301,7 @@ class GridProjection final : public ClothProjection {
     });
   }
 
-  /// Which places of a block have a neighbour `columns` further, −1 to 2, for each class of columns.
+  /// Masks of the places of a block with a neighbour `columns` further, −1 to 2, for each class of columns.
   void make_masks() {
     for (int columns = -1; columns <= 2; ++columns) {
       for (int r = 0; r < kClasses; ++r) {
@@ -326,8 +326,8 @@ class GridProjection final : public ClothProjection {
     add_strips(m, 0, 2, m.bend, 2 * dz);
   }
 
-  /// The springs from each particle to the one `columns` and `rows` further. Every second class first, so
-  /// that no direction of the cloth is preferred.
+  /// Adds the springs from each particle to the one `columns` and `rows` further. Every second class comes
+  /// first, so that no direction of the cloth is preferred.
   void add_strips(const ClothMaterial& material, int columns, int rows, double stiffness,
                   double rest_length) {
     if (stiffness == 0 && material.damping == 0) return;
@@ -361,7 +361,7 @@ class GridProjection final : public ClothProjection {
   SpringModel model_;
   int pitch_, plane_rows_;
   int plane_pitch_ = 0;
-  std::vector<float> storage_;  // of all the arrays below
+  std::vector<float> storage_;  // for all the arrays below
   Rows y_{}, c_{}, motion_{};
   float* inv_mass_ = nullptr;
   std::vector<float> masks_[4][kClasses];

@@ -1,5 +1,5 @@
-/// The springs of any cloth, coloured greedily. Sixteen springs at a time are gathered, computed side by
-/// side, and put back.
+/// The springs of any cloth, coloured greedily. Sixteen springs at a time are gathered, computed in parallel,
+/// and scattered.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ struct MeshPass {
   bool is_damped, is_projected;
 };
 
-/// W springs of one colour from the s-th on: vectors spring by spring, roots and quotients side by side.
+/// W springs of one colour from the s-th on: vectors spring by spring, roots and quotients in SIMD.
 template <int W, bool kDamped>
 WEFT_ALWAYS_INLINE void project_springs(const MeshPass& pass, int s) {
   using V = Pack<W>;
@@ -170,7 +170,7 @@ class MeshProjection final : public ClothProjection {
   }
 
   Colours springs_;
-  std::vector<Ends> ends_;  // of springs_.item, as all below
+  std::vector<Ends> ends_;  // in the order of springs_.item, as all below
   std::vector<float> rest_length_, stiffness_, damping_;
   bool has_springs_ = false, is_damped_ = false;
   std::optional<XpbdElements> elements_;

@@ -1,6 +1,6 @@
 #pragma once
-/// Private to integrators/: the particles of a mesh during a substep of `xpbd`, and what may move them side
-/// by side.
+/// Private to integrators/: the particles of a mesh during a substep of `xpbd`, and graph colouring for
+/// parallel updates.
 
 #include <vector>
 
@@ -8,10 +8,10 @@
 
 namespace weft::engine {
 
-/// All that a spring needs to know of one end, in half a cache line.
+/// All data that a spring requires of one end, in half a cache line.
 struct alignas(32) XpbdParticle {
   float y[4] = {0, 0, 0, 0};  // the last one is 1/m
-  float c[4] = {0, 0, 0, 0};  // the last one means nothing
+  float c[4] = {0, 0, 0, 0};  // the last one is unused
 
   float& inv_mass() { return y[3]; }
   float inv_mass() const { return y[3]; }
@@ -27,14 +27,14 @@ struct XpbdParticles {
 
   int size() const { return static_cast<int>(particle.size()); }
 
-  /// Where it is in the substep so far [m].
+  /// Present position in the substep [m].
   Vec3 position(int i) const {
     const XpbdParticle& p = particle[i];
     return {static_cast<double>(p.y[0]) + p.c[0], static_cast<double>(p.y[1]) + p.c[1],
             static_cast<double>(p.y[2]) + p.c[2]};
   }
 
-  /// How far it has come since the substep's start [m].
+  /// Displacement since the start of the substep [m].
   Vec3 moved(int i) const {
     const XpbdParticle& p = particle[i];
     const XpbdMotion& m = motion[i];
@@ -49,12 +49,12 @@ struct XpbdParticles {
 
 /// Items in colours: those of a colour share no particle.
 struct Colours {
-  std::vector<int> begin = {0};  // (colours + 1), in `item`
+  std::vector<int> begin = {0};  // (colours + 1) into `item`
   std::vector<int> item;         // colour by colour
 };
 
-/// Greedily: a colour takes every item, in their order, that shares no particle with one it has already.
-/// `particles_of(item)` gives a range of particles.
+/// Greedy colouring: a colour takes every item, in their order, that shares no particle with an item in it.
+/// `particles_of(item)` returns a range of particles.
 template <class ParticlesOf>
 Colours colour_items(int num_items, int num_particles, const ParticlesOf& particles_of) {
   std::vector<int> left, later, last_colour(num_particles, -1);

@@ -1,19 +1,19 @@
 #pragma once
 /// Private to integrators/: a cloth during a substep of `xpbd`, and the pass over its springs and elements.
 ///
-/// A substep moves particles to y = x + h v as if there were no springs; then every spring once moves its two
-/// ends by what its own implicit Euler step would, with d = x_j − x_i, l = |d|, r the motion of j relative to
-/// i in the substep so far, and W = 1/m_i + 1/m_j:
+/// A substep moves particles to y = x + h v without springs. Then every spring is projected once: it moves
+/// its two ends as a separate implicit Euler step of this spring would. With d = x_j − x_i, l = |d|, r the
+/// motion of j relative to i in the substep so far, and W = 1/m_i + 1/m_j:
 ///
 ///     s = (h²k (l − l0) + h b d̂·r) / (1 + W (h²k + h b)),     x_i += s d̂/m_i,   x_j −= s d̂/m_j
 ///
 /// This is XPBD with compliance 1/k and one iteration (Macklin et al. 2019, "Small Steps in Physics
-/// Simulation", Eq. 7), multiplied by h²k so that k = 0 is allowed. What springs move, c, is kept apart from
-/// y: v += c/h at the end, so that no velocity is the difference of two rounded positions.
+/// Simulation", Eq. 7), multiplied by h²k so that k = 0 is allowed. The springs' correction c is stored
+/// separately from y: v += c/h at the end, so that no velocity is the difference of two rounded positions.
 ///
-/// Springs are coloured: those of a colour share no particle and go side by side, through vector registers
-/// and threads. Order and colours depend on the mesh alone, so the result has the same bits for any of them.
-/// A fabric's elements come after the springs, in the same way: see xpbd_elements.h.
+/// Springs are coloured: springs of a colour share no particle and run in parallel, in SIMD lanes and
+/// threads. Order and colours depend on the mesh only, so the result is bit-identical for any number of them.
+/// A fabric's elements follow the springs, in the same way: see xpbd_elements.h.
 
 #include <memory>
 #include <vector>
@@ -25,11 +25,11 @@
 
 namespace weft::engine {
 
-/// What a substep does to particles and springs besides elasticity.
+/// Parameters of a substep besides elasticity.
 struct XpbdSubstep {
   float step = 0;                                  // h [s]
-  float keep = 1;                                  // share of velocity that wind leaves [1]
-  Eigen::Vector3f gain = Eigen::Vector3f::Zero();  // from gravity and wind [m/s]
+  float keep = 1;                                  // drag factor: share of velocity that wind leaves [1]
+  Eigen::Vector3f gain = Eigen::Vector3f::Zero();  // velocity gain from gravity and wind [m/s]
   bool is_projected = true;                        // damping along the springs only
 };
 
@@ -37,43 +37,43 @@ class ClothProjection {
  public:
   virtual ~ClothProjection() = default;
 
-  /// Takes masses and stiffness from a model of this topology; `pinned` particles do not give way.
+  /// Takes masses and stiffness from a model of this topology; `pinned` particles do not yield.
   virtual void set_numbers(const ClothModel& model, const std::vector<int>& pinned) = 0;
 
   /// v ← keep v + gain, y = x + h v, c = 0.
   virtual void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) = 0;
 
-  /// Puts a particle's y elsewhere; `motion` is how far it comes in the substep [m].
+  /// Sets a particle's y; `motion` is its displacement in the substep [m].
   virtual void move_to(int particle, const Vec3& y, const Vec3& motion) = 0;
 
-  /// Every spring and element once.
+  /// Projects every spring and element once.
   virtual void project(const XpbdSubstep& substep, JobSystem& jobs) = 0;
 
   /// v += c/h, then x += h v.
   virtual void finish(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) = 0;
 };
 
-/// Of grids whose springs of a kind are all equal, without elements: no index arrays.
+/// For grids with equal springs of each kind, without elements: no index arrays.
 std::unique_ptr<ClothProjection> make_grid_projection(const ClothTopology& topology);
 
-/// Of any cloth.
+/// For any cloth.
 std::unique_ptr<ClothProjection> make_mesh_projection(const ClothModel& model);
 
-/// Of springs with the same numbers.
+/// Coefficients of springs that share them.
 struct SpringNumbers {
   float elastic = 0;      // h²k [kg]
   float damping = 0;      // h b [kg]
   float rest_length = 0;  // l0 [m]
 };
 
-/// What springs push their ends apart by: s d̂ = along_d · d + along_r · r [kg].
+/// The push of a spring on its ends: s d̂ = along_d · d + along_r · r [kg].
 template <class V>
 struct SpringPush {
   V along_d, along_r;
 };
 
-/// Of springs with |d|² = length_sq, d·r = approach, and inv_mass = W. Numbers may be floats or packs. Finite
-/// where a spring has no length.
+/// The push of springs with |d|² = length_sq, d·r = approach, and inv_mass = W. Numbers may be floats or
+/// packs. Finite for a spring of zero length.
 template <bool kDamped, class V, class Number>
 WEFT_ALWAYS_INLINE SpringPush<V> spring_push(const Number& elastic, const Number& damping,
                                              const Number& rest_length, bool is_projected, V length_sq,

@@ -56,7 +56,7 @@ class Aggregation {
     }
   }
 
-  /// Each of the rest goes to the aggregate it is coupled to most strongly.
+  /// Adds each remaining particle to the aggregate that it is coupled to most strongly.
   void join_to_neighbours() {
     const std::vector<int> before = result_.of;
     for (int i = 0; i < couplings_.num_rows; ++i) {

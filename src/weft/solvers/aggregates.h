@@ -1,5 +1,5 @@
 #pragma once
-/// Groups of neighbouring particles, for the coarser levels of AggregationMultigrid.
+/// Aggregates of neighbouring particles, for the coarser levels of AggregationMultigrid.
 
 #include <vector>
 
@@ -13,7 +13,7 @@ struct Aggregates {
 };
 
 /// Joins particles along strong couplings: those of at least a quarter of the strongest of either end.
-/// Particles without couplings, or whose diagonal is 0, are in none.
+/// Particles without couplings, or with a zero diagonal, are in none.
 Aggregates find_aggregates(const SparseMatrix& couplings, const std::vector<double>& diagonal);
 
 }  // namespace weft::engine

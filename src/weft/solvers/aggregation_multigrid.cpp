@@ -13,7 +13,7 @@ namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 256;         // slices per chunk of work
-constexpr int kCoarsest = 60;       // particles of a level that is solved directly
+constexpr int kCoarsest = 60;       // levels up to this many particles are solved directly
 constexpr int kMostCoarsest = 400;  // … if it cannot be coarsened any more
 constexpr std::size_t kMostLevels = 12;
 constexpr double kJacobiWeight = 1.5;  // of the smoother, over the largest eigenvalue of D⁻¹A
@@ -30,7 +30,7 @@ struct Three {
   Pack<W> x, y, z;
 };
 
-/// Σ_j a_ij u_j for W rows from lane `lane` of a slice on.
+/// Σ_j a_ij u_j for W rows from lane `lane` of a slice.
 template <int W>
 WEFT_ALWAYS_INLINE Three<W> row_sums(const SlicedMatrix& a, In3 u, int slice, int lane) {
   Three<W> sum{};
@@ -148,7 +148,7 @@ std::vector<double> diagonal_of(const SparseMatrix& couplings, const std::vector
   return diagonal;
 }
 
-/// The largest eigenvalue of D⁻¹A, a little too large, by a few steps of the power method.
+/// The largest eigenvalue of D⁻¹A, slightly overestimated, by a few steps of the power method.
 double estimate_largest_eigenvalue(const SparseMatrix& couplings, const std::vector<double>& diagonal) {
   constexpr int kSteps = 8;
   constexpr double kSafety = 1.1;
@@ -195,7 +195,7 @@ SparseMatrix make_prolongation(const SparseMatrix& couplings, const std::vector<
   return multiply(smoother, spread);
 }
 
-/// PᵀAP, apart as couplings and diagonal.
+/// Galerkin coarse operator PᵀAP, separated into couplings and diagonal.
 void coarsen(SparseMatrix& couplings, std::vector<double>& diagonal, const SparseMatrix& prolongation,
              const SparseMatrix& restriction) {
   SparseMatrix full;

@@ -1,12 +1,12 @@
 #pragma once
 /// Algebraic multigrid for scalar matrices on any mesh, the same for x, y and z: smoothed aggregation
-/// (Vaněk, Mandel, Brezina 1996). The counterpart of GridMultigrid where there is no grid.
+/// (Vaněk, Mandel, Brezina 1996). The counterpart of GridMultigrid for meshes.
 ///
 ///     (A u)_i = excess_i u_i + Σ_j c_ij (u_i − u_j)            c_ij, excess_i >= 0
 ///
-/// Neighbours are joined to aggregates, each of which becomes one particle of the next level. Its value is
-/// spread over the aggregate and smoothed once by Jacobi's method; plain aggregates would need more cycles
-/// the larger the mesh is.
+/// Neighbours are joined to aggregates, each of which becomes one particle of the next level. The
+/// prolongation spreads its value over the aggregate and smooths it by one Jacobi sweep; with plain
+/// aggregates the number of cycles would grow with the mesh.
 
 #include <vector>
 
@@ -17,7 +17,7 @@
 
 namespace weft::engine {
 
-/// A matrix for vector registers (sliced ELLPACK): sixteen rows side by side, as many entry rows as the
+/// A matrix for SIMD (sliced ELLPACK): sixteen interleaved rows per slice, with as many entry rows as the
 /// longest of them has entries.
 struct SlicedMatrix {
   std::vector<int> slice_begin;  // (num_slices + 1) first entry row of each slice
@@ -31,12 +31,12 @@ SlicedMatrix slice(const SparseMatrix& a);
 
 class AggregationMultigrid {
  public:
-  /// The hierarchy of a matrix: `couplings` holds c_ij at (i, j) and at (j, i). Rows without any entry and
-  /// without excess drop out: their values stay zero.
+  /// Builds the hierarchy of a matrix: `couplings` holds c_ij at (i, j) and at (j, i). Rows without entries
+  /// and without excess drop out: their values stay zero.
   void build(const SparseMatrix& couplings, const std::vector<double>& excess);
 
-  /// Adds to the excess given to build(), instead of what was added before: only diagonals are computed
-  /// again. What a coarse level gets is Pᵀ of it, all on the diagonal: a little more than PᵀDP.
+  /// Adds to the excess of build(), and replaces what an earlier call added: only diagonals are recomputed. A
+  /// coarse level receives Pᵀ of it, all on the diagonal: a little more than PᵀDP.
   void add_excess(const std::vector<double>& more);
 
   /// z ≈ A⁻¹ r by one V-cycle, for particle i at index first + i. Returns r·z.

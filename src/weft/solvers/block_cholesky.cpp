@@ -11,7 +11,7 @@ namespace weft::engine {
 namespace {
 
 #if defined(__GNUC__)
-// A column of a block, on any machine and in registers of any width.
+// A column of a block, for any machine and any register width.
 typedef double Column __attribute__((vector_size(32), aligned(8), may_alias));
 #else
 struct Column {
@@ -116,7 +116,7 @@ void BlockCholesky::analyze(int num_rows, const std::vector<std::array<int, 2>>&
     upper_[std::max(i, j)].push_back({std::min(i, j), p, i > j});
   }
 
-  // Elimination tree, and how many blocks each column of L holds.
+  // Elimination tree, and the number of blocks in each column of L.
   parent_.assign(num_rows, -1);
   std::vector<std::size_t> count(num_rows, 0);
   mark_.assign(num_rows, -1);
@@ -159,7 +159,7 @@ bool BlockCholesky::factorize(const SymmetricBlockMatrix& a) {
   for (int k = 0; k < num_rows_; ++k) {
     load_column(a, k);
 
-    // The rows of column k of Lᵀ that are not zero, in an order in which they can be computed.
+    // The nonzero rows of column k of Lᵀ, in an order in which they can be computed.
     int top = num_rows_;
     mark_[k] = k;
     for (const Entry& entry : upper_[k]) {

@@ -1,7 +1,7 @@
 #pragma once
 /// Sparse Cholesky factorisation of symmetric matrices made of 3×3 blocks, one block row per particle.
 ///
-/// The reference solver: exact to rounding and the same bits on every machine, but its cost grows faster than
+/// The reference solver: exact to rounding and bit-identical on every machine, but its cost grows faster than
 /// the number of particles. The order of elimination is Eigen's approximate minimum degree; the factorisation
 /// is up-looking (T. Davis, Direct Methods for Sparse Linear Systems, 2006, chapter 4) on blocks.
 
@@ -27,21 +27,21 @@ void multiply(const SymmetricBlockMatrix& a, const std::vector<Vec3>& x, std::ve
 
 class BlockCholesky {
  public:
-  /// Prepares for all matrices with these pairs. Only the pattern matters, not the values.
+  /// Symbolic analysis for all matrices with these pairs. Only the pattern matters, not the values.
   void analyze(int num_rows, const std::vector<std::array<int, 2>>& pairs);
 
-  /// Factorises a matrix of the analysed pattern. False if it is not positive definite (or not finite): then
-  /// solve() must not be called.
+  /// Factorises a matrix of the analysed pattern. Returns false if it is not positive definite (or not
+  /// finite): then do not call solve().
   [[nodiscard]] bool factorize(const SymmetricBlockMatrix& a);
 
   /// Replaces b by A⁻¹ b.
   void solve(std::vector<Vec3>& b) const;
 
-  /// Blocks in the factor below its diagonal [1].
+  /// Number of blocks in the factor below its diagonal [1].
   std::size_t num_factor_blocks() const { return row_.size(); }
 
  private:
-  /// Column-major 3×3 block, each column padded to four numbers so that it fills a vector register.
+  /// Column-major 3×3 block, each column padded to four numbers so that it fills a SIMD register.
   using Block = std::array<double, 12>;
 
   struct Entry {
@@ -53,7 +53,7 @@ class BlockCholesky {
   void load_column(const SymmetricBlockMatrix& a, int k);
 
   int num_rows_ = 0;
-  std::vector<int> order_;                 // row of A that is eliminated k-th
+  std::vector<int> order_;                 // row of A eliminated k-th
   std::vector<std::vector<Entry>> upper_;  // entries of each column above the diagonal
   std::vector<int> parent_;                // elimination tree
   std::vector<std::size_t> column_begin_;  // (n + 1) first block of each column of L

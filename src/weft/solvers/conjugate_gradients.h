@@ -1,5 +1,5 @@
 #pragma once
-/// Preconditioned conjugate gradients in floats, for matrices that are only known by what they do.
+/// Preconditioned conjugate gradients in floats, matrix-free.
 
 #include <span>
 
@@ -9,19 +9,19 @@
 namespace weft::engine {
 
 struct CgSettings {
-  int iterations = 10;  // at most [1]
-  /// Stops once an iteration lowers ½ xᵀAx − bᵀx by less than this share of what all have; 0: never. Not the
-  /// residual: in floats, and for cloth, that says little of how good x is [1].
+  int iterations = 10;  // limit [1]
+  /// Stops once an iteration lowers ½ xᵀAx − bᵀx by less than this share of the total decrease; 0: never. The
+  /// residual is not used: in floats, and for cloth, it says little about the error of x [1].
   double enough = 0;
-  int least = 1;  // iterations before that share counts [1]
+  int least = 1;  // minimum of iterations before `enough` applies [1]
 };
 
 struct CgReport {
-  int iterations = 0;   // made [1]
+  int iterations = 0;   // number made [1]
   double decrease = 0;  // of ½ xᵀAx − bᵀx, from x = 0 [J]
 };
 
-/// One part of the vectors, and room for what a solve needs beside them.
+/// One block of the vectors, with the work space of a solve.
 struct CgBlock {
   const Vec3Array* b = nullptr;
   Vec3Array* x = nullptr;
@@ -32,10 +32,10 @@ struct CgBlock {
   void advance(double alpha, JobSystem& jobs);  // x += α p, r −= α A p
 };
 
-/// Solves A x = b from x = 0, all blocks together: α and β are common. multiply() computes product = A
+/// Solves A x = b from x = 0 for all blocks together, with common α and β. multiply() computes product = A
 /// direction in every block and returns p·q; precondition() computes preconditioned ≈ A⁻¹ residual and
-/// returns r·z. Both work in a fixed order, so the result has the same bits for any number of threads. Stops
-/// early where A or the preconditioner turn out not to be positive definite.
+/// returns r·z. Both work in a fixed order, so the result is bit-identical for any number of threads. Stops
+/// early if A or the preconditioner turns out not to be positive definite.
 template <class Multiply, class Precondition>
 CgReport solve_conjugate_gradients(const Multiply& multiply, const Precondition& precondition,
                                    std::span<CgBlock* const> blocks, const CgSettings& settings,

@@ -4,9 +4,9 @@
 
 namespace weft::engine {
 
-/// Gauss–Jordan elimination along the diagonal: stable for such matrices without any pivoting.
+/// Gauss–Jordan elimination along the diagonal: stable for such matrices without pivoting.
 void invert_in_place(std::vector<double>& a, int n) {
-  constexpr double kRounding = 1e-15;  // of the largest diagonal element: less is nothing
+  constexpr double kRounding = 1e-15;  // of the largest diagonal element: less counts as zero
   double largest = 0;
   for (int i = 0; i < n; ++i) largest = std::max(largest, a[i * n + i]);
   for (int p = 0; p < n; ++p) {

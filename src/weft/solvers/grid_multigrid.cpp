@@ -10,7 +10,7 @@ namespace weft::engine {
 namespace {
 
 constexpr int kGrain = 4096;   // particles per chunk of work
-constexpr int kCoarsest = 25;  // particles at most of the grid that is solved directly
+constexpr int kCoarsest = 25;  // grids up to this many particles are solved directly
 
 /// body(row_begin, row_end) over chunks of rows.
 template <class Body>
@@ -33,7 +33,7 @@ void GridMultigrid::resize(const PaddedRows& rows) {
   if (!levels_.empty() && levels_.front().rows == rows) return;
   levels_.clear();
   levels_.emplace_back(rows);
-  levels_.front().right_side = levels_.front().smoothed = Vec3Array();  // those of whoever calls apply()
+  levels_.front().right_side = levels_.front().smoothed = Vec3Array();  // apply() uses those of its caller
   narrowed_.clear();
   while (levels_.back().rows.num_particles() > kCoarsest) {
     const PaddedRows fine = levels_.back().rows;

@@ -5,9 +5,9 @@
 ///     (A u)_i = excess_i u_i + Σ_j c_ij (u_i − u_j)            c_ij, excess_i >= 0
 ///
 /// over the eight neighbours j of particle i. Coarse grids keep every second particle of every second row;
-/// between them values are interpolated linearly, and the coarse matrices are PᵀAP (Galerkin), computed by
+/// between them values are interpolated linearly. The coarse matrices are the Galerkin operators PᵀAP, by
 /// closed formulas row by row: rebuilding the hierarchy costs about as much as a few iterations. Excess and
-/// couplings are carried down apart, for in floats their sum would lose the excess of stiff cloth.
+/// couplings are coarsened separately, because in floats their sum would lose the excess of stiff cloth.
 
 #include <vector>
 
@@ -18,12 +18,12 @@
 
 namespace weft::engine {
 
-/// Particles per row (or rows) of the grid that is coarser than n: every second one. Of an even number the
-/// last one is kept as well, in its place; two become one.
+/// Particles per row (or rows) of the next coarser grid than n: every second one. If n is even, the last one
+/// is kept as well, in its place; two become one.
 constexpr int coarse_length(int n) { return n == 2 ? 1 : n / 2 + 1; }
 static_assert(coarse_length(1) == 1 && coarse_length(5) == 3 && coarse_length(6) == 4);
 
-/// A matrix, laid out by `rows`, with zeros where no particle is.
+/// A matrix, laid out by `rows`, with zeros in the padding.
 struct GridMatrix {
   PaddedRows rows;
   AlignedFloats right, down, down_right, down_left;  // c_ij with the neighbour on that side [N/m]
@@ -44,13 +44,13 @@ struct GridLevel : GridMatrix {
 
 class GridMultigrid {
  public:
-  /// Makes room for grids of this size. Does nothing if they are there.
+  /// Allocates grids of this size. A no-op if they exist.
   void resize(const PaddedRows& rows);
 
   /// The finest grid: set its couplings and excess, then call build().
   GridLevel& finest() { return levels_.front(); }
 
-  /// Computes everything that follows from the finest grid's couplings and excess.
+  /// Computes the hierarchy from the finest grid's couplings and excess.
   void build(JobSystem& jobs);
 
   /// z ≈ A⁻¹ r by one V-cycle: a symmetric positive definite operation. Returns r·z.

@@ -6,7 +6,7 @@
 namespace weft::engine::grid_kernels {
 namespace {
 
-/// Share of Jacobi's correction that is taken; anything from 0.7 to 1.1 does [1].
+/// Jacobi weight; anything from 0.7 to 1.1 works [1].
 constexpr float kJacobiWeight = 0.85f;
 
 /// Σ_j c_ij u_j.
@@ -48,13 +48,13 @@ WEFT_ALWAYS_INLINE void finish_body(GridLevel& a, int row_begin, int row_end) {
 
 WEFT_MULTIVERSION_PACKS(finish, (GridLevel & a, int row_begin, int row_end), (a, row_begin, row_end))
 
-/// What a coarse particle gets of its fine neighbours, and what the one after it gives to the next coarse
-/// one.
+/// Shares that a coarse particle receives from its fine neighbours, and the share that the fine particle
+/// after it gives to the next coarse one.
 struct Shares {
   float before = 0.5f, after = 0.5f, next = 0.5f;
 };
 
-/// Of coarse particle q where the fine ones are n: see coarse_length().
+/// Shares of coarse particle q for n fine particles: see coarse_length().
 WEFT_ALWAYS_INLINE Shares shares_at(int q, int n) {
   if (n == 2) return {0, 1, 0};
   if (n % 2 == 0 && q == n / 2 - 1) return {0.5f, 0, 1};
@@ -62,8 +62,8 @@ WEFT_ALWAYS_INLINE Shares shares_at(int q, int n) {
   return {};
 }
 
-/// One coarse particle of a row, from the fine particle q in its place and those beside it. `given_before` is
-/// what the fine particle before it gives to the coarse one before.
+/// One coarse particle of a row, from the fine particle q at its place and its neighbours. `given_before` is
+/// the share that the fine particle before it gives to the previous coarse one.
 WEFT_ALWAYS_INLINE void narrow_one(const GridMatrix& f, int q, GridMatrix& n, int out, Shares s,
                                    float given_before) {
   const float *d = f.diagonal.data() + q, *e = f.excess.data() + q, *r = f.right.data() + q,
@@ -119,7 +119,7 @@ WEFT_ALWAYS_INLINE void merge_body(const GridMatrix& n, GridMatrix& coarse, int 
       const V c0 = load<W>(c + i), c1 = load<W>(c + i + s), d1 = load<W>(d + i + s);
       store(coarse.down.data() + o, (after * c1 + next * c0) - shared * d1);
       store(coarse.down_right.data() + o, shared * r1 + (after * dr1 + next * dr0));
-      // From here to the particle below on the left: its coupling is kept by the upper, right end.
+      // From here to the particle below on the left: its coupling is stored at the upper right end.
       const V left1 = load<W>(r + i - 1 + s), own0 = load<W>(dl + i), own1 = load<W>(dl + i + s);
       store(coarse.down_left.data() + o, shared * left1 + (next * own0 + after * own1));
     });
@@ -165,7 +165,7 @@ WEFT_ALWAYS_INLINE void smooth_rows(const GridLevel& a, ConstComponent3 b, Const
         const V residual = side - diagonal * here + couple<W, kDownLeft>(a, u, i, stride);
         return select_less(zero, inverse, here + inverse * residual, zero);
       };
-      // All loads before the first store: the compiler could not tell that couplings stay the same.
+      // All loads before the first store: the compiler cannot prove that couplings stay unchanged.
       const V sx = load<W>(b.x + i), sy = load<W>(b.y + i), sz = load<W>(b.z + i);
       const V rx = sweep(sx, x.x), ry = sweep(sy, x.y), rz = sweep(sz, x.z);
       store(out.x + i, rx);
@@ -189,10 +189,10 @@ WEFT_MULTIVERSION_PACKS(smooth_multi,
                          int row_begin, int row_end, double* dots),
                         (a, b, x, out, row_begin, row_end, dots))
 
-/// Residuals of three rows, with room before and behind; of one thread, kept between calls.
+/// Residuals of three rows with padding at both ends; per thread, kept between calls.
 class ResidualRows {
  public:
-  /// What is in them does not matter.
+  /// Resizes only; contents are undefined.
   void fit(int row_length) {
     pitch_ = round_up_to_pack(row_length) + 2 * kPackLanes;
     const auto size = static_cast<std::size_t>(9) * pitch_;
@@ -263,7 +263,7 @@ WEFT_ALWAYS_INLINE void restrict_rows(const GridLevel& fine, ConstComponent3 b, 
         store(at + i, sum);
       });
     };
-    // All three before any is halved: that reads them shifted, which stalls while stores are under way.
+    // All three before any is halved: halving reads them shifted, which stalls while stores are in flight.
     combine(here.x, before.x, after.x);
     combine(here.y, before.y, after.y);
     combine(here.z, before.z, after.z);

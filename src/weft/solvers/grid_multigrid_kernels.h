@@ -1,5 +1,5 @@
 #pragma once
-/// Private to solvers/: the loops of the multigrid on grids, for some rows each.
+/// Private to solvers/: kernels of the grid multigrid, each for a range of rows.
 
 #include "weft/solvers/grid_multigrid.h"
 

@@ -25,7 +25,7 @@ SparseMatrix transpose(const SparseMatrix& a) {
 SparseMatrix multiply(const SparseMatrix& a, const SparseMatrix& b) {
   SparseMatrix c;
   c.num_columns = b.num_columns;
-  std::vector<int> place(b.num_columns, -1);  // of the column's entry, if not before the row's first
+  std::vector<int> place(b.num_columns, -1);  // entry of the column, valid if not before the row's first
   for (int r = 0; r < a.num_rows; ++r) {
     const int first = c.begin.back();
     for (int e = a.begin[r]; e < a.begin[r + 1]; ++e) {

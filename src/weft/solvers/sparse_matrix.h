@@ -1,5 +1,5 @@
 #pragma once
-/// Sparse matrices of numbers, row by row: for setting up the multigrid of meshes.
+/// Sparse scalar matrices in compressed rows, for the setup of the mesh multigrid.
 
 #include <vector>
 
@@ -23,7 +23,7 @@ struct SparseMatrix {
 
 SparseMatrix transpose(const SparseMatrix& a);
 
-/// A B. Entries of a row stand in the order in which they first come up.
+/// A B. The entries of a row are in the order in which they first occur.
 SparseMatrix multiply(const SparseMatrix& a, const SparseMatrix& b);
 
 }  // namespace weft::engine

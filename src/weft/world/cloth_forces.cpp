@@ -72,8 +72,8 @@ void add_bending_damping(const ClothElements& elements, const std::vector<Vec3>&
   }
 }
 
-/// Drag and lift on each particle: of triangles where they were at the start, at the end's velocities, as
-/// integrators have it (forces/air.h).
+/// Drag and lift on each particle: triangles at their start positions, with the end's velocities, as in the
+/// integrators (forces/air.h).
 void add_air_forces(const ClothModel& model, const ClothState& before, const ClothState& after,
                     const Wind& wind, double time, std::vector<Vec3>& force) {
   std::vector<Vec3> air;

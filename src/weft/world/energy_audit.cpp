@@ -51,7 +51,7 @@ double compute_pin_work(const std::vector<int>& moved, const Vec3& gravity, cons
   return work;
 }
 
-/// Adds the contacts' forces on a cloth's particles, each to the nearest one.
+/// Adds the contact forces on a cloth, each to the nearest particle.
 void add_contact_forces(int cloth, const std::vector<ContactPoint>& contacts, Forces& force) {
   for (const ContactPoint& contact : contacts) {
     if (contact.cloth == cloth) force[contact.particle] += contact.force;
@@ -79,7 +79,7 @@ double compute_hand_work(const std::vector<Grab>& grabs, const std::vector<Pin>&
   return work;
 }
 
-/// Displacement in the step of the shape's point at a contact; of a deforming mesh that of the nearest
+/// Displacement in the step of the shape's point at a contact; for a deforming mesh that of the nearest
 /// vertex.
 Vec3 displacement_at(const ContactPoint& contact, const MovingShape& shape) {
   const MeshShape* mesh = std::get_if<MeshShape>(&shape.after);
@@ -133,7 +133,7 @@ AuditStart begin_energy_audit(const World& world) { return {world.snapshot(), co
 EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
   EnergyAudit audit{.energy = compute_energy(world)};
   const double step = world.time() - start.state.time;
-  if (step == 0) return audit;  // it failed: its contacts' forces may be infinite
+  if (step == 0) return audit;  // failed step: contact forces may be infinite
   const std::vector<ContactPoint> contacts = world.contact_points();
   audit.work_shapes = compute_shape_work(world.colliders(), contacts, start.state.time, world.time());
   for (int c = 0; c < world.num_cloths(); ++c) {

@@ -3,17 +3,17 @@
 ///
 ///     Δ(kinetic + elastic + bending + gravitational) = W_pins + W_shapes + W_wind + W_hands + left over
 ///
-/// What is left over is negative where damping, friction or the integrator dissipate, positive where energy
-/// is made from nothing.
+/// The remainder is negative where damping, friction or the integrator dissipate energy, positive where
+/// energy is created.
 ///
 ///     const AuditStart start = begin_energy_audit(world);
 ///     world.step(dt);
 ///     const EnergyAudit audit = finish_energy_audit(start, world);
 ///
-/// Work is a force at the end of the step times the displacement in it, the balance of implicit Euler; the
-/// error for smooth motion is of first order in the step. Work of shapes, and of pins against contacts, needs
-/// World::track_contacts(true) before the step. Of a step cut into substeps (`explicit`, `xpbd`) the forces
-/// are those of the last one: an audit of these needs steps of one substep.
+/// Work is the force at the end of the step times the displacement in it, the balance of implicit Euler; for
+/// smooth motion the error is of first order in the step. The work of shapes, and of pins against contacts,
+/// requires World::track_contacts(true) before the step. For a step with substeps (`explicit`, `xpbd`) the
+/// forces are those of the last one: audit these integrators with steps of one substep.
 
 #include "weft/world/world.h"
 
@@ -22,7 +22,7 @@ namespace weft::engine {
 /// Energies of all cloths [J].
 struct WorldEnergy {
   double kinetic = 0;
-  double elastic = 0;  // of stretching and shearing
+  double elastic = 0;  // stretching and shearing
   double bending = 0;
   double gravitational = 0;  // zero at the world's origin
 
@@ -38,12 +38,12 @@ struct AuditStart {
   WorldEnergy energy;
 };
 
-/// Of one step, or of several one after the other [J].
+/// Audit of one step, or of several consecutive ones [J].
 struct EnergyAudit {
   WorldEnergy energy;      // at the end
-  double work_pins = 0;    // of pins that move, by their reaction m a − F; 0 exactly of pins that do not
-  double work_shapes = 0;  // of colliders that move, by the contacts' forces
-  double work_wind = 0;    // of the wind's drag, and of the air's drag and lift; still air takes energy
+  double work_pins = 0;    // of moving pins, by their reaction m a − F; exactly 0 for pins at rest
+  double work_shapes = 0;  // of moving colliders, by the contact forces
+  double work_wind = 0;    // of wind drag, and aerodynamic drag and lift; still air takes energy
   double work_hands = 0;   // of grabs, by their springs and dampers
   double left_over = 0;
 
@@ -53,8 +53,8 @@ struct EnergyAudit {
 
 AuditStart begin_energy_audit(const World& world);
 
-/// The world after one step from `start`, with the same cloths, pins, grabs, wind and colliders as during it.
-/// A step that failed has no work, and leaves nothing over.
+/// `world` must be one step after `start`, with the same cloths, pins, grabs, wind and colliders as during
+/// it. For a failed step work and remainder are zero.
 EnergyAudit finish_energy_audit(const AuditStart& start, const World& world);
 
 }  // namespace weft::engine

@@ -6,7 +6,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kFollowRate = 30;  // of the spring on the whole cloth's mass, critically damped [1/s]
+constexpr double kFollowRate = 30;  // of the spring with the whole cloth's mass, critically damped [1/s]
 
 double longest_edge(const TriangleMesh& mesh, const Triangle& t) {
   const auto edge = [&](int a, int b) { return (mesh.positions[t[a]] - mesh.positions[t[b]]).norm(); };
@@ -63,13 +63,13 @@ const ClothModel& Hands::begin(const std::shared_ptr<const ClothModel>& model,
                                ClothState& state) {
   if (grabs_.empty()) return *model;
   fit(model, step);
-  // Momentum that is already there …
+  // Existing momentum …
   for (const int i : held_) {
     if (is_pinned[i]) continue;
     const double share = model->mass[i] / model_->mass[i];
     state.v.set(i, share * (state.v.get(i) + step * gravity) - step * gravity);
   }
-  // … and what each hand adds to it.
+  // … and the contribution of each attachment.
   for (const Grab& grab : grabs_) {
     for (std::size_t p = 0; p < grab.particles.size(); ++p) {
       const int i = grab.particles[p];

@@ -1,5 +1,5 @@
 #pragma once
-/// Lists of infeasible pairs, each once.
+/// Lists of infeasible pairs without duplicates.
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-/// What can be measured on a cloth: energies, momentum, strain. In double precision, whatever the cloth
-/// computes with.
+/// Measures of a cloth: energies, momentum, strain. In double precision, independent of the integrator's
+/// precision.
 
 #include <optional>
 
@@ -11,18 +11,17 @@ namespace weft::engine {
 
 double compute_kinetic_energy(const ClothModel& model, const ClothState& state);  // [J]
 
-/// Of all springs and elements [J].
+/// Energy of all springs and elements [J].
 double compute_elastic_energy(const ClothModel& model, const ClothState& state);
 
 /// The same energy in its two parts.
 struct ElasticParts {
-  double stretch =
-      0;  // of stretching and shearing: structural and shear springs, membranes, strain limits [J]
+  double stretch = 0;  // of structural and shear springs, membranes, strain limits [J]
   double bending = 0;  // of bending springs, curvature stencils and hinges [J]
 };
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state);
 
-/// −Σ m g·x, zero where everything is at the world's origin [J].
+/// −Σ m g·x, zero with all mass at the world's origin [J].
 double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity);
 
 Vec3 compute_momentum(const ClothModel& model, const ClothState& state);  // Σ m v [kg·m/s]
@@ -38,22 +37,22 @@ struct Strain {
 };
 Strain compute_strain(const ClothModel& model, const ClothState& state);
 
-/// Smallest and largest length of any direction in any triangle of a membrane over that at rest; empty where
-/// springs alone stretch [1].
+/// Principal stretches: the smallest and largest ratio of present to rest length of any direction in any
+/// membrane triangle; empty for cloth of springs only [1].
 struct Stretches {
   double min = 0, max = 0;
 };
 std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state);
 
-/// The largest strain along warp, weft or a structural spring, and a particle of it. Sheared cloth shows none
-/// in its membranes [1].
+/// The largest strain along warp, weft or a structural spring, and a particle of it. Shear of membranes does
+/// not count [1].
 struct YarnStrain {
   double max = 0;
   int particle = -1;
 };
 YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state);
 
-/// The least area of a triangle over its area at rest, and a particle of it [1].
+/// The smallest area of a triangle over its rest area, and a particle of it [1].
 struct AreaShare {
   double min = 0;
   int particle = -1;

@@ -8,18 +8,18 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kStretch = 0.08;    // that a spring may gain in a step, over its rest length [1]
-constexpr double kLeastArea = 0.3;   // of a triangle's own: above, no loss is a fault [1]
-constexpr double kAreaKept = 0.5;    // of what it was when the step began [1]
-constexpr double kEnergyRate = 0.3;  // that energy may rise by, of the kinetic energy at the start [1/s] …
+constexpr double kStretch = 0.08;    // maximum gain of a spring in a step, over its rest length [1]
+constexpr double kLeastArea = 0.3;   // of the rest area: above, no loss of area is a fault [1]
+constexpr double kAreaKept = 0.5;    // minimum share of the area at the start of the step [1]
+constexpr double kEnergyRate = 0.3;  // maximum rise of energy, of the kinetic energy at the start [1/s] …
 constexpr double kRiseOfThickness =
     30;  // … and of the work against gravity of lifting all by its thickness [1/s]
 
-/// Shorter steps are not judged by energy: what contact sets apart in each step makes as much at any length.
+/// Shorter steps have no energy check: contact projection adds as much energy per step at any length.
 constexpr double kShortestForEnergy = 1.0 / 200;  // [s]
 
-/// What structural springs have gained in a step: the most of one, over its rest length, and about how much
-/// energy all.
+/// The gain of structural springs in a step: the largest of one, over its rest length, and the approximate
+/// energy of all.
 struct Stretching {
   StepCheck worst{.fault = StepFault::stretch};
   double energy = 0;  // [J]
@@ -72,7 +72,7 @@ StepCheck check_area(const CheckedCloth& cloth, int index) {
   return worst;
 }
 
-/// All elastic energy is measured only where the rest, with `stretching` for it, has risen.
+/// The total elastic energy is computed only if the other terms, with the estimate `stretching`, have risen.
 StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step,
                        double stretching) {
   double rise = 0, kinetic = 0, lift = 0;

@@ -1,10 +1,10 @@
 #pragma once
-/// Whether a step of cloth in contact was short enough.
+/// Check of a step with contact: whether it was short enough.
 ///
-/// A step that is too long for an impact stretches single springs, crushes triangles, or comes out with more
-/// energy than it went in with. Each is measured against what it was when the step began, so that no fabric
-/// is judged by its softness: a fault's severity is its size over what a step may do, and from 1 on the step
-/// is to be divided.
+/// A step that is too long for an impact stretches single springs, crushes triangles, or increases the
+/// energy. Each is measured relative to the start of the step, so that the check does not depend on the
+/// fabric's softness. A fault's severity is its size over the allowed size; from 1 on the step must be
+/// divided.
 
 #include <optional>
 #include <span>
@@ -18,8 +18,8 @@ namespace weft::engine {
 struct StepCheck {
   StepFault fault = StepFault::stretch;
   double severity = 0;            // of the worst fault; 0: none [1]
-  double value = 0;               // of that fault, as above
-  int cloth = -1, particle = -1;  // where; -1: nowhere in particular
+  double value = 0;               // value of that fault, see StepFault
+  int cloth = -1, particle = -1;  // position of the fault; -1: none
 
   void include(const StepCheck& other) {
     if (other.severity > severity) *this = other;
@@ -32,8 +32,8 @@ struct CheckedCloth {
   const ClothState &before, &after;
 };
 
-/// Of all cloths; those that touch nothing are not looked at. `is_driven`: pins, shapes, wind or hands may
-/// have done work, so that energy tells nothing.
+/// Check of all cloths; those without contact are skipped. `is_driven`: pins, shapes, wind or attachments may
+/// have done work, so the energy is not checked.
 StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven);
 
 }  // namespace weft::engine

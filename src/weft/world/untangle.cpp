@@ -1,11 +1,12 @@
-/// World::untangle: cloth that crosses something is set apart on a stage of its own, without gravity or wind.
+/// World::untangle: repair of intersected cloth in a separate stage world, without gravity or wind.
 ///
 /// 1. Solids that cloth is in become thinner, until cloth is outside (contact/shrink.h).
-/// 2. What still crosses, cloth with cloth or with plain shapes, is set apart (contact/untangle.h).
-/// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes
-///    meanwhile, and afterwards until it is small. After each step everything is at rest.
+/// 2. Remaining intersections, of cloth with cloth or with primitive shapes, are repaired
+///    (contact/untangle.h).
+/// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes meanwhile, and
+///    afterwards until it is small. After each step all velocities are set to zero.
 ///
-/// Whichever of start and end crosses less is kept.
+/// The state with fewer intersections, start or end, is kept.
 
 #include <algorithm>
 #include <cmath>
@@ -17,17 +18,17 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kStep = 1.0 / 60;     // on the stage [s]
-constexpr double kGrowth = 1.5e-3;     // in a step, about [m]
+constexpr double kStep = 1.0 / 60;     // of the stage world [s]
+constexpr double kGrowth = 1.5e-3;     // per step, approximately [m]
 constexpr int kMaxSteps = 54;          // of growth …
 constexpr int kMaxSettling = 24;       // … and after it, …
 constexpr double kRelaxed = 0.05;      // … until strain is no larger [1]
-constexpr double kMoreThanDeep = 1.2;  // times as deep as cloth is inside, solids become thinner …
-constexpr double kRoom = 2e-3;         // … and by so much more [m]
-constexpr double kMoreNextTime = 1.6;  // where that was not enough
+constexpr double kMoreThanDeep = 1.2;  // factor on the penetration depth by which solids become thinner …
+constexpr double kRoom = 2e-3;         // … and addition to it [m]
+constexpr double kMoreNextTime = 1.6;  // factor if that was not enough
 constexpr int kMaxTrials = 3;
 
-/// Where it is now.
+/// The collider at its present pose, static.
 Collider still(const Collider& collider, double time) {
   Collider result = collider;
   result.shape = shape_at(collider, time);
@@ -40,7 +41,7 @@ Collider still(const Collider& collider, double time) {
   return result;
 }
 
-/// A still mesh that starts at other places.
+/// A mesh that grows from thinner vertices.
 MeshShape growing_from(const std::vector<Vec3>& thin, const MeshShape& full, int steps) {
   MeshShape shape = full;
   shape.sequence = std::make_shared<const MeshSequence>(
@@ -48,7 +49,7 @@ MeshShape growing_from(const std::vector<Vec3>& thin, const MeshShape& full, int
   return shape;
 }
 
-/// How deep cloth is in each collider (colliders) [m]; 0 where it is not.
+/// Penetration depth of cloth in each collider (colliders) [m]; 0 for none.
 std::vector<double> compute_depths(const Knots& knots, std::size_t num_colliders) {
   std::vector<double> depths(num_colliders, 0.0);
   for (const Inside& inside : knots.inside)
@@ -65,7 +66,7 @@ double compute_largest_strain(const ClothModel& model, const ClothState& state) 
 }  // namespace
 
 Knots World::find_knots() {
-  constexpr double kTouches = 1e-6;  // what is no deeper lies on the solid [m]
+  constexpr double kTouches = 1e-6;  // up to this depth cloth lies on the solid [m]
   show_contact_cloths();
   Knots knots =
       contact_system_.find_knots(contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
@@ -73,7 +74,7 @@ Knots World::find_knots() {
   return knots;
 }
 
-/// The same cloths where they are, at rest, and the same colliders, which stay; nothing else acts.
+/// A world with the same cloths in place, at rest, and the same colliders, static; no other forces.
 World World::make_stage() const {
   World stage;
   stage.jobs_ = jobs_;
@@ -96,7 +97,7 @@ World World::make_stage() const {
   return stage;
 }
 
-/// Puts thinner ones in place of the meshes that cloth is in, which grow back from the stage's start on.
+/// Replaces the meshes that cloth is in by thinner ones, which grow back from the stage's start.
 void World::thin_colliders(const Knots& crossed, World& stage) const {
   const std::vector<double> depths = compute_depths(crossed, colliders_.size());
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
@@ -114,7 +115,7 @@ void World::thin_colliders(const Knots& crossed, World& stage) const {
   }
 }
 
-/// Takes all motion from all cloth.
+/// Sets all velocities to zero.
 void World::halt() {
   for (Cloth& cloth : cloths_) {
     for (std::size_t i = 0; i < cloth.state.v.size(); ++i) cloth.state.v.set(i, Vec3::Zero());
@@ -133,7 +134,7 @@ UntangleReport World::untangle() {
   report.rounds = stage.contact_system_
                       .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_})
                       .rounds;
-  double growth = 0;  // takes so long [s]
+  double growth = 0;  // its duration [s]
   for (const Collider& collider : stage.colliders_) {
     const MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
     if (shape && shape->sequence) growth = std::max(growth, shape->sequence->keys().back().time);

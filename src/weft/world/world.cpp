@@ -12,7 +12,7 @@
 namespace weft::engine {
 namespace {
 
-/// A sum of products with zero: 0 if all values are finite, else not a number.
+/// A sum of products with zero: 0 if all values are finite, else NaN.
 float finite_check(const float* values, std::size_t count) {
   constexpr std::size_t kLanes = 16;
   float sums[kLanes] = {};
@@ -44,7 +44,7 @@ std::uint32_t next_world_id() {
   return ++last;
 }
 
-/// By ascending number; -1 if there is none.
+/// Binary search by ascending number; -1 if not found.
 template <class Things>
 int find_number(const Things& things, std::uint32_t number) {
   const auto found = std::ranges::lower_bound(things, number, {}, [](const auto& t) { return t.number; });
@@ -65,7 +65,7 @@ std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key>
   return std::make_shared<const MeshSequence>(std::move(keys));
 }
 
-/// A mesh collider's, in its own coordinates [m].
+/// Vertices of a mesh collider, in mesh coordinates [m].
 std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
   if (!shape.sequence) return shape.mesh->positions;
   const MeshSequence::Blend blend = shape.sequence->at(time);
@@ -83,8 +83,8 @@ void require_points(const std::vector<Vec3>& values, std::size_t count, const st
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kMaxParts = 1 << 12;  // of one step [1]
-constexpr int kCalmParts = 4;       // in a row, before parts become longer
-constexpr double kFarTooLong = 4;   // severity of a part that is cut in four [1]
+constexpr int kCalmParts = 4;       // consecutive ones before parts become longer
+constexpr double kFarTooLong = 4;   // severity from which a part is divided in four [1]
 constexpr double kCalm = 0.5;       // severity of a part that could have been longer [1]
 
 }  // namespace
@@ -248,7 +248,7 @@ void World::set_collider_friction(ColliderId id, double friction, double static_
   colliders_[index_of(id)] = std::move(changed);
 }
 
-/// What is moved by hand goes to where it is told in the step that begins, or stands still.
+/// Kinematic colliders move to their target in the step that begins, or stand still.
 void World::guide_colliders(double dt) {
   const double end = time_ + dt;
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
@@ -362,7 +362,7 @@ void World::set_acceleration(Cloth& cloth) {
     cloth.environment.acceleration.push_back(cloth.forces[i] / cloth.model->mass[i]);
 }
 
-/// Points that the program moves go to their targets in the step that begins, or stay.
+/// Points moved by the program go to their targets in the step that begins, or stay.
 void World::guide_points(double dt) {
   for (Cloth& cloth : cloths_) {
     cloth.pin_guide.begin_step(time_, dt);
@@ -539,7 +539,7 @@ void World::set_environment(Cloth& cloth, double time) {
   }
 }
 
-/// As many as the cloth that needs most: they meet at the end of every one.
+/// The maximum over the cloths: they meet at the end of every substep.
 int World::num_substeps(double dt) const {
   int substeps = 1;
   const Environment environment{.gravity = gravity_, .wind = wind_};
@@ -568,7 +568,7 @@ void World::begin_contact(double time, double dt) {
   contact_system_.find_contacts(contacts_);
 }
 
-/// One substep of all cloths, to `time`.
+/// Advances all cloths by one substep, to `time`.
 void World::advance(double time, double dt, StepReport& report) {
   // Kinematics.
   for (Cloth& cloth : cloths_) set_environment(cloth, time);
@@ -594,7 +594,7 @@ void World::advance(double time, double dt, StepReport& report) {
   if (wild >= 0) is_wild_[wild] = 1;
 }
 
-/// Solves for all cloths together.
+/// Solves all cloths together.
 void World::solve(double dt, StepReport& report) {
   bodies_.clear();
   for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
@@ -630,9 +630,9 @@ InfeasiblePair World::describe(const Infeasible& pair) const {
           .collider = b.collider};
 }
 
-/// One sentence for every two things that cross.
+/// One sentence for every two bodies that intersect.
 std::vector<std::string> World::describe(const Knots& knots) const {
-  std::vector<std::pair<std::string, int>> counts;  // what, how often; in order of the first
+  std::vector<std::pair<std::string, int>> counts;  // sentence, count; in the order of first occurrence
   const auto add = [&](const std::string& what, const auto& first) {
     const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& c) {
       return c.first.compare(0, what.size(), what) == 0;
@@ -694,7 +694,7 @@ bool World::is_driven() const {
          });
 }
 
-/// A power of two.
+/// The maximum number of parts, a power of two.
 int World::num_parts_at_most(double dt) const {
   if (!divides()) return 1;
   constexpr double kRounding = 1e-9;
@@ -703,7 +703,7 @@ int World::num_parts_at_most(double dt) const {
   return parts;
 }
 
-/// Takes all cloths from `before` to `time` in a step of dt, and says how good it was.
+/// Advances all cloths from `before` to `time` in a step of dt, and checks the result.
 StepCheck World::try_part(const Snapshot& before, double time, double dt, StepReport& report) {
   is_wild_.assign(cloths_.size(), 0);
   advance(time, dt, report);
@@ -747,7 +747,7 @@ void World::accept(const StepReport& part, StepReport& report) {
   for (const InfeasiblePair& pair : part.infeasible) add_once(pair, report.infeasible);
 }
 
-/// As if the step had not been made.
+/// Rolls the failed step back.
 StepReport World::fail(const StepCheck& check, StepReport report) {
   report.ok = false;
   last_step_ = 0;
@@ -769,8 +769,8 @@ StepReport World::step(double dt) {
   guide_colliders(dt);
   guide_points(dt);
   for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
-  const int most = num_parts_at_most(dt);  // the step's units
-  int parts = 1;                           // that it would have at the present length
+  const int most = num_parts_at_most(dt);  // shortest parts of the step
+  int parts = 1;                           // number of parts at the present length
   while (most > 1 && part_ > 0 && parts < most && dt / parts > 1.5 * part_) parts *= 2;
   report.divisions = 0;
   StepCheck worst;

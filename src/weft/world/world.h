@@ -1,8 +1,8 @@
 #pragma once
-/// The world: cloths, pins, colliders, wind; and step(), which moves them all.
+/// The world: cloths, pins, colliders, wind; and step(), which advances them.
 ///
-/// SI units, Y up, right-handed. Steps are deterministic: same world, same calls, same bits, for any number
-/// of threads.
+/// SI units, Y up, right-handed. Steps are deterministic: the same world and the same calls give
+/// bit-identical results for any number of threads.
 
 #include <cstdint>
 #include <functional>
@@ -24,37 +24,37 @@
 namespace weft::engine {
 
 struct ClothParts {
-  std::string name;                               // for people and rules; empty: "cloth", "cloth 2", …
+  std::string name;                               // for messages and rules; empty: "cloth", "cloth 2", …
   std::shared_ptr<const ClothTopology> topology;  // see build_grid_topology, build_mesh_topology
   ClothMaterial material;
-  std::shared_ptr<const ClothElements> elements;  // a fabric's, on the topology's mesh; null: springs alone
+  std::shared_ptr<const ClothElements> elements;  // of a fabric, on the topology's mesh; null: springs only
   std::vector<Vec3> positions;                    // (num_particles) at the start; empty: the rest shape [m]
   Vec3 velocity = Vec3::Zero();                   // of all particles at the start [m/s]
 };
 
-/// Particles that move by prescription: still, or along key frames from where they were when pinned.
+/// Particles with prescribed motion: static, or along key frames from their positions when pinned.
 struct Pin {
   std::vector<int> particles;
   RigidMotion motion;
-  Vec3 pivot = Vec3::Zero();  // what the motion turns about [m]
+  Vec3 pivot = Vec3::Zero();  // centre of rotation [m]
 };
 
-/// What World::untangle found and did.
+/// Result of World::untangle.
 struct UntangleReport {
-  int rounds = 0;                    // of repair; 0: nothing crossed [1]
-  double farthest = 0;               // that a particle was moved [m]
-  std::vector<std::string> crossed;  // what crossed at the start, by name
-  std::vector<std::string> left;     // what crosses still, by name: empty if all is well
+  int rounds = 0;                    // of repair; 0: no intersections [1]
+  double farthest = 0;               // largest displacement of a particle [m]
+  std::vector<std::string> crossed;  // intersections at the start, identified by name
+  std::vector<std::string> left;     // remaining intersections; empty on success
 };
 
 /// A cloth or a collider.
 using BodyId = std::variant<ClothId, ColliderId>;
 
-/// Points that a program moves: pins or grabs.
+/// Points moved by the program: pins or grabs.
 struct PointGuide {
-  std::vector<Vec3> from, to;  // at the start and the end of the passage; empty: not moved by the program [m]
-  double start = 0, end = 0;   // of the passage [s]
-  bool is_new = false;         // the passage is that of the next step
+  std::vector<Vec3> from, to;  // at the start and the end of the motion; empty: not moved by the program [m]
+  double start = 0, end = 0;   // of the motion [s]
+  bool is_new = false;         // the motion is that of the next step
 
   bool is_empty() const { return to.empty(); }
   Vec3 at(std::size_t point, double time) const;
@@ -67,98 +67,97 @@ class World {
   World(World&&) = default;
   World& operator=(World&&) = default;  // not copyable: see clone()
 
-  /// Another world in the same state, which goes on with the same bits and shares nothing that changes but
-  /// the job system. Without the observer.
+  /// A copy in the same state: it continues bit-identically, and shares no mutable data except the job
+  /// system. The observer is not copied.
   World clone() const;
 
-  /// Throws InputError if the description does not fit together (sizes, numbers out of range, a fabric's
-  /// elements and an integrator that knows springs alone).
+  /// Throws InputError if the description is inconsistent (sizes, numbers out of range, a fabric's elements
+  /// with an integrator that supports springs only).
   ClothId add_cloth(const ClothParts& desc);
-  /// Throws InputError for shapes that cannot be. An empty name: "collider", "collider
-  /// 2", ….
+  /// Throws InputError for invalid shapes. An empty name becomes "collider", "collider 2", ….
   ColliderId add_collider(Collider collider);
-  void remove(ClothId cloth);  // with what was said about it: pins, grabs, rules of friction and collision
+  void remove(ClothId cloth);  // with its pins, grabs, and contact settings
   void remove(ColliderId collider);
   bool contains(ClothId cloth) const;
   bool contains(ColliderId collider) const;
 
-  /// Colliders moved by hand, in place of their key frames. A pose is a displacement from where the collider
-  /// was when it was added, and turns about pivot(). `move` says where it is at the end of the next step:
-  /// until then it goes evenly, through substeps and parts too, and turns the shorter way about one axis; not
-  /// told again it stands still. `place` puts it there now, and does not sweep cloth on the way. Throws
-  /// InputError for poses that are none.
+  /// Kinematic control of colliders, replaces their key frames. A pose is a displacement from the pose at
+  /// add_collider, with rotation about pivot(). `move` sets the pose at the end of the next step: until then
+  /// the collider moves evenly, through substeps and parts too, and rotates the shorter way about one axis.
+  /// Without another call it then stands still. `place` sets the present pose, and does not sweep cloth on
+  /// the way. Throws InputError for invalid poses.
   void move_collider(ColliderId collider, const Pose& at_end);
   void place_collider(ColliderId collider, const Pose& pose);
-  /// The same for a mesh's vertices (num_vertices), in its own coordinates [m]; the pose stays.
+  /// The same for a mesh's vertices (num_vertices), in mesh coordinates [m]; the pose is unchanged.
   void move_vertices(ColliderId collider, std::vector<Vec3> at_end);
   void place_vertices(ColliderId collider, std::vector<Vec3> positions);
   void set_collider_friction(ColliderId collider, double friction, double static_friction = 0);
 
-  /// All of these may be called between any two steps; the next step uses the new values.
+  /// Call these between any two steps; the next step uses the new values.
   void set_pins(ClothId cloth,
                 std::vector<Pin> pins);  // replaces the cloth's pins; throws InputError for bad indices
-  void set_grabs(ClothId cloth, std::vector<Grab> grabs);  // replaces the cloth's; throws InputError likewise
+  void set_grabs(ClothId cloth, std::vector<Grab> grabs);  // replaces the cloth's grabs; throws likewise
   void set_grab_target(ClothId cloth, int grab, const Vec3& target);
-  /// Where pinned particles, in the order of the pins' lists, and the targets of grabs are at the end of the
-  /// next step: until then they move evenly, through substeps and parts too. Not given again they stay. In
-  /// place of the pins' motions. Throws InputError for other numbers of points than there are.
+  /// Positions of pinned particles, in the order of the pins' lists, and of the grabs' targets at the end of
+  /// the next step: until then they move evenly, through substeps and parts too. Without another call they
+  /// stay. Replaces the pins' motions. Throws InputError if the number of points is wrong.
   void move_pins(ClothId cloth, const std::vector<Vec3>& at_end);
   void move_grabs(ClothId cloth, const std::vector<Vec3>& at_end);
   void set_forces(ClothId cloth,
                   const std::vector<Vec3>& forces);  // external (num_particles; empty: none) [N]
-  void set_material(ClothId cloth, const ClothMaterial& material);  // the elements stay
+  void set_material(ClothId cloth, const ClothMaterial& material);  // keeps the elements
   void set_material(ClothId cloth, const ClothMaterial& material,
                     std::shared_ptr<const ClothElements> elements);
-  /// Motion from outside (num_particles): nothing is swept on the way. Pins hold where their particles are
-  /// put. Throws InputError for other numbers of values, and values that are not finite.
-  void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // velocities stay [m]
+  /// Teleportation (num_particles): nothing is swept on the way. Pins hold their particles at the new
+  /// positions. Throws InputError for wrong numbers of values, and for values that are not finite.
+  void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // keeps velocities [m]
   void set_velocities(ClothId cloth, const std::vector<Vec3>& velocities);  // [m/s]
-  void teleport(ClothId cloth, const Pose& pose);  // about the world's origin; velocities turn along
+  void teleport(ClothId cloth, const Pose& pose);  // about the world's origin; rotates velocities too
   void set_gravity(const Vec3& gravity);           // throws InputError if it is not finite [m/s²]
-  /// Throws InputError for air or gusts that cannot be, and for air with an integrator that does not feel it.
+  /// Throws InputError for invalid air or gusts, and for air with an integrator that does not support it.
   void set_wind(const Wind& wind);
   void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
-  /// Coulomb's coefficient of two things by their names, of which one at least is a cloth (a cloth twice:
-  /// with itself), in place of what they say themselves; and the one that holds while they do not slide
-  /// (slower than 1 cm/s), if that is more. Throws InputError for unknown names, for those of several things,
+  /// Coulomb's coefficient of two bodies identified by name, in place of those of the bodies. At least one is
+  /// a cloth (the same cloth twice: self contact). The static coefficient applies while they do not slide
+  /// (slower than 1 cm/s), if it is larger. Throws InputError for unknown names, for names of several bodies,
   /// and below 0.
   void set_friction(const std::string& a, const std::string& b, double friction, double static_friction = 0);
   void set_friction(BodyId a, BodyId b, double friction, double static_friction = 0);
-  /// Whether two things, named as above, collide or go through each other.
+  /// Collision filter: whether two bodies, identified as above, collide.
   void set_collision(const std::string& a, const std::string& b, bool collide);
   void set_collision(BodyId a, BodyId b, bool collide);
   void track_contacts(bool enabled) {
     tracks_contacts_ = enabled;
   }  // for contact_points(); costs some percent
-  /// Throws InputError for an unknown name, and for one that knows springs alone if a cloth is a fabric.
+  /// Throws InputError for an unknown name, and for one that supports springs only if a cloth is a fabric.
   void set_integrator(const IntegratorSettings& settings);
-  /// Throws InputError for a shortest part that is not above 0, and for `enabled` with an integrator that
-  /// cannot.
+  /// Throws InputError if the shortest part is not above 0, and for `enabled` with an integrator that does
+  /// not support it.
   void set_division(const StepDivision& division);
   void set_jobs(std::shared_ptr<JobSystem> jobs);  // throws InputError for null
 
-  /// Sets cloth apart that crosses itself, other cloth or colliders where it is now, so that from the next
-  /// step on nothing crosses: what cloth is in becomes thinner and grows back (untangle.cpp). Pinned
-  /// particles stay. Velocities are kept, and everything stays where it is if that does not help. Takes
-  /// seconds for thousands of particles, and nothing where nothing crosses.
+  /// Repairs intersections of cloth with itself, other cloth or colliders, so that none is left from the next
+  /// step on: solids that cloth is in become thinner and grow back (untangle.cpp). Pinned particles stay.
+  /// Velocities are kept, and all positions are unchanged if the repair does not help. Takes seconds for
+  /// thousands of particles; a no-op without intersections.
   UntangleReport untangle();
 
-  /// Advances everything by dt > 0 [s].
+  /// Advances the world by dt > 0 [s].
   StepReport step(double dt);
 
-  /// Called in step() at the end of every substep, with the time that the cloths have then reached [s];
-  /// time() is that of the step's start until the step is done. Of a step that fails, which is undone, too.
+  /// Called in step() at the end of every substep, with the time that the cloths have reached [s]; time() is
+  /// the start of the step until the step is done. Also called in steps that fail and are undone.
   void set_observer(std::function<void(double time)> after_substep) { observer_ = std::move(after_substep); }
 
   double time() const { return time_; }  // [s]
   int num_cloths() const { return static_cast<int>(cloths_.size()); }
   int num_colliders() const { return static_cast<int>(colliders_.size()); }
-  ClothId cloth(int n) const;        // of the n-th, in the order in which they were added
+  ClothId cloth(int n) const;        // the n-th, in the order of addition
   ColliderId collider(int n) const;  // likewise
   int index(ClothId cloth) const { return static_cast<int>(index_of(cloth)); }  // the n of cloth(n)
   int index(ColliderId collider) const { return static_cast<int>(index_of(collider)); }
-  std::uint32_t id() const { return id_; }  // of the world, in the ids of what it holds
-  /// The wanted name; if it is empty, a free one by the kind of thing: "cloth", "cloth 2", ….
+  std::uint32_t id() const { return id_; }  // of the world, part of the ids of its bodies
+  /// The wanted name; if it is empty, a free one for the kind of body: "cloth", "cloth 2", ….
   std::string free_name(const std::string& wanted, const std::string& kind) const;
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
@@ -171,20 +170,20 @@ class World {
   const std::vector<Collider>& colliders() const { return colliders_; }
   Pose pose(ColliderId collider) const;  // now
 
-  /// What touched in the last step, where, and with what force; of a step cut into substeps, in the last one.
-  /// Ordered by what touches; empty without contact, and where contacts are not tracked. Summed over time the
-  /// forces are what cloth's momentum needs; where cloth trembles those of a single step are not its weight.
+  /// Contacts of the last step with bodies, positions and forces; for a step with substeps, of the last one.
+  /// Ordered by bodies; empty without contact, and where contacts are not tracked. Summed over time the
+  /// forces balance the cloth's momentum; for jittering cloth those of a single step do not equal its weight.
   std::vector<ContactPoint> contact_points() const;
 
-  /// What each pinned particle is held with, in the order of the pins' lists [N]: m a − F, with the mean
-  /// acceleration of the last step and all other forces at its end, contacts where they are tracked. Zero before
-  /// the first step, and after one that failed.
+  /// Reaction force on each pinned particle, in the order of the pins' lists [N]: m a − F, with the mean
+  /// acceleration of the last step and all other forces at its end, including contacts where tracked. Zero
+  /// before the first step, and after a failed one.
   std::vector<Vec3> pin_forces(ClothId cloth) const;
 
-  /// Whether something else than gravity may do work on cloth: wind, hands, or pins and colliders that move.
+  /// Whether forces other than gravity may do work on cloth: wind, attachments, or moving pins and colliders.
   bool is_driven() const;
 
-  /// The names of things that go through each other (pairs).
+  /// The names of bodies that do not collide (pairs).
   std::vector<std::array<std::string, 2>> passing_pairs() const;
 
   bool has_contact() const { return contact_; }
@@ -195,17 +194,17 @@ class World {
   const IntegratorSettings& integrator() const { return integrator_settings_; }
   const StepDivision& division() const { return division_; }
 
-  /// How a collider moves.
+  /// The motion of a collider.
   struct Guide {
     std::uint32_t number = 0;                             // of its id
     bool moves_by_hand = false, deforms_by_hand = false;  // else by key frames
-    std::optional<Pose> pose;                             // at the end of the next step, if told
+    std::optional<Pose> pose;                             // at the end of the next step, if set
     std::optional<std::vector<Vec3>> vertices;            // likewise [m]
     RigidMotion motion;                                   // in a snapshot
     std::shared_ptr<const MeshSequence> sequence;         // likewise
   };
 
-  /// What holds and drives a cloth.
+  /// Pins, attachments and forces of a cloth.
   struct Held {
     std::vector<Pin> pins;
     std::vector<Vec3> anchors;  // of each pinned particle, in the order of the pins' lists [m]
@@ -214,26 +213,27 @@ class World {
     std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
   };
 
-  /// Everything that moves; restoring it and stepping again gives the same bits again.
+  /// The complete dynamic state; restoring it and stepping again gives bit-identical results.
   struct Snapshot {
     double time = 0;
     std::vector<ClothState> states;
     std::vector<Held> held;     // (cloths)
     std::vector<Guide> guides;  // (colliders)
-    double part = 0;            // the length that steps are divided into, 0: they are not [s]
-    int calm = 0;               // parts in a row that could have been longer
+    double part = 0;            // present length of step parts, 0: undivided [s]
+    int calm = 0;               // number of consecutive parts that could have been longer
   };
   Snapshot snapshot() const;
-  /// Of this world, or one that was built alike: throws InputError if cloths or colliders do not match.
+  /// Takes a snapshot of this world, or of one built alike: throws InputError if cloths or colliders do not
+  /// match.
   void restore(const Snapshot& snapshot);
 
-  /// Of time, positions and velocities, bit by bit.
+  /// Hash of the bits of time, positions and velocities.
   std::uint64_t state_hash() const;
 
  private:
   struct PinnedParticle {
     int particle, pin;
-    Vec3 anchor;    // where it was when pinned [m]
+    Vec3 anchor;    // its position when pinned [m]
     int order = 0;  // in the pins' lists
   };
 
@@ -247,10 +247,10 @@ class World {
     Environment environment;             // of a substep
     std::vector<char> is_pinned;         // (num_particles)
     Hands hands;
-    PointGuide pin_guide, grab_guide;        // of pins and hands that the program moves
+    PointGuide pin_guide, grab_guide;        // of pins and attachments moved by the program
     std::vector<Vec3> forces;                // external (num_particles; empty: none) [N]
-    const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where hands hold it
-    Vec3 grab_impulse = Vec3::Zero();        // of all hands in the last step [N·s]
+    const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where attached
+    Vec3 grab_impulse = Vec3::Zero();        // of all attachments in the last step [N·s]
   };
 
   std::size_t index_of(ClothId id) const;
@@ -300,8 +300,8 @@ class World {
   IntegratorSettings integrator_settings_;
   std::unique_ptr<Integrator> integrator_;
   StepDivision division_;
-  double part_ = 0;  // the length that steps are divided into, 0: they are not [s]
-  int calm_ = 0;     // parts in a row that could have been longer
+  double part_ = 0;  // present length of step parts, 0: undivided [s]
+  int calm_ = 0;     // number of consecutive parts that could have been longer
   std::shared_ptr<JobSystem> jobs_;
   std::vector<Cloth> cloths_;
   std::vector<Collider> colliders_;
@@ -309,7 +309,7 @@ class World {
   std::vector<ContactRule> rules_;  // one per pair
   std::function<void(double)> observer_;
 
-  // Work space of step(), kept so that it allocates nothing.
+  // Work space of step(), kept to avoid allocations.
   WorkClock clock_;
   ContactSystem contact_system_;
   std::vector<ContactCloth> contact_cloths_;
@@ -319,9 +319,9 @@ class World {
   std::vector<char> is_wild_;        // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_step_, before_part_;
-  double last_step_ = 0;  // whose start before_step_ is; 0: none, or cloth was changed from outside since [s]
+  double last_step_ = 0;  // step after before_step_; 0: none, or cloth was changed from outside since [s]
   std::vector<CheckedCloth> checked_;
-  std::vector<Vec3> grab_impulses_;  // (cloths) before the part under way
+  std::vector<Vec3> grab_impulses_;  // (cloths) before the current part
 };
 
 }  // namespace weft::engine

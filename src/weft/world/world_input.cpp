@@ -8,7 +8,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kRounding = 1e-6;  // that unit vectors and rotations may be off by [1]
+constexpr double kRounding = 1e-6;  // tolerance of unit vectors and rotations [1]
 
 std::string in_words(double value) {
   char text[32];
@@ -25,7 +25,7 @@ bool is_rotation(const Mat3& r) {
          r.determinant() > 0;
 }
 
-/// Everything about a collider's shape that can be wrong.
+/// Validates a collider's shape.
 struct ShapeJudge {
   std::string who;
 
@@ -95,7 +95,7 @@ void require_valid(const ClothMaterial& m, const std::string& cloth) {
 void require_valid(const ClothTopology& topology, const std::string& cloth) {
   const std::string who = "cloth \"" + cloth + "\": ";
   try {
-    if (!topology.mesh.triangles.empty()) require_valid(topology.mesh);  // chains have none
+    if (!topology.mesh.triangles.empty()) require_valid(topology.mesh);  // chains have no triangles
   } catch (const InputError& error) {
     throw InputError(who + error.what());
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to world/: what a World refuses, in sentences. Each function throws InputError.
+/// Private to world/: validation of a World's input. Each function throws InputError.
 
 #include <string>
 
@@ -20,10 +20,10 @@ void require_valid(const ClothTopology& topology, const std::string& cloth);
 void require_valid(const Collider& collider);
 void require_valid(const Pose& pose, const std::string& thing);
 
-/// Wind that can be, and that the integrator feels.
+/// Valid wind that the integrator supports.
 void require_valid(const Wind& wind, const std::string& integrator);
 
-/// An integrator that knows more than springs.
+/// An integrator that supports elements.
 void require_elements_move(const std::string& integrator, const std::string& cloth);
 
 }  // namespace weft::engine
