@@ -5,8 +5,8 @@
 ///            + a fabric's membranes and bending (element_potential.h)
 ///
 /// y is the prediction without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with the velocity
-/// v_y that belongs to y, and c = b β/h: the dissipation of spring damping at the new velocity v_y + (β/h)(x
-/// − y).
+/// v_y that belongs to y, and c = b β/h: the dissipation of spring damping at the new velocity
+/// v_y + (β/h)(x − y).
 ///
 /// Its Hessian is stored per spring as t I + w wᵀ with t = k min(1, |1 − l0/l|) and |w|² = k − t: positive
 /// semidefinite by construction. The absolute value matters: with the transverse stiffness of compressed
