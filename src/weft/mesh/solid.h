@@ -14,8 +14,9 @@ struct SurfaceEdges {
   int border = 0;        // edges of one triangle
   int non_manifold = 0;  // of more than two
   int twisted = 0;       // of two that run along it in the same direction: one faces the wrong way
-  int unbalanced =
-      0;  // more triangles run along it in one direction than in the other: all but valid edges, and those at which several valid solids meet
+  /// More triangles run along it in one direction than in the other: all but valid edges, and those at which
+  /// several valid solids meet.
+  int unbalanced = 0;
 };
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh);
