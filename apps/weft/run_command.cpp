@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 constexpr const char* kAnimationName = "animation.glb";
 constexpr const char* kReportName = "report.json";
 
-/// The folder is there and everything can be written, or InputError. Results of an earlier run stay.
+/// Creates the folder and checks that all files are writable, or throws InputError. Earlier results stay.
 void prepare_folder(const fs::path& folder, const fs::path& report) {
   make_folder(folder);
   for (const char* name : {kAnimationName, kReportName}) require_writable(folder / name);
   if (!report.empty()) require_writable(report);
 }
 
-/// Both are whole before either replaces that of an earlier run.
+/// Both are complete before either replaces that of an earlier run.
 void write_results(const fs::path& folder, const RunResult& result) {
   StagedFile animation(folder / kAnimationName), report(folder / kReportName);
   write_glb(animation, result.animation);

@@ -1,5 +1,5 @@
 #pragma once
-/// One scene from file to files; also what `weft demo` does eight times.
+/// One scene from file to files; also used by `weft demo`, eight times.
 
 #include <filesystem>
 #include <optional>
@@ -16,7 +16,7 @@ struct RunRequest {
   std::filesystem::path report;  // a second copy of the report; empty: none
   std::optional<int> frames;
   int threads = 0;             // 0: all processors
-  bool audit = false;          // of energy, in the report
+  bool audit = false;          // energy audit in the report
   bool strict = false;         // problems are an error
   bool check_passages = true;  // within steps
   Overrides overrides;
@@ -28,11 +28,11 @@ struct FinishedRun {
   std::filesystem::path animation_file, report_file;
 };
 
-/// Reads, simulates with a progress bar, replaces the results of an earlier run. Throws InputError for bad
-/// input and unwritable places, before simulating where it can; then the earlier results stay.
+/// Reads and simulates with a progress bar, then replaces the results of an earlier run. Throws InputError
+/// for bad input and unwritable paths, before simulating where possible; then the earlier results stay.
 FinishedRun run_to_files(const RunRequest& request);
 
-/// The exit code that an outcome deserves.
+/// Exit code of an outcome.
 int exit_code_of(RunOutcome outcome);
 
 }  // namespace weft::engine::app
