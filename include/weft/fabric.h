@@ -94,7 +94,7 @@ struct FabricMistake {
 };
 
 /// All reasons that make a fabric invalid: numbers that are not finite or out of the ranges above, a membrane
-/// that is not positive definite, bias bending out of its range, density above lead's.
+/// that is not positive definite, bias bending out of its range, heavier than lead.
 WEFT_API std::vector<FabricMistake> find_mistakes(const Fabric& fabric);
 
 /// Throws InputError with all mistakes; the message calls the fabric `name`.

@@ -64,7 +64,7 @@ struct WorkTimes {
   double v_cycle = 0;       // preconditioners applied, with and without contact [s]
   double projection = 0;    // Gauss–Seidel on positions and velocities, before and after the solve [s]
   double ccd = 0;           // continuous collision detection without its pair lists [s]
-  double retries = 0;       // all work of discarded parts of steps: not a kind of its own [s]
+  double retries = 0;       // all work of discarded parts of steps: not a separate kind [s]
 
   int pairs_listed = 0;           // in the longest list [1]
   std::size_t looks = 0;          // passes over all listed pairs [1]

@@ -62,7 +62,7 @@ class TbbJobs final : public JobSystem {
 
  private:
   int num_threads_;
-  std::optional<tbb::global_control> more_than_processors_;  // else oneTBB clamps and prints it
+  std::optional<tbb::global_control> more_than_processors_;  // else oneTBB ignores them, with a warning
   tbb::task_arena arena_;
 };
 #endif
