@@ -1,4 +1,4 @@
-/// 64 worlds at once: a towel thrown at a bar in 64 ways, as for a data set.
+/// 64 worlds in parallel: a towel thrown at a bar at 64 speeds, as for a data set.
 
 #include <iostream>
 

@@ -1,4 +1,4 @@
-/// A cape on a walking figure of capsules: targets per frame for its collar, and a teleport of both.
+/// A cape on a walking figure of capsules: pin targets per frame for its collar, and a teleport of both.
 
 #include <cmath>
 #include <iostream>
@@ -11,7 +11,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60;
 constexpr int kCells = 24;
 
-/// Where the figure is at a time: it walks along z and sways.
+/// Pose of the figure at a time: it walks along z and sways.
 weft::Pose body_at(double time, double start_z) {
   return {{0.03 * std::sin(6 * time), 0, start_z + 1.2 * time},
           weft::rotation_about({0, 1, 0}, 8 * std::sin(6 * time))};
@@ -27,7 +27,7 @@ int main() {
   std::vector<weft::ColliderId> body;
   for (const weft::Capsule& part : parts) body.push_back(world.add_collider({.shape = part}));
 
-  // The cape hangs behind the shoulders, its first row is the collar.
+  // The cape hangs behind the shoulders; its first row is the collar.
   const weft::Grid grid{.size_x = 0.5, .size_z = 0.9, .cells_x = kCells, .cells_z = 2 * kCells};
   const weft::ClothId cape =
       world.add_cloth({.name = "cape",

@@ -1,4 +1,4 @@
-/// Contact forces: how much of a towel's weight each of two rails bears.
+/// Contact forces: the share of a towel's weight on each of two rails.
 
 #include <iostream>
 

@@ -1,4 +1,4 @@
-/// A game loop: steps of fixed length, pictures at any time, positions and normals in a vertex buffer.
+/// A game loop: fixed time steps, rendering at any time, positions and normals in a vertex buffer.
 
 #include <algorithm>
 #include <iostream>
@@ -13,7 +13,7 @@ struct Vertex {
   float normal[3];
 };
 
-/// Two states of the cloth, and a picture between them.
+/// Two states of the cloth, and interpolation between them.
 class ClothRenderer {
  public:
   ClothRenderer(const weft::World& world, weft::ClothId cloth) : world_(world), cloth_(cloth) {
@@ -25,14 +25,14 @@ class ClothRenderer {
     before_ = after_;
   }
 
-  /// To be called after every step.
+  /// Call after every step.
   void read() {
     before_.swap(after_);
     world_.copy_positions(cloth_, after_[0].position, sizeof(Vertex));
     world_.copy_normals(cloth_, after_[0].normal, sizeof(Vertex));
   }
 
-  /// `share` of the way from the last state but one to the last one; what an engine would upload.
+  /// Interpolates by `share` between the last two states; an engine would upload the result.
   const std::vector<Vertex>& draw(float share) {
     for (std::size_t i = 0; i < buffer_.size(); ++i) {
       for (int c = 0; c < 3; ++c) {

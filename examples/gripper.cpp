@@ -1,4 +1,4 @@
-/// A gripper takes a towel off a rail: two jaws and a rail that the program moves frame by frame.
+/// A gripper takes a towel off a rail: two jaws and a rail, moved by the program frame by frame.
 
 #include <algorithm>
 #include <iostream>
@@ -8,9 +8,9 @@
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
-constexpr double kJaw = 0.01;  // half as thick as a jaw is [m]
+constexpr double kJaw = 0.01;  // half the thickness of a jaw [m]
 
-/// From 0 to 1 between two times, evenly.
+/// Linear ramp from 0 to 1 between two times.
 double ramp(double time, double start, double end) {
   return std::clamp((time - start) / (end - start), 0.0, 1.0);
 }
@@ -23,7 +23,7 @@ int main() {
   const weft::ColliderId rail = world.add_collider(
       {.name = "rail", .shape = weft::Capsule{.a = {0, 0.5, -0.3}, .b = {0, 0.5, 0.3}, .radius = 0.01}});
 
-  // The towel lies on the rail, and falls over it on both sides.
+  // The towel starts on the rail and falls over it on both sides.
   const weft::Grid grid{.size_x = 0.5, .size_z = 0.3, .cells_x = 40, .cells_z = 24};
   const weft::ClothId towel = world.add_cloth({.name = "towel",
                                                .shape = grid,
@@ -38,7 +38,7 @@ int main() {
 
   for (int frame = 1; frame <= 240; ++frame) {
     const double time = frame * kFrame;
-    // Both layers of the towel are between the jaws: closed, they leave less than its thickness twice.
+    // Both layers of the towel are between the jaws: closed, these leave less than twice its thickness.
     const double gap = kJaw + 0.29 - 0.2895 * ramp(time, 1.0, 2.0);
     const double lift = 0.3 * ramp(time, 2.5, 3.5);
     world.move_collider(left, {{-gap, 0.4 + lift, 0}, {}});

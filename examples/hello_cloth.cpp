@@ -1,4 +1,4 @@
-/// Hello cloth: a square metre of denim, hung by two corners and let go.
+/// Hello cloth: a square metre of denim, hung by two corners and released.
 
 #include <iostream>
 

@@ -20,7 +20,7 @@ weft::World make_world() {
   return world;
 }
 
-/// One frame with the player's input: where the fist is.
+/// One frame with the player's input: the position of the fist.
 void play(weft::World& world, double x) {
   world.move_collider(world.collider(0), {{x, 0, 0}, {}});
   world.step(kFrame);
@@ -31,11 +31,11 @@ void play(weft::World& world, double x) {
 int main() {
   const auto true_input = [](int frame) { return frame < 30 ? -0.5 + 0.015 * frame : -0.05; };
 
-  // The player's machine, where all inputs are known.
+  // The player's machine, which has all inputs.
   weft::World player = make_world();
   for (int frame = 0; frame < 60; ++frame) play(player, true_input(frame));
 
-  // The other machine hears of them ten frames late: it guesses, and goes back when it was wrong.
+  // The other machine receives them ten frames late: it predicts, and rolls back after a wrong prediction.
   constexpr int kDelay = 10;
   weft::World other = make_world();
   std::deque<weft::Snapshot> past;  // before each of the last frames
@@ -49,7 +49,7 @@ int main() {
       known = true_input(heard);
       for (int f = heard; f < std::min(frame, 60); ++f) {
         past.push_back(other.snapshot());
-        play(other, f == heard ? known : true_input(heard));  // known, then guessed: it stays
+        play(other, f == heard ? known : true_input(heard));  // received, then predicted: unchanged
         ++replayed;
       }
       past.pop_front();

@@ -1,5 +1,5 @@
 #pragma once
-/// What several tests need: small cloths, chains, random motion.
+/// Shared test helpers: small cloths, chains, random motion.
 
 #include <cmath>
 #include <memory>
@@ -27,7 +27,7 @@ inline std::shared_ptr<const ClothTopology> mesh_of(const Grid& grid) {
   return build_mesh_topology(build_grid_mesh(grid, GridDiagonals::alternating));
 }
 
-/// Shaken positions and velocities, the same for every call.
+/// Adds random displacements and velocities, the same for every call.
 inline void shake(ClothState& state, double displacement, double speed, std::uint64_t seed = 1) {
   Random random(seed);
   for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -36,8 +36,8 @@ inline void shake(ClothState& state, double displacement, double speed, std::uin
   }
 }
 
-/// A chain of particles at the given places, each of the given mass (density 1), joined by structural springs
-/// of the given rest length.
+/// A chain of particles at the given positions, each of the given mass (density 1), joined by structural
+/// springs of the given rest length.
 inline std::shared_ptr<const ClothTopology> chain(const std::vector<Vec3>& places, double mass,
                                                   double rest_length) {
   auto topology = std::make_shared<ClothTopology>();
@@ -75,7 +75,7 @@ struct Hung {
     }
   }
 
-  /// A sixtieth of a second in equal steps.
+  /// Advances by a sixtieth of a second in equal steps.
   void advance_frame(Integrator& integrator, int num_steps) {
     advance(integrator, *model, environment, 1.0 / 60 / num_steps, num_steps, state);
   }

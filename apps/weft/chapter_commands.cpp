@@ -1,4 +1,4 @@
-/// `weft study paper`, `accuracy`, … and `all`: chapters of the study, and the report of them.
+/// `weft study paper`, `accuracy`, … and `all`: sections of the study, and their report.
 
 #include <fmt/core.h>
 
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct ChapterCommand {
   std::string name, about;
   Chapter (*study)(const ChapterOptions&);
-  double usual_seconds, usual_quick_seconds;  // for the time that is left
+  double usual_seconds, usual_quick_seconds;  // for the remaining time
 };
 
 const std::vector<ChapterCommand>& chapter_commands() {
@@ -75,7 +75,7 @@ ChapterOptions chapter_options(const ReportOptions& options) {
   return chapter;
 }
 
-/// In general terms: no names of machines.
+/// In general terms, without machine names.
 std::string describe_machine() {
   return fmt::format("a machine with {} processors and {} instructions", num_processors(),
                      to_string(simd_level()));
@@ -103,7 +103,7 @@ void write_plots(const fs::path& folder, const Chapter& chapter) {
   }
 }
 
-/// NAME.json, and its plots.
+/// Writes NAME.json and its plots.
 void write_chapter(const fs::path& folder, const Chapter& chapter) {
   write_plots(folder, chapter);
   write_file(folder / (chapter.name + ".json"), to_json(chapter));
@@ -126,7 +126,7 @@ void run_chapter(const ChapterCommand& command, const ReportOptions& options) {
   fmt::print("{}", options.json ? to_json(chapter) : to_markdown(report, "."));
 }
 
-/// A chapter that an earlier run has left in the folder, made by this version and as quick as asked for.
+/// A section of an earlier run in the folder, of this version and with the same quick setting.
 std::optional<Chapter> find_chapter(const ChapterCommand& command, const ReportOptions& options) {
   const fs::path file = options.out / (command.name + ".json");
   if (options.fresh || !fs::exists(file)) return std::nullopt;

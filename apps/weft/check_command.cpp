@@ -13,8 +13,8 @@
 namespace weft::engine::app {
 namespace {
 
-/// Reads the scene and builds its world: meshes, pins, sizes and the start are judged too. Returns whether
-/// there is nothing to say against it.
+/// Reads the scene and builds its world, which also checks meshes, pins, sizes and the initial state. Returns
+/// whether there is no warning.
 bool check(const std::string& name, const Overrides& overrides) {
   const std::filesystem::path file = find_scene(name);
   const SceneDesc scene = read_scene(file, overrides);

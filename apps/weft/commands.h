@@ -5,7 +5,7 @@
 
 namespace weft::engine::app {
 
-/// What the program tells the shell.
+/// Exit codes of the program.
 enum ExitCode { kDone = 0, kSimulationFailed = 1, kNotClean = 1, kBadInput = 2, kInterrupted = 130 };
 
 void add_run_command(CLI::App& app, int& exit_code);

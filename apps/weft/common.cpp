@@ -24,7 +24,7 @@ void say(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 int choose_threads(int asked) {
-  constexpr int kMostPerProcessor = 4;  // of more, oneTBB would say that it ignores them
+  constexpr int kMostPerProcessor = 4;  // above it, oneTBB ignores the excess and prints a warning
   const int most = kMostPerProcessor * num_processors();
   if (asked > most) say(fmt::format("--threads {}: {} are used, four for each processor", asked, most));
   return asked > 0 ? std::min(asked, most) : num_processors();
@@ -40,7 +40,7 @@ void add_set_option(CLI::App& command, Overrides& overrides) {
 PictureSize parse_size(const std::string& text) {
   PictureSize size;
   char end = 0;
-  constexpr int kLargest = 16384;  // of most OpenGL drivers
+  constexpr int kLargest = 16384;  // texture limit of most OpenGL drivers
   const bool is_good = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2 &&
                        size.width > 0 && size.height > 0 && size.width <= kLargest && size.height <= kLargest;
   if (!is_good) {

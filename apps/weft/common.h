@@ -1,5 +1,5 @@
 #pragma once
-/// What several commands need.
+/// Shared helpers of the commands.
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -10,20 +10,19 @@
 
 namespace weft::engine::app {
 
-/// The folder is there, or InputError.
+/// Creates the folder, or throws InputError.
 void make_folder(const std::filesystem::path& folder);
 
-/// A line on standard error; one that is closed or full is no reason to fail.
+/// Prints a line to standard error; a closed or full stream is not an error.
 void say(const std::string& line);
 
 /// Processors of this machine, at least 1.
 int num_processors();
 
-/// Threads to use where so many are asked for (0: one per processor): at most four per processor, which is
-/// said.
+/// Number of threads for a requested one (0: one per processor): at most four per processor, with a note.
 int choose_threads(int asked);
 
-/// --set KEY=VALUE, as often as wanted.
+/// --set KEY=VALUE, repeatable.
 void add_set_option(CLI::App& command, Overrides& overrides);
 
 /// "1280x720" as a size, each from 1 to 16384; throws InputError for anything else.

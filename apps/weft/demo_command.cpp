@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The paper's figures, each with its twin of real fabric.
+/// The paper's figures, each with a version in real fabric.
 const std::vector<std::string> kScenes = {
     "paper/fig3_horizontal", "paper/fig3_horizontal_real", "paper/fig4_vertical", "paper/fig4_vertical_real",
     "paper/fig5_falling",    "paper/fig5_falling_real",    "paper/fig6_ball",     "paper/fig6_ball_real",
@@ -34,7 +34,7 @@ void paint(const Animation& animation, const fs::path& folder) {
   painter.write_video(video, kEvery);
 }
 
-/// Pictures are no reason to stop: what prevents them is said once.
+/// Optional pictures: a failure is reported once and does not stop the demo.
 class Pictures {
  public:
   void paint(const Animation& animation, const fs::path& folder) {
@@ -54,7 +54,7 @@ class Pictures {
   std::string trouble_;
 };
 
-/// A window is no reason to fail either.
+/// Optional window: a failure does not stop the demo.
 void show_window() {
   const std::string scene = "paper/fig6_ball_real";
   fmt::print("\nThe last scene in a window: grab the cloth; H for help, Q to close it (weft view {}).\n",

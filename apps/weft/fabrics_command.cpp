@@ -9,7 +9,7 @@
 namespace weft::engine::app {
 namespace {
 
-/// One number of a fabric, as it is shown.
+/// One displayed number of a fabric.
 struct Row {
   const char* key;
   double value;
@@ -37,7 +37,7 @@ std::vector<Row> rows(const FabricPreset& preset) {
 
 using Curves = std::vector<std::pair<const char*, const std::vector<StretchPoint>*>>;
 
-/// The curves that the fabric has.
+/// The fabric's stretch curves.
 Curves curves(const Fabric& f) {
   Curves all = {{"stretch_warp", &f.stretch_warp}, {"stretch_weft", &f.stretch_weft}};
   std::erase_if(all, [](const auto& curve) { return curve.second->empty(); });

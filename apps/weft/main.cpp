@@ -16,15 +16,15 @@
 namespace weft::engine::app {
 namespace {
 
-/// Files that are opened later must not take the place of a standard stream that the caller has closed. What
-/// is written to a closed standard output fails; to a closed standard error, it is lost.
+/// Reopens standard streams that the caller has closed, so that later files do not take their descriptors.
+/// Writes to a closed standard output fail; those to a closed standard error are lost.
 void fill_standard_streams() {
   for (const int stream : {0, 1, 2}) {
     if (fcntl(stream, F_GETFD) == -1) open("/dev/null", stream == 2 ? O_WRONLY : O_RDONLY);
   }
 }
 
-/// Names the first word that is no command, and what may have been meant. CLI11 would ask for a command.
+/// Reports the first word that is not a command, with a suggestion. CLI11 would only request a command.
 void require_commands(const CLI::App& app, int argc, char** argv) {
   const CLI::App* parent = &app;
   std::string path = app.get_name();
@@ -78,7 +78,7 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
-/// Takes what was printed to where it goes; false, with a sentence, if not all of it could be written.
+/// Flushes standard output; false, with a message, if not all of it could be written.
 bool finish_standard_output() {
   errno = 0;
   const bool had_failed = std::ferror(stdout) != 0;
@@ -94,8 +94,8 @@ bool finish_standard_output() {
 int main(int argc, char** argv) {
   using namespace weft::engine::app;
   fill_standard_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large (ulimit -f) is an error of the write
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the size limit (ulimit -f) is a write error
   const int exit_code = run(argc, argv);
   if (finish_standard_output()) return exit_code;
-  return interrupted() ? kInterrupted : kBadInput;  // a terminal that is closed takes standard output with it
+  return interrupted() ? kInterrupted : kBadInput;  // a closed terminal also closes standard output
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Animations as picture files; what `weft render` and `weft demo` share.
+/// Animations as picture files, for `weft render` and `weft demo`.
 
 #include <filesystem>
 #include <vector>
@@ -9,28 +9,28 @@
 
 namespace weft::engine::app {
 
-/// Whether files of this kind can be painted: .png, .jpg, or a video. Throws InputError, naming the kinds, if
-/// not.
+/// Checks that files of this kind are supported: .png, .jpg, or a video. Throws InputError, with the
+/// supported kinds, otherwise.
 void require_picture(const std::filesystem::path& file);
 
 struct PaintSettings {
   PictureSize size;
-  Camera view;      // how it is turned; its place follows from the scene
-  double zoom = 1;  // > 1: nearer [1]
+  Camera view;      // orientation only; the position follows from the scene
+  double zoom = 1;  // > 1: closer [1]
   SceneStyle style;
 };
 
-/// Draws the frames of an animation, which must outlive this, with one camera that sees all of them.
+/// Draws the frames of an animation, which must outlive this, with one camera that frames all of them.
 class Painter {
  public:
-  /// Throws GraphicsError where nothing can be drawn, InputError for an animation without cloth.
+  /// Throws GraphicsError without graphics, InputError for an animation without cloth.
   Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device);
 
   /// One frame, or several as a contact sheet with so many columns (0: at most four). Throws InputError for
-  /// frames that do not exist.
+  /// nonexistent frames.
   void write_pictures(const std::filesystem::path& file, const std::vector<int>& frames, int columns);
 
-  /// Every so many frames, until the end or an interrupt that comes meanwhile.
+  /// Every so many frames, until the end or an interrupt during the call.
   void write_video(const std::filesystem::path& file, int every);
 
   int last_frame() const { return last_; }

@@ -15,13 +15,13 @@ namespace {
 constexpr int kBarWidth = 28;
 constexpr double kRedrawInterval = 0.1;  // [s]
 
-// `timeout` and job managers send one signal twice: to the program and to its group.
+// `timeout` and job managers send one signal twice: to the program and to its process group.
 constexpr std::time_t kSameInterrupt = 2;  // [s]
 
 volatile std::sig_atomic_t g_interrupted = 0;
 std::time_t g_interrupted_at = 0;
 
-// The first signal asks the run to end and keep what is done; a later one ends the program at once.
+// The first signal requests the run to end and keep its results; a later one terminates the program at once.
 void on_interrupt(int signal) {
   const std::time_t now = std::time(nullptr);
   if (g_interrupted == 0) {

@@ -1,5 +1,5 @@
 #pragma once
-/// How far a run is, with the time left, and signals that end it.
+/// Progress of a run, remaining time, and terminating signals.
 
 #include <chrono>
 #include <string>
@@ -8,25 +8,25 @@
 
 namespace weft::engine::app {
 
-/// Lines of text for a log: one each ten seconds, the first after ten.
+/// Log lines: one every ten seconds, the first after ten.
 class ProgressLog {
  public:
   explicit ProgressLog(std::string label) : label_(std::move(label)) {}
 
-  /// The line that is due after a frame, `elapsed` after the start [s]; empty if none is. Tells how long the
-  /// frame took if that was more than ten seconds.
+  /// The due line after a frame, `elapsed` after the start [s]; empty if none is due. Reports the frame's
+  /// time if that exceeds ten seconds.
   std::string line(const Progress& progress, double elapsed);
 
  private:
   std::string label_;
-  double due_ = kInterval;  // the next line, after the start [s]
-  double spent_ = 0;        // on simulation up to the frame before [s]
+  double due_ = kInterval;  // time of the next line, after the start [s]
+  double spent_ = 0;        // on simulation up to the previous frame [s]
 
   static constexpr double kInterval = 10;  // [s]
 };
 
-/// Tells on standard error where a run is: a bar on a terminal, the lines of a ProgressLog elsewhere. A
-/// standard error that cannot be written is no reason to fail.
+/// Reports progress on standard error: a bar on a terminal, the lines of a ProgressLog elsewhere. A failed
+/// write to standard error is ignored.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
@@ -39,13 +39,13 @@ class ProgressBar {
 
   std::string label_;
   bool is_terminal_;
-  double last_drawn_ = -1;  // seconds spent at the last drawing
+  double last_drawn_ = -1;  // simulation time at the last drawing [s]
   ProgressLog log_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// From now on the first of Ctrl-C (SIGINT), SIGTERM and SIGHUP only sets interrupted(); one that comes
-/// seconds later ends the program at once. A SIGHUP that is ignored (nohup) stays so.
+/// From now on the first Ctrl-C (SIGINT), SIGTERM or SIGHUP only sets interrupted(); one that comes seconds
+/// later terminates the program at once. An ignored SIGHUP (nohup) stays ignored.
 void catch_interrupts();
 bool interrupted();
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct RenderRequest {
   std::string scene;  // a scene, a .glb file, or a folder with animation.glb
   fs::path out = "weft.png";
-  std::vector<int> frames;  // of pictures; of a video the last one; empty: the last one of the scene
+  std::vector<int> frames;  // of pictures; of a video the last one; empty: the scene's last one
   int columns = 0;          // of a contact sheet; 0: as many as pictures, at most 4
   int every = 1;            // of a video: every so many frames
   std::string size = "1280x720";
@@ -42,7 +42,7 @@ struct Footage {
   RunOutcome outcome;
 };
 
-/// An animation that was written by `weft run`, or one that is simulated now.
+/// An animation written by `weft run`, or simulated now.
 class Source {
  public:
   explicit Source(const RenderRequest& request) : request_(request) {
@@ -61,7 +61,7 @@ class Source {
       throw InputError("--springs needs a scene: " + file_.string() + " does not tell its springs");
   }
 
-  /// At least up to the last frame that is wanted, unless the simulation ends before.
+  /// At least up to the last requested frame, unless the simulation ends before.
   Footage get() const {
     if (!scene_) return {read_glb(file_), RunOutcome::done};
     RunOptions options{.threads = choose_threads(request_.threads), .check_passages = false};
@@ -109,20 +109,20 @@ PaintSettings paint_settings(const RenderRequest& request) {
   return settings;
 }
 
-/// Of the frames that were asked for, those that the simulation has reached; the last one it has where it
-/// reached none, or none was asked for.
+/// The requested frames that the simulation has reached; its last one if it reached none, or none was
+/// requested.
 std::vector<int> choose_frames(std::vector<int> frames, RunOutcome outcome, int last) {
   if (outcome != RunOutcome::done) std::erase_if(frames, [&](int frame) { return frame > last; });
   if (frames.empty()) frames = {last};
   return frames;
 }
 
-/// Paints what there is, even if the simulation has failed or was interrupted; tells how that ended.
+/// Renders the available frames, even if the simulation failed or was interrupted; returns its outcome.
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
   PaintSettings settings = paint_settings(request);
   const Source source(request);
-  auto device = make_offscreen_device();  // now: no reason to simulate where nothing can be drawn
+  auto device = make_offscreen_device();  // first: fails before simulating on machines without graphics
   if (request.out.has_parent_path()) make_folder(request.out.parent_path());
   require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kAnimationName = "animation.glb";
 constexpr const char* kReportName = "report.json";
 
-/// The folder is there and everything can be written, or InputError. Results of an earlier run stay.
+/// Creates the folder and checks that all files are writable, or throws InputError. Earlier results stay.
 void prepare_folder(const fs::path& folder, const fs::path& report) {
   make_folder(folder);
   for (const char* name : {kAnimationName, kReportName}) require_writable(folder / name);

@@ -1,5 +1,5 @@
 #pragma once
-/// One scene from file to files; also what `weft demo` does eight times.
+/// One scene from file to files; also used by `weft demo`, eight times.
 
 #include <filesystem>
 #include <optional>
@@ -16,7 +16,7 @@ struct RunRequest {
   std::filesystem::path report;  // a second copy of the report; empty: none
   std::optional<int> frames;
   int threads = 0;             // 0: all processors
-  bool audit = false;          // of energy, in the report
+  bool audit = false;          // energy audit in the report
   bool strict = false;         // problems are an error
   bool check_passages = true;  // within steps
   bool glb = true, obj = false;  // animation.glb; the folder obj, a file per cloth and frame
@@ -33,7 +33,7 @@ struct FinishedRun {
 /// `sinks` get the frames too.
 FinishedRun run_to_files(const RunRequest& request, const std::vector<FrameSink*>& sinks = {});
 
-/// The exit code that an outcome deserves.
+/// Exit code of an outcome.
 int exit_code_of(RunOutcome outcome);
 
 }  // namespace weft::engine::app

@@ -30,7 +30,7 @@ struct StudyOptions {
 
 using Test = std::function<StudyResult(const Fabric&, const StudyOptions&)>;
 
-/// Values under the figures' names; what was expected, and whether that is met, beside.
+/// Values by name of the metric, with the expected value and whether it is met.
 void add_figures(const StudyResult& result, Json& json) {
   Json units = Json::object(), expected = Json::object();
   for (const Figure& f : result.figures) {
@@ -66,7 +66,7 @@ void print_warnings(const StudyResult& result) {
   for (const std::string& warning : result.warnings) say("warning: " + warning);
 }
 
-/// With --json one object on standard output, and nothing else; all words go to standard error.
+/// With --json one object on standard output, and nothing else; all text goes to standard error.
 void run_test(const std::string& name, const Test& test, const StudyOptions& options) {
   const FabricPreset preset = load_fabric(options.fabric);
   if (!options.out.empty()) make_folder(options.out);

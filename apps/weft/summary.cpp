@@ -15,7 +15,7 @@ std::string format_crossings(const RunReport& r) {
   return r.intersections ? fmt::format("{}", *r.intersections) : "–";
 }
 
-/// The frame that left most energy over, if an audit found any that was made from nothing.
+/// The frame with the largest excess of energy, if an energy audit found any.
 std::string format_left_over(const std::vector<double>& left_over) {
   const auto most = std::max_element(left_over.begin(), left_over.end());
   if (*most <= 0) return "no energy from nothing in any frame";
@@ -73,7 +73,7 @@ std::string table_head() {
 
 std::string table_line(const RunReport& r) {
   const std::string strain = fmt::format("{:+.1f} … {:+.1f} %", 100 * r.min_strain, 100 * r.max_strain);
-  // fmt counts the dots as one column, as a terminal does.
+  // fmt counts each dot as one column, as a terminal does.
   return fmt::format("{:<26} {:>9} {:>7} {:>9.2f} {:>16} {:>8.3f} m {:>9} {:>12}\n", r.scene, r.particles,
                      r.frames, r.ms_per_frame_median, strain, last(r.lowest_y), format_crossings(r),
                      format_depth(r));

@@ -1,5 +1,5 @@
 #pragma once
-/// Reports in words.
+/// Reports as text.
 
 #include <string>
 
@@ -10,10 +10,10 @@ namespace weft::engine::app {
 /// Several lines for one run.
 std::string summarise(const RunReport& report);
 
-/// A line for each problem of the run, with the key to turn; empty if there is none.
+/// A line for each problem of the run, with the setting that helps; empty if there is none.
 std::string describe_problems(const RunReport& report);
 
-/// Head and one line per run for a table of runs.
+/// Header and one line per run for a table of runs.
 std::string table_head();
 std::string table_line(const RunReport& report);
 

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct VerifyRequest {
   fs::path path;            // a folder with animation.glb, or a .glb file
   double tolerance = 1e-4;  // [m]
-  bool passages = false;    // are offences
+  bool passages = false;    // count as failures
   bool json = false;
 };
 
@@ -74,7 +74,7 @@ nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check
           {"offences", to_json(check.offences)}};
 }
 
-/// What is wrong with a tolerance; nothing: empty.
+/// Error in a tolerance; empty: none.
 std::string require_depth(const std::string& text) {
   double depth = 0;
   if (CLI::detail::lexical_cast(text, depth) && std::isfinite(depth) && depth >= 0) return "";

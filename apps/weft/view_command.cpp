@@ -20,8 +20,8 @@
 namespace weft::engine::app {
 namespace {
 
-/// From now on this thread, and those that it makes, give way to the simulation's: where OpenGL is computed
-/// by the processor, pictures come late rather than steps.
+/// Lowers the priority of this thread, and of those that it creates, below the simulation's: with software
+/// OpenGL, pictures are late rather than steps.
 void give_way_to_simulation() {
 #ifdef __linux__
   constexpr int kNiceness = 4;
@@ -29,7 +29,7 @@ void give_way_to_simulation() {
 #endif
 }
 
-/// One simulation, or one for each integrator to compare. Processors are shared, but for one that draws.
+/// One simulation, or one per integrator to compare. They share the processors, except one for drawing.
 std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, SceneDesc scene) {
   std::vector<std::string> integrators = request.compare;
   if (integrators.empty()) integrators = {scene.solver.integrator};

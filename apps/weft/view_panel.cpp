@@ -21,13 +21,13 @@ const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating
 
 float scale() { return ImGui::GetIO().FontGlobalScale; }
 
-/// Notes where the last control is.
+/// Records the position of the last control.
 void note(Viewer& viewer, const std::string& name) {
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
   viewer.controls[name] = {a.x, a.y, b.x, b.y};
 }
 
-/// Dear ImGui's own font has no Greek.
+/// Dear ImGui's default font has no Greek.
 std::string without_greek(std::string words) {
   constexpr std::string_view kSigma = "Σ";
   for (std::size_t at; (at = words.find(kSigma)) != std::string::npos;)
@@ -74,7 +74,7 @@ void draw_integrator(Viewer& viewer, int s) {
   }
 }
 
-/// Figures, and what is wrong.
+/// Results and warnings.
 void draw_status(const LiveStatus& s) {
   ImGui::TextUnformatted(fmt::format("{:.2f} ms per step", s.ms_per_step).c_str());
   ImGui::SameLine(kWidth * 0.52f * scale());
@@ -124,14 +124,14 @@ void draw_view(Viewer& viewer) {
   note(viewer, "help");
 }
 
-/// `anchor`: which of the box's own points is at (x, y), as shares of its size.
+/// `anchor`: the point of the box that is at (x, y), as shares of its size.
 void begin_box(const char* name, float x, float y, float width, const ImVec2& anchor = {0, 0}) {
   ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, anchor);
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, FLT_MAX});
   ImGui::Begin(name, nullptr, kBox);
 }
 
-/// In the middle of a side's lower edge, where there are two.
+/// Centred at the lower edge of a side, with two sides.
 void draw_side_box(Viewer& viewer, int s) {
   const WindowPart part = viewer.part(s);
   const float x = static_cast<float>(part.x) + 0.5f * static_cast<float>(part.size.width);

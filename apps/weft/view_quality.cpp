@@ -22,8 +22,8 @@ const std::array kLevels = {
 
 constexpr int kFirstInSoftware = 2;
 constexpr double kTooSlow = 45, kFast = 12;  // [ms]
-constexpr int kSettle = 4;                   // pictures before a change of level is judged [1]
-constexpr int kTryAgain = 600;               // pictures after which a better level may be tried again [1]
+constexpr int kSettle = 4;                   // pictures before a level is evaluated [1]
+constexpr int kTryAgain = 600;               // pictures before a better level is tried again [1]
 
 int pixels(double scale, int side) { return std::max(1, static_cast<int>(scale * side)); }
 

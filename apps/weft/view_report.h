@@ -1,5 +1,5 @@
 #pragma once
-/// What the window shows, as JSON: for tests and benchmarks.
+/// State of the window as JSON, for tests and benchmarks.
 
 #include <filesystem>
 
@@ -7,10 +7,10 @@ namespace weft::engine::app {
 
 class Viewer;
 
-/// Replaces the file whole. Throws InputError if it cannot be written.
+/// Replaces the file atomically. Throws InputError if it cannot be written.
 void write_view_report(const std::filesystem::path& file, const Viewer& viewer);
 
-/// weft-view-1.png, or the first number that is not taken.
+/// weft-view-1.png, or the first unused number.
 std::filesystem::path name_of_next_picture();
 
 }  // namespace weft::engine::app

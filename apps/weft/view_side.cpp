@@ -5,7 +5,7 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr double kGroundBelow = 0.1;  // under all that is expected, as a share of its size [1]
+constexpr double kGroundBelow = 0.1;  // below all expected positions, as a share of their extent [1]
 constexpr Color kHand = {0.95, 0.35, 0.02};
 
 double find_ground(const std::vector<Vec3>& reach) {

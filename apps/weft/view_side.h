@@ -1,5 +1,5 @@
 #pragma once
-/// One simulation in the window: it alone, or one of two side by side.
+/// One simulation in the window: the only one, or one of two.
 
 #include "weft/lab/scene_picture.h"
 #include "weft/render/pick.h"
@@ -14,13 +14,13 @@ class ViewSide {
   LiveSimulation& live() { return live_; }
   const LiveStatus& status() const { return frame_.status; }
 
-  /// Takes over the newest frame; false if there is none since the last call.
+  /// Fetches the newest frame; false if there is none since the last call.
   bool update();
 
-  /// What is seen now: cloth, or its springs; and the hand that holds it, drawn towards `target`.
+  /// The current picture: cloth, or its springs; and the attachment, drawn towards `target`.
   Picture draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const;
 
-  /// The point of a cloth that a ray meets before anything else.
+  /// The first hit of a ray, if it is on a cloth.
   struct ClothHit {
     ClothPoint point;
     Vec3 place;  // [m]
@@ -32,8 +32,8 @@ class ViewSide {
  private:
   LiveSimulation live_;
   LiveFrame frame_;
-  Animation animation_;  // one frame: now
-  double ground_;        // its height where the scene has no floor [m]
+  Animation animation_;  // one frame: the current one
+  double ground_;        // height of the ground in scenes without a floor [m]
 };
 
 }  // namespace weft::engine::app

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kOrbitDegrees = 0.35;          // per pixel of a drag
 constexpr double kWheelFactor = 0.88;           // of the distance, per click
-constexpr double kRoom = 1.1;                   // farther away than needed, for hands and swings [1]
-constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures where the processor draws them [s]
-constexpr double kIdle = 0.25;                  // how long an unchanged window waits for somebody [s]
-constexpr int kRest = 4;                        // unchanged pictures after which the best one is drawn [1]
-constexpr double kWindow = 1;                   // over which pictures per second are counted [s]
-constexpr double kNewShare = 0.1;               // of the last picture in the mean of their times [1]
+constexpr double kRoom = 1.1;                   // extra camera distance, for grabs and swings [1]
+constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures with software OpenGL [s]
+constexpr double kIdle = 0.25;                  // poll interval of an unchanged window [s]
+constexpr int kRest = 4;                        // unchanged pictures before the best one is drawn [1]
+constexpr double kWindow = 1;                   // averaging window of pictures per second [s]
+constexpr double kNewShare = 0.1;               // weight of the last picture in the mean of their times [1]
 
 const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
 
@@ -50,7 +50,7 @@ void Viewer::run() {
   write_report();
 }
 
-/// A side whose step has failed has paused by itself, and the other one pauses with it.
+/// A side whose step has failed pauses itself; the other one then pauses too.
 void Viewer::update() {
   bool has_failed = false;
   for (const auto& side : sides_) {
@@ -61,7 +61,7 @@ void Viewer::update() {
   if (has_failed && is_playing_) toggle_play();
 }
 
-// ---- What people do --------------------------------------------------------------------------------------
+// ---- User input -----------------------------------------------------------------------------------------
 
 void Viewer::toggle_play() {
   is_playing_ = !is_playing_;
@@ -197,7 +197,7 @@ void Viewer::on_move(double x, double y) {
   }
 }
 
-/// The same point of the cloth is grabbed on both sides.
+/// Grabs the same point of the cloth on both sides.
 bool Viewer::grab(double x, double y) {
   grab_side_ = side_at(x);
   const auto hit = sides_[grab_side_]->pick(ray_at(grab_side_, x, y));
@@ -208,7 +208,7 @@ bool Viewer::grab(double x, double y) {
   return true;
 }
 
-/// In the plane through the grabbed place that faces the camera.
+/// Drags in the plane through the grabbed point that faces the camera.
 void Viewer::drag_grab(double x, double y) {
   const Ray ray = ray_at(grab_side_, x, y);
   const double along = ray.direction.dot(camera_.forward());
@@ -225,7 +225,7 @@ void Viewer::release() {
   drag_ = Drag::none;
 }
 
-// ---- Where things are ------------------------------------------------------------------------------------
+// ---- Layout ---------------------------------------------------------------------------------------------
 
 WindowPart Viewer::part(int side) const {
   const PictureSize size = window_.size();
@@ -245,8 +245,8 @@ Ray Viewer::ray_at(int side, double x, double y) const {
 
 // ---- Drawing ---------------------------------------------------------------------------------------------
 
-/// Pictures follow each other as fast as the screen shows them, slower where the processor draws them, and
-/// only now and then where nothing changes.
+/// Pictures follow each other at the screen's rate, slower with software OpenGL, and rarely while nothing
+/// changes.
 void Viewer::wait() {
   if (window_.is_software()) {
     const double rest = kSoftwareInterval - seconds(Clock::now() - drawn_at_);

@@ -1,5 +1,5 @@
 #pragma once
-/// The window of `weft view`: what it shows and what people can do in it.
+/// The window of `weft view`: display and user input.
 
 #include <array>
 #include <filesystem>
@@ -18,8 +18,8 @@ namespace weft::engine::app {
 
 struct ViewOptions {
   PictureSize size;
-  std::filesystem::path report;  // JSON of what the window shows, at the end and on the key J; empty: none
-  std::int64_t frames = 0;       // to show, then it closes; 0: until somebody closes it
+  std::filesystem::path report;  // JSON state of the window, written at the end and on the key J; empty: none
+  std::int64_t frames = 0;       // number to show before closing; 0: until the user closes it
 };
 
 class Viewer {
@@ -27,10 +27,10 @@ class Viewer {
   /// `sides`: one or two simulations of one scene, at rest until run(). Throws GraphicsError.
   Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options);
 
-  /// Until the window is closed.
+  /// Runs until the window is closed.
   void run();
 
-  // What the keys, the mouse and the panel do.
+  // Actions of the keys, the mouse and the panel.
   void toggle_play();
   void step(int count);
   void step_frame();
@@ -42,11 +42,11 @@ class Viewer {
   void set_wind(const std::optional<Vec3>& velocity);  // empty: the scene's
   void toggle_springs() { shows_springs_ = !shows_springs_; }
   void toggle_help() { shows_help_ = !shows_help_; }
-  void frame_scene();  // the camera of the beginning
+  void frame_scene();  // the initial camera
   void save_picture() { wants_picture_ = true; }
   void write_report();
 
-  // What the panel and the report tell.
+  // Data for the panel and the report.
   int num_sides() const { return static_cast<int>(sides_.size()); }
   ViewSide& side(int s) const { return *sides_[s]; }
   bool is_playing() const { return is_playing_; }
@@ -58,13 +58,13 @@ class Viewer {
   int quality_level() const { return quality_.level(); }
   std::int64_t drawn_frames() const { return drawn_frames_; }
   double drawn_per_second() const { return drawn_per_second_; }
-  double picture_ms() const { return picture_ms_; }  // to draw and show one while something moves [ms]
+  double picture_ms() const { return picture_ms_; }  // to draw and show one during motion [ms]
   bool is_grabbing() const { return drag_ == Drag::grab; }
   const std::vector<std::string>& pictures() const { return pictures_; }
   const std::string& message() const { return message_; }
-  WindowPart part(int side) const;  // of the window that a side is shown in
+  WindowPart part(int side) const;  // part of the window of a side
 
-  /// Where a control was drawn: left, top, right, bottom [pixels].
+  /// Rectangle of each control: left, top, right, bottom [pixels].
   std::map<std::string, std::array<double, 4>> controls;
 
  private:
@@ -95,19 +95,19 @@ class Viewer {
   Camera camera_;
   bool is_playing_ = true, shows_springs_ = false, shows_help_ = false, wants_picture_ = false;
   std::optional<Vec3> wind_;
-  std::optional<SpringModel> model_;  // that was asked for
+  std::optional<SpringModel> model_;  // the requested one
 
   // The mouse.
   Drag drag_ = Drag::none;
   MouseButton drag_button_ = MouseButton::left;
   double mouse_x_ = 0, mouse_y_ = 0;
   int grab_side_ = 0;
-  Vec3 grab_place_ = Vec3::Zero();   // where it was taken, on the side that was clicked [m]
+  Vec3 grab_place_ = Vec3::Zero();   // grabbed point, on the clicked side [m]
   std::optional<Vec3> grab_target_;  // [m]
 
   // Drawing.
-  bool has_news_ = true;      // something has changed since the last picture
-  int pictures_at_rest_ = 0;  // since anything has changed
+  bool has_news_ = true;      // changes since the last picture
+  int pictures_at_rest_ = 0;  // since the last change
   Clock::time_point drawn_at_, second_began_;
   std::int64_t drawn_frames_ = 0, drawn_in_second_ = 0;
   double drawn_per_second_ = 0, picture_ms_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a cloth is made of, where it starts, and what holds it.
+/// Cloth: shape, material, initial state and pins.
 
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@
 
 namespace weft {
 
-/// Which springs a grid has: `basic` two shear springs per cell (Provot), `simplified` one (the paper's),
-/// `alternating` one whose direction changes from cell to cell, without the skew of `simplified`.
+/// Springs of a grid: `basic` has two shear springs per cell (Provot), `simplified` one (the paper's),
+/// `alternating` one whose direction alternates from cell to cell, without the skew of `simplified`.
 enum class SpringModel { basic, simplified, alternating };
 
-/// How spring damping acts on the relative velocity of the two ends.
+/// Spring damping: the part of the two ends' relative velocity that it acts on.
 enum class DampingKind {
   plain,      // all of it: the paper's Eq. 2; also brakes a rigid rotation
-  projected,  // only along the spring: leaves rigid motion alone
+  projected,  // only the component along the spring: does not damp rigid motion
 };
 
-/// Cloth made of springs: its stiffness depends on the mesh.
+/// Cloth made of springs. Its stiffness depends on the mesh.
 struct Springs {
   double density = 0.2;      // mass per area, > 0 [kg/m²]
   double structural = 2000;  // stiffness of structural springs, >= 0 [N/m]
@@ -31,67 +31,67 @@ struct Springs {
   double bend = 20;          // of bending springs, >= 0 [N/m]
   double damping = 0;        // of every spring, >= 0 [N·s/m]
   DampingKind damping_kind = DampingKind::projected;
-  double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
-  double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
+  double thickness = 1e-3;  // distance between layers; half of it to colliders, >= 0 [m]
+  double friction = 0.3;    // Coulomb coefficient of cloth on cloth, >= 0 [1]
 };
 
-/// What stretches and shears where a cloth is made of a fabric.
+/// Discretisation of stretching and shearing, for cloth made of a fabric.
 enum class Membrane {
   triangle,  // triangle elements; for `newton`, `implicit_euler` and `xpbd`
-  springs,  // springs that come near the fabric; for every integrator's springs, with bending elements beside
+  springs,   // springs fitted to the fabric, with bending elements; for the same integrators
 };
 
 struct ClothDesc {
   std::string name = {};  // for reports; empty: "cloth", "cloth 2", …
 
-  /// At rest, in the cloth's own coordinates.
+  /// Rest shape, in the cloth's own coordinates.
   std::variant<Grid, TriangleMesh> shape = {};
-  std::string source = {};  // where the mesh is from, for messages: "shirt.obj"; may be empty
+  std::string source = {};  // file of the mesh, for messages: "shirt.obj"; may be empty
 
-  /// A fabric in SI units (find_fabric("denim"), or numbers of your own), or springs.
+  /// A fabric in SI units (find_fabric("denim"), or your own numbers), or springs.
   std::variant<Fabric, Springs> fabric = {};
   std::string fabric_name = "fabric";  // for messages
   Membrane membrane = Membrane::triangle;
 
-  /// Direction of warp in the cloth's own coordinates, projected on every triangle. Empty: a mesh's texture
-  /// coordinates say it (u); without them it is upwards on what stands and along x on what lies, with a
-  /// warning; on a grid it is the x axis.
+  /// Warp direction in the cloth's own coordinates, projected on every triangle. Empty: the u direction of a
+  /// mesh's texture coordinates. Without those, upwards on upright cloth and along x on lying cloth, with a
+  /// warning. On a grid, the x axis.
   std::optional<Vec3> warp = {};
 
   SpringModel model = SpringModel::alternating;  // of a grid: springs, and how cells are cut into triangles
-  Pose pose = {};      // at the start, from the cloth's own coordinates to the world
-  Vec3 velocity = {};  // of all particles at the start [m/s]
+  Pose pose = {};      // initial pose, from the cloth's own coordinates to the world
+  Vec3 velocity = {};  // initial velocity of all particles [m/s]
 
-  /// Vertices of a mesh that lie within this distance become one; 0: exact duplicates; empty: none [m].
+  /// Merges vertices of a mesh within this distance; 0: exact duplicates; empty: none [m].
   std::optional<double> weld = {};
 
-  /// Borders of a mesh's pieces within this distance are joined, vertex on vertex or not; layers, such as a
-  /// lining, stay apart; 0: none [m].
+  /// Joins borders of a mesh's pieces within this distance, at vertices or between them; layers, such as a
+  /// lining, stay separate; 0: none [m].
   double sew = 0;
 
-  /// Whether thickness is reduced to half of a mean edge where it is more: coarse meshes have few neighbours
-  /// nearer than that.
+  /// Whether to reduce the thickness to half the mean edge length where it is larger, so that few neighbours
+  /// on coarse meshes are nearer than the thickness.
   bool fits_thickness = true;
 };
 
-/// What became of a cloth's mesh.
+/// Results of a cloth's mesh preparation.
 struct ClothNotes {
   std::vector<int> particle_of_vertex =
-      {};  // (vertices given) the particle of each, -1: dropped; of a grid 0, 1, …
-  std::vector<std::string> warnings = {};  // flaws of the mesh and of the fabric on it, in sentences
-  std::vector<std::string> done = {};      // what was done as asked: welded, sewn; in sentences
+      {};  // (input vertices) particle of each, -1: dropped; of a grid 0, 1, …
+  std::vector<std::string> warnings = {};  // flaws of the mesh and of its fabric, as sentences
+  std::vector<std::string> done = {};      // requested changes: welded, sewn; as sentences
 };
 
-/// Particles that are held. They follow `motion`, or go where World::move_pins() puts them.
+/// Pinned particles. They follow `motion`, or the targets of World::move_pins().
 struct Pin {
   std::vector<int> particles = {};
-  std::vector<KeyFrame> motion = {};  // of all of them, from where they are when pinned; empty: they stay
-  Vec3 pivot = {};                    // what the motion turns about [m]
+  std::vector<KeyFrame> motion = {};  // of all of them, relative to where they were pinned; empty: fixed
+  Vec3 pivot = {};                    // centre of the motion's rotation [m]
 
-  /// Empty: held exactly, as by a clamp. A number: by a damped spring each, which the cloth can stretch;
-  /// `motion` must then be empty. >= 0 [N/m].
+  /// Empty: held exactly, as by a clamp. A number: stiffness of a damped spring per particle, which the cloth
+  /// can stretch; `motion` must then be empty. >= 0 [N/m].
   std::optional<double> stiffness = {};
-  double damping = 0;  // of that spring, against all motion of the particle, >= 0 [N·s/m]
+  double damping = 0;  // of that spring, on the particle's absolute velocity, >= 0 [N·s/m]
 };
 
 }  // namespace weft

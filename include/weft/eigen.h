@@ -1,6 +1,6 @@
 #pragma once
-/// Conversions to and from Eigen, for programs that use it. Not part of weft.h: nothing of Weft needs Eigen in
-/// your program.
+/// Conversions to and from Eigen, for programs that use it. Not part of weft.h: Weft does not require Eigen
+/// in your program.
 
 #include <Eigen/Core>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The one exception of the library: bad input. Numerical trouble is never thrown; StepReport reports it.
+/// The library's only exception: bad input. Numerical failures are never thrown; StepReport reports them.
 
 #include <stdexcept>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace weft {
 
-/// Input that cannot be used. what() is a full sentence: what is wrong, where, and what was expected.
+/// Invalid input. what() is a full sentence: the error, its place, and the expected value.
 class WEFT_API InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& sentence) : std::runtime_error(sentence) {}

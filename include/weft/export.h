@@ -1,5 +1,5 @@
 #pragma once
-/// Marks of public declarations: what a shared library exports, and what is deprecated.
+/// Macros of public declarations: symbols that a shared library exports, and deprecated ones.
 
 #if defined(_WIN32)
 #define WEFT_API  // Windows: static library only

@@ -1,9 +1,9 @@
 #pragma once
 /// Handles of cloths and colliders.
 ///
-/// An id is a value. It stays valid until its cloth or collider is removed, and its number is never given
-/// again, so that an id of something removed is an error, never something else. An empty id, one of another
-/// world and one of something removed make every call throw InputError. A clone of a world accepts its ids.
+/// An id is a value. It stays valid until its cloth or collider is removed. Its number is never reused: the
+/// id of a removed body is an error, never another body. Every call throws InputError for an empty id, and
+/// for one of another world or of a removed body. A clone of a world accepts its ids.
 
 #include <cstdint>
 

@@ -11,13 +11,13 @@ namespace weft {
 
 struct MeshFromFile {
   TriangleMesh mesh = {};  // vertices in the file's order; quads and polygons cut into triangles
-  std::vector<std::string> warnings = {};  // unknown keywords, in sentences
+  std::vector<std::string> warnings = {};  // unknown keywords, as sentences
 };
 
-/// Reads a Wavefront OBJ file. Throws InputError ("FILE:LINE: …") for one that cannot be used.
+/// Reads a Wavefront OBJ file. Throws InputError ("FILE:LINE: …") for an unusable one.
 WEFT_API MeshFromFile read_obj(const std::string& file);
 
-/// Writes one with as many digits as it takes to read the same numbers back. Throws InputError if it cannot be
+/// Writes an OBJ file, with enough digits to read the same numbers back. Throws InputError if it cannot be
 /// written.
 WEFT_API void write_obj(const std::string& file, const TriangleMesh& mesh);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Threads: oneTBB, none at all, or the caller's own job system.
+/// Threads: oneTBB, none, or the caller's own job system.
 
 #include <memory>
 
@@ -7,7 +7,7 @@
 
 namespace weft {
 
-/// A job that is called with its index. It refers to what it was made from, which outlives the call of run().
+/// A job, called with its index. It refers to the callable it was made from, which must outlive run().
 class Job {
  public:
   template <class Body>
@@ -26,14 +26,14 @@ class WEFT_API JobSystem {
  public:
   virtual ~JobSystem() = default;
 
-  /// Threads that jobs may run on at once, >= 1 [1].
+  /// Number of threads that jobs may run on concurrently, >= 1 [1].
   virtual int num_threads() const = 0;
 
   /// Calls job(0) … job(num_jobs - 1), in any order, on any thread, and returns when all are done.
   virtual void run(int num_jobs, const Job& job) = 0;
 };
 
-/// Everything on the calling thread.
+/// Runs everything on the calling thread.
 WEFT_API std::unique_ptr<JobSystem> make_serial_jobs();
 
 /// oneTBB with its own arena of `num_threads` (>= 1) threads. One thread gives make_serial_jobs().

@@ -1,9 +1,9 @@
 #pragma once
-/// Laboratory sheets of fabrics, in the units they are printed in, turned into SI.
+/// Laboratory sheets of fabrics, in their printed units, converted to SI.
 ///
-/// Of what a sheet does not say: c12 = 0 (both systems pull strips so wide that warp and weft act alone);
-/// bend_bias is the geometric mean of warp and weft (over the ten fabrics of Wang et al. 2011, the measured
-/// bias is 0.77 to 1.36 times that, median 0.97); damping is Fabric's default.
+/// Values missing on a sheet: c12 = 0 (both systems pull wide strips, in which warp and weft do not
+/// interact); bend_bias is the geometric mean of warp and weft (over the ten fabrics of Wang et al. 2011, the
+/// measured bias is 0.77 to 1.36 times that, median 0.97); damping is Fabric's default.
 
 #include "weft/fabric.h"
 
@@ -27,11 +27,11 @@ struct KesSheet {
 /// density = 0.01 W; bending = 9.80665e-5 B; g = 56.19 G (1 gf/cm = 0.980665 N/m, 1° = π/180 rad).
 ///
 /// Stretching stiffens: the curve is taken as T = T_max (ε/EMT)ⁿ, whose linearity is LT = 2/(n + 1). c11 and
-/// c22 are the secants at 20 gf/cm = 19.6 N/m, about what cloth bears by its own weight and in wear (FAST
-/// measures there as well), and equal T_max/EMT where LT = 1. Five points of the curve go to stretch_warp and
+/// c22 are the secants at 20 gf/cm = 19.6 N/m, about the load of cloth under its own weight and in wear (FAST
+/// also measures there). They equal T_max/EMT where LT = 1. Five points of the curve go to stretch_warp and
 /// stretch_weft.
 ///
-/// Throws InputError for numbers out of range, or if the fabric is impossible.
+/// Throws InputError for numbers out of range, or if the fabric is invalid.
 WEFT_API Fabric fabric_from(const KesSheet& sheet);
 
 /// Fabric Assurance by Simple Testing (SiroFAST), extensions under 5, 20 and 100 gf/cm.
@@ -51,11 +51,11 @@ struct FastSheet {
 
 /// bending = 9.81e-12 W C³ (FAST's own B = 9.81e-6 W C³ µN·m); g = 123/EB5 (FAST's own); c11 and c22 =
 /// 14.7 N/m over the extension between 5 and 20 gf/cm, as in FAST's formability.
-/// Throws InputError for numbers out of range, or if the fabric is impossible.
+/// Throws InputError for numbers out of range, or if the fabric is invalid.
 WEFT_API Fabric fabric_from(const FastSheet& sheet);
 
-/// Physical properties of CLO and Marvelous Designer, in the units that their property editor shows when it
-/// does not show 0 to 99. Gram, millimetre and second: 1 g/s² = 1e-3 N/m, 1 g·mm²/s² = 1e-9 N·m.
+/// Physical properties of CLO and Marvelous Designer, in the units of their property editor when it does not
+/// show 0 to 99. Gram, millimetre and second: 1 g/s² = 1e-3 N/m, 1 g·mm²/s² = 1e-9 N·m.
 struct CloProperties {
   double density = 0;                   // [g/m²]
   double thickness = 0;                 // [mm]
@@ -68,7 +68,7 @@ struct CloProperties {
   double friction = Fabric().friction;  // [1]
 };
 
-/// Throws InputError if the fabric is impossible. Buckling ratio and stiffness have no counterpart.
+/// Throws InputError if the fabric is invalid. Buckling ratio and stiffness have no counterpart.
 WEFT_API Fabric fabric_from(const CloProperties& properties);
 
 }  // namespace weft

@@ -10,7 +10,7 @@ namespace weft {
 
 /// Rectangular cloth as a grid of particles.
 ///
-/// The grid lies horizontally: corner (0, 0) at the origin, i along +x, j along +z, row by row:
+/// The grid is horizontal: corner (0, 0) at the origin, i along +x, j along +z, row by row:
 ///
 ///     (0,0) --- (1,0) --- (2,0)  → x        index = j * (cells_x + 1) + i
 ///       |         |         |
@@ -35,11 +35,11 @@ using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen 
 /// Texture coordinates (u, v) of a triangle's corners.
 using CornerUv = std::array<std::array<double, 2>, 3>;
 
-/// Any triangle mesh. Of a cloth its positions are the rest shape.
+/// Any triangle mesh. For cloth, its positions are the rest shape.
 struct TriangleMesh {
   std::vector<Vec3> positions = {};      // (num_vertices), finite [m]
   std::vector<Triangle> triangles = {};  // (num_triangles), at least one
-  std::vector<CornerUv> uv = {};         // (num_triangles), or empty; says where warp goes: along u
+  std::vector<CornerUv> uv = {};         // (num_triangles), or empty; warp runs along u
 
   int num_vertices() const { return static_cast<int>(positions.size()); }
   int num_triangles() const { return static_cast<int>(triangles.size()); }

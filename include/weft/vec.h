@@ -31,13 +31,13 @@ constexpr Vec3 operator*(const Mat3& m, const Vec3& p) {
   return {dot(m.row0, p), dot(m.row1, p), dot(m.row2, p)};
 }
 
-/// Rotation about an axis of any length > 0 [degrees]. Throws InputError for an axis without length.
+/// Rotation about an axis of any length > 0 [degrees]. Throws InputError for an axis of length 0.
 WEFT_API Mat3 rotation_about(const Vec3& axis, double angle_deg);
 
 /// Rotation about the fixed x axis, then y, then z, as in scene files [degrees].
 WEFT_API Mat3 rotation_from_angles_deg(const Vec3& angles_deg);
 
-/// Rotation of a quaternion of any length > 0. Throws InputError for one without length.
+/// Rotation of a quaternion of any length > 0. Throws InputError for one of length 0.
 WEFT_API Mat3 rotation_from_quaternion(double w, double x, double y, double z);
 
 /// From a shape's own coordinates to the world: p ↦ rotation p + translation.

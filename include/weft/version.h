@@ -1,9 +1,9 @@
 #pragma once
-/// Version of the library, and what it promises.
+/// Version of the library, and its compatibility.
 ///
-/// A program that compiles with 0.x compiles with every later patch of the same 0.x. A declaration that is to
-/// go is marked WEFT_DEPRECATED with its successor for one minor version, and goes with the next one.
-/// The layout of types may change with every version: recompile.
+/// A program that compiles with 0.x compiles with every later patch of the same 0.x. A declaration due for
+/// removal is marked WEFT_DEPRECATED with its successor for one minor version; the next one removes it. The
+/// layout of types may change with every version: recompile.
 
 #define WEFT_VERSION_MAJOR 0
 #define WEFT_VERSION_MINOR 1

@@ -1,9 +1,9 @@
 #pragma once
-/// Weft: cloth that moves right, on ordinary hardware. Open this first.
+/// Weft: accurate cloth simulation on ordinary hardware. Start reading here.
 ///
-/// A World holds cloths, colliders, pins and wind, and steps them through time. Everything is in SI units
-/// (metres, kilograms, seconds, newtons); the world is right-handed with y up. The same calls give the same bits
-/// on every machine. A square metre of denim, hung by two corners and let go:
+/// A World contains cloths, colliders, pins and wind, and steps them through time. Everything is in SI units
+/// (metres, kilograms, seconds, newtons); the world is right-handed with y up. The same calls give the same
+/// bits on every machine. A square metre of denim, hung by two corners and released:
 ///
 ///     #include <iostream>
 ///     #include "weft/weft.h"
@@ -17,7 +17,8 @@
 ///       std::cout << "center of mass: " << world.center_of_mass(cloth).y << " m\n";
 ///     }
 ///
-/// Bad input throws InputError; StepReport reports numerical trouble. The library never prints and never aborts.
+/// Bad input throws InputError; StepReport reports numerical failures. The library never prints and never
+/// aborts.
 
 // In reading order. Numbers, shapes, materials:
 #include "weft/error.h"
@@ -25,16 +26,16 @@
 #include "weft/laboratory.h"
 #include "weft/mesh.h"
 #include "weft/vec.h"
-// What a world holds:
+// Contents of a world:
 #include "weft/cloth.h"
 #include "weft/collider.h"
 #include "weft/ids.h"
 #include "weft/wind.h"
-// How it moves, and what it reports:
+// Steps and their results:
 #include "weft/jobs.h"
 #include "weft/report.h"
 #include "weft/solver.h"
 #include "weft/world.h"
-// Many of them:
+// Many worlds:
 #include "weft/batch.h"
 #include "weft/version.h"

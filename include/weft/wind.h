@@ -1,5 +1,5 @@
 #pragma once
-/// Wind and the air's drag and lift.
+/// Wind, and aerodynamic drag and lift.
 
 #include <cstdint>
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace weft {
 
-/// Drag and lift by triangles; `newton` and `implicit_euler` compute them.
+/// Drag and lift per triangle; supported by `newton` and `implicit_euler`.
 struct Air {
   double density = 0;  // of air about 1.2; 0: no drag and lift [kg/m³]
   double drag = 1.2;   // C_D of a plate face-on; > 0 [1]
-  double lift = 0.6;   // C_L; from 0 to `drag`. More: slides sideways as it falls, flutters [1]
+  double lift = 0.6;   // C_L; from 0 to `drag`. More: glides sideways as it falls, flutters [1]
 };
 
-/// Velocity that comes and goes in space and time about zero: smooth noise, the same for the same numbers.
+/// Velocity fluctuation about zero in space and time: smooth noise, the same for the same numbers.
 struct Gusts {
-  double strength = 0;     // root of its mean square along each axis; 0: none [m/s]
-  double length = 1;       // over which it changes; more: broader gusts; > 0 [m]
-  double time = 0.5;       // in which it changes; more: slower gusts; > 0 [s]
-  std::uint64_t seed = 1;  // another one: other gusts
+  double strength = 0;     // root mean square along each axis; 0: none [m/s]
+  double length = 1;       // correlation length; more: broader gusts; > 0 [m]
+  double time = 0.5;       // correlation time; more: slower gusts; > 0 [s]
+  std::uint64_t seed = 1;  // another seed: other gusts
 };
 
 struct WindKey {
@@ -30,10 +30,10 @@ struct WindKey {
 
 struct Wind {
   Vec3 velocity = {};              // of the air, without keys [m/s]
-  std::vector<WindKey> keys = {};  // at rising times; linear between, constant outside; empty: `velocity`
+  std::vector<WindKey> keys = {};  // by rising times; linear between, constant outside; empty: `velocity`
   double drag = 0;                 // c_w, force per area and relative velocity, >= 0 [N·s/m³]
   Air air = {};
-  Gusts gusts = {};  // beside `velocity`; only `air` feels them
+  Gusts gusts = {};  // added to `velocity`; only `air` uses them
 };
 
 }  // namespace weft

@@ -1,8 +1,8 @@
 #pragma once
-/// World: cloths, colliders, pins and wind, and their steps through time. Everything is in SI units.
+/// World: cloths, colliders, pins and wind, stepped through time. Everything is in SI units.
 ///
-/// Threads: calls on different worlds may run at the same time. On one world any number of const calls may run
-/// at the same time, but no call beside one that is not const.
+/// Threads: calls on different worlds may run concurrently. On one world, const calls may run concurrently,
+/// but never with a non-const call.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,17 +29,17 @@ namespace weft {
 /// A cloth or a collider.
 using BodyId = std::variant<ClothId, ColliderId>;
 
-/// Which forces on particles are meant.
+/// Kind of force on particles.
 enum class ForceKind {
   gravity,
   elastic,   // of springs, membranes, strain limits and bending
-  damping,   // inside the cloth
-  wind,      // of the wind's drag, the air's drag and lift
-  external,  // given by set_forces()
+  damping,   // internal damping of the cloth
+  wind,      // the wind's drag, and aerodynamic drag and lift
+  external,  // set by set_forces()
   contact,   // of the last step, each on the nearest particle; needs ContactSettings::tracks_points
 };
 
-/// The state of a world at a moment; see World::snapshot().
+/// State of a world at a time; see World::snapshot().
 class WEFT_API Snapshot {
  public:
   Snapshot();
@@ -55,8 +55,8 @@ class WEFT_API Snapshot {
   std::unique_ptr<Data> data_;
 };
 
-/// Every call throws InputError for ids that are empty, of another world or of something removed, and for
-/// numbers that cannot be; the world is then as it was before the call.
+/// Every call throws InputError for ids that are empty, of another world or of a removed body, and for
+/// invalid numbers; the world is then unchanged.
 class WEFT_API World {
  public:
   World();
@@ -64,89 +64,90 @@ class WEFT_API World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;  // not copyable: see clone()
 
-  /// Another world in the same state, which goes on with the same bits and shares nothing that changes but
-  /// the job system.
+  /// A world in the same state. It continues with the same bits and shares no mutable state but the job
+  /// system.
   World clone() const;
 
   // Cloths and colliders.
 
-  /// Throws InputError for a mesh that cannot be cloth, and for a fabric with an integrator that moves springs
+  /// Throws InputError for an invalid cloth mesh, and for a fabric with an integrator that supports springs
   /// only.
   ClothId add_cloth(const ClothDesc& desc);
   ColliderId add_collider(const ColliderDesc& desc);
-  void remove(ClothId cloth);  // with its pins, forces, and rules of friction and collision
+  void remove(ClothId cloth);  // with its pins, forces, friction and collision settings
   void remove(ColliderId collider);
   bool contains(ClothId cloth) const;
   bool contains(ColliderId collider) const;
   int num_cloths() const;
   int num_colliders() const;
-  ClothId cloth(int n) const;  // the n-th of those that are there, in the order in which they were added
+  ClothId cloth(int n) const;        // the n-th present cloth, in the order of addition
   ColliderId collider(int n) const;  // likewise
   std::string name(ClothId cloth) const;
   std::string name(ColliderId collider) const;
   const ClothNotes& notes(ClothId cloth) const;
-  const std::vector<std::string>& warnings(ColliderId collider) const;  // flaws of its mesh, in sentences
+  const std::vector<std::string>& warnings(ColliderId collider) const;  // flaws of its mesh, as sentences
 
-  /// Sets cloth apart that crosses itself, other cloth or colliders where it is now. Pinned particles stay,
-  /// velocities are kept, and everything stays where it is if that does not help. Takes seconds for thousands
-  /// of particles, and nothing where nothing crosses. Returns what still crosses, in sentences.
+  /// Separates cloth that currently intersects itself, other cloth or colliders. Pinned particles stay,
+  /// velocities are kept, and all positions stay if separation fails. Takes seconds for thousands of
+  /// particles; a no-op without intersections. Returns the remaining intersections, as sentences.
   std::vector<std::string> untangle();
 
-  // Between two steps: what moves by the program.
+  // Motion controlled by the program, between two steps.
 
-  /// Where a collider is at the end of the next step, as a pose from its own coordinates to the world. Until
-  /// then its pivot moves evenly, and it turns evenly about one axis, the shorter way: give turns of more than
-  /// half a turn in several steps. Not given again it stands still. Replaces its key frames.
+  /// Sets a collider's pose at the end of the next step, from its own coordinates to the world. During the
+  /// step its pivot moves evenly, and it turns evenly about one axis, the shorter way: split more than half a
+  /// turn over several steps. Without a further call it stands still. Replaces its key frames.
   void move_collider(ColliderId collider, const Pose& at_end);
 
-  /// Puts a collider somewhere now, without sweeping cloth on the way.
+  /// Places a collider immediately, without a swept motion.
   void place_collider(ColliderId collider, const Pose& pose);
 
-  /// The same for the vertices of a mesh collider, as many as it was given, in its own coordinates [m]. The
-  /// pose stays.
+  /// The same for the vertices of a mesh collider, all input vertices, in its own coordinates [m]. The pose
+  /// stays.
   void move_vertices(ColliderId collider, const std::vector<Vec3>& at_end);
   void place_vertices(ColliderId collider, const std::vector<Vec3>& positions);
 
-  void set_pins(ClothId cloth, const std::vector<Pin>& pins);  // in place of the pins before
+  void set_pins(ClothId cloth, const std::vector<Pin>& pins);  // replaces the previous pins
 
-  /// Where pinned particles are at the end of the next step, one position for each, in the order of the pins'
-  /// lists; until then they move evenly. Not given again they stay. Replaces the pins' key frames.
+  /// Sets pinned particles' positions at the end of the next step, one for each, in the order of the pins'
+  /// lists; during the step they move evenly. Without a further call they stay. Replaces the pins' key
+  /// frames.
   void move_pins(ClothId cloth, const std::vector<Vec3>& at_end);
 
-  /// External forces, one for each particle; they act until they are set again. Empty: none [N].
+  /// External forces, one for each particle; constant until the next call. Empty: none [N].
   void set_forces(ClothId cloth, const std::vector<Vec3>& forces);
 
-  // State from outside. Nothing is swept on the way, and pins hold where their particles are put.
+  // State from outside: a jump, without a swept motion. Pins then hold at the new positions.
 
   void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // velocities stay [m]
   void set_velocities(ClothId cloth, const std::vector<Vec3>& velocities);  // [m/s]
 
-  /// Moves a whole cloth by p ↦ rotation p + translation, in the world's coordinates. Velocities turn along,
-  /// or become zero.
+  /// Moves a whole cloth by p ↦ rotation p + translation, in the world's coordinates. Velocities rotate with
+  /// it, or become zero.
   void teleport(ClothId cloth, const Pose& displacement, bool keeps_velocity = true);
 
   // Settings; the next step uses them.
 
   void set_fabric(ClothId cloth, const std::variant<Fabric, Springs>& fabric);  // the rest shape stays
   void stiffen(ClothId cloth, const std::vector<int>& particles,
-               double factor);  // springs with both ends there
+               double factor);  // springs with both ends among `particles`
   void set_friction(ColliderId collider, double friction, double static_friction = 0);
   void set_friction(BodyId a, BodyId b, double friction, double static_friction = 0);  // of this pair only
-  void set_collision(BodyId a, BodyId b, bool collide);  // cloth with itself: the same id twice
+  void set_collision(BodyId a, BodyId b, bool collide);  // self-collision: the same id twice
   void set_gravity(const Vec3& gravity);                 // [m/s²]
   void set_wind(const Wind& wind);
   void set_integrator(const IntegratorSettings& settings);
   void set_division(const StepDivision& division);
   void set_contact(const ContactSettings& settings);
-  void set_jobs(std::shared_ptr<JobSystem> jobs);  // threads; the result does not depend on them
+  void set_jobs(std::shared_ptr<JobSystem> jobs);  // threads; they do not change the result
 
   // Time.
 
-  /// Advances everything by dt > 0 [s].
+  /// Advances the world by dt > 0 [s].
   StepReport step(double dt);
   double time() const;  // [s]
 
-  // Reading cloth. Arrays are by particle. Pointers take three numbers a particle, `stride` bytes apart.
+  // Cloth data. Arrays are by particle. Pointers take three numbers per particle, `stride` bytes apart.
 
   int num_particles(ClothId cloth) const;
   const std::vector<Triangle>& triangles(ClothId cloth) const;  // of particles
@@ -157,54 +158,54 @@ class WEFT_API World {
   void copy_positions(ClothId cloth, double* out, std::size_t stride = 3 * sizeof(double)) const;
   void copy_velocities(ClothId cloth, float* out, std::size_t stride = 3 * sizeof(float)) const;
   void copy_velocities(ClothId cloth, double* out, std::size_t stride = 3 * sizeof(double)) const;
-  void copy_normals(ClothId cloth, float* out, std::size_t stride = 3 * sizeof(float)) const;  // of length 1
+  void copy_normals(ClothId cloth, float* out, std::size_t stride = 3 * sizeof(float)) const;  // unit length
   void copy_normals(ClothId cloth, double* out, std::size_t stride = 3 * sizeof(double)) const;
 
-  /// Positions of the vertices that add_cloth was given, in their order: welded ones together, dropped ones
-  /// where they were at the start [m].
+  /// Positions of the vertices given to add_cloth, in their order: merged ones coincide, dropped ones stay at
+  /// their initial positions [m].
   std::vector<Vec3> vertex_positions(ClothId cloth) const;
 
-  // Measuring. Computed in double precision when asked for.
+  // Measurements, in double precision, computed on demand.
 
   std::vector<Vec3> forces(ClothId cloth, ForceKind kind) const;  // on each particle [N]
 
-  /// What each pinned particle is held with, in the order of the pins' lists: its mass times its acceleration
-  /// in the last step, less all other forces at its end. Zero before the first step. Contacts count only where
-  /// they are tracked [N].
+  /// Reaction force of each pin, in the order of the pins' lists: the particle's mass times its acceleration
+  /// in the last step, less all other forces at its end. Zero before the first step. Contacts are included
+  /// only if they are tracked [N].
   std::vector<Vec3> pin_forces(ClothId cloth) const;
 
-  std::vector<double> spring_strains(
-      ClothId cloth) const;  // length over rest length − 1, of every spring [1]
+  std::vector<double> spring_strains(ClothId cloth) const;  // length over rest length − 1, per spring [1]
   std::vector<TriangleStrain> triangle_strains(ClothId cloth) const;
-  std::vector<ContactPoint> contact_points() const;  // of the last step, where they are tracked
+  std::vector<ContactPoint> contact_points() const;  // of the last step, if tracked
   Energies energies() const;
   Vec3 momentum(ClothId cloth) const;        // [kg·m/s]
   Vec3 center_of_mass(ClothId cloth) const;  // [m]
   Pose pose(ColliderId collider) const;      // now
 
-  /// The first point of any cloth on a ray, and the point of any cloth nearest to a point, within `reach` [m].
-  /// Time grows with the number of triangles.
+  /// First hit of a ray on any cloth, and the closest point on any cloth, within `reach` [m]. Time grows with
+  /// the number of triangles.
   std::optional<SurfacePoint> cast_ray(const Vec3& origin, const Vec3& direction, double reach = 1e30) const;
   std::optional<SurfacePoint> closest_point(const Vec3& point, double reach = 1e30) const;
 
-  // Going back, and elsewhere.
+  // Snapshots and saved worlds.
 
-  /// Everything that moves, with pins, targets and colliders; cheap next to a step. Restoring it and stepping
-  /// again gives the same bits again. Of this world only, with the same cloths and colliders; else InputError.
+  /// State of all moving parts, with pins, targets and colliders; cheap next to a step. Stepping again after
+  /// restore() gives the same bits. Valid for this world only, with the same cloths and colliders; else
+  /// InputError.
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);
 
-  /// The whole world as bytes, and from them again: it goes on with the same bits, on any number of threads
-  /// and any processor. Without its job system; ids are new: cloth(n), collider(n). load() throws InputError
-  /// for bytes that are damaged or of another version of the format.
+  /// Serialises the world. A loaded world continues with the same bits, on any number of threads and any
+  /// processor. The job system is not saved; ids are new: cloth(n), collider(n). load() throws InputError for
+  /// damaged bytes or another version of the format.
   std::vector<std::byte> save() const;
   static World load(std::span<const std::byte> bytes);
 
-  /// Of time, positions and velocities, bit by bit.
+  /// Hash of time, positions and velocities, bit by bit.
   std::uint64_t state_hash() const;
 
  private:
-  friend struct WorldAccess;  // of the library
+  friend struct WorldAccess;  // library internals
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -1,4 +1,4 @@
-/// The program as a shell sees it: exit codes, words and files.
+/// The command line program from a shell: exit codes, output and files.
 
 #include <algorithm>
 #include <regex>
@@ -193,7 +193,7 @@ TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
 TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
   std::ofstream("file") << "not a folder";
   fs::create_directories("results/animation.glb/folder");
-  // A million frames take hours. /proc is a folder that nobody may write into, root included.
+  // A million frames take hours. /proc is a folder that nobody can write to, including root.
   const std::string run = "timeout 60 '" WEFT_PROGRAM "' run paper/fig6_ball --frames 1000000 ";
   expect_bad_input(run + "--out file", "the folder file cannot be made: Not a directory");
   expect_bad_input(run + "--out file/results", "the folder file/results cannot be made: Not a directory");
@@ -333,7 +333,7 @@ TEST_F(App, CheckListsEveryMistakeWithItsPlace) {
   const Finished done = shell("weft check '" + file.string() + "'");
   EXPECT_EQ(done.exit_code, 2);
 
-  const std::string mark = "# error: ";  // the file tells what is to be found in it
+  const std::string mark = "# error: ";  // the file lists the expected errors
   std::string expected;
   std::istringstream lines(read_text(file));
   for (std::string line; std::getline(lines, line);) {
@@ -376,7 +376,7 @@ TEST_F(App, VerifyAgreesWithTheReport) {
   const auto found = nlohmann::json::parse(done.out), report = read_json("results/report.json");
   EXPECT_EQ(found["frames"], 21) << "the start and twenty more";
   EXPECT_EQ(found["intersections"], report["intersections"]);
-  // The file holds floats, and differences of floats: below a millionth of a metre.
+  // The file contains floats, and differences of floats: below a millionth of a metre.
   EXPECT_NEAR(found["penetration_max"], report["penetration_max"], 1e-6);
 }
 

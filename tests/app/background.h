@@ -1,5 +1,5 @@
 #pragma once
-/// The program beside the test, which sends it signals.
+/// The program as a background process, for tests that send it signals.
 
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ namespace weft::engine {
 /// Its standard output and error go to background.txt.
 class Background {
  public:
-  /// `hangup`: what becomes of SIGHUP before the program starts; nohup ignores it.
+  /// `hangup`: disposition of SIGHUP before the program starts; nohup ignores it.
   explicit Background(std::vector<std::string> arguments, void (*hangup)(int) = SIG_DFL) {
     arguments.insert(arguments.begin(), WEFT_PROGRAM);
     std::vector<char*> argv;
@@ -27,7 +27,7 @@ class Background {
     process_ = fork();
     if (process_ == 0) {
       std::signal(SIGHUP, hangup);
-      prctl(PR_SET_PDEATHSIG, SIGKILL);  // it does not outlive a test that is stopped
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with an aborted test
       if (!std::freopen("background.txt", "w", stdout) || dup2(STDOUT_FILENO, STDERR_FILENO) < 0) _exit(126);
       execv(WEFT_PROGRAM, argv.data());
       _exit(127);
@@ -42,7 +42,7 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Waits until the program catches the signal; false if it ends without.
+  /// Waits until the program handles the signal; false if it ends without doing so.
   bool catches(int signal) const {
     while (true) {
       const std::string state = status("State:"), mask = status("SigCgt:");
@@ -56,7 +56,7 @@ class Background {
     if (process_ > 0) kill(process_, signal);
   }
 
-  /// Its exit code, or -1 if a signal has ended it.
+  /// Its exit code, or -1 if a signal terminated it.
   int wait() {
     if (process_ <= 0) return -1;
     int status = 0;
@@ -66,7 +66,7 @@ class Background {
   }
 
  private:
-  /// The word after `key` in what Linux tells of the process; empty once it has ended.
+  /// The word after `key` in /proc/PID/status; empty after the process has ended.
   std::string status(const std::string& key) const {
     std::ifstream in("/proc/" + std::to_string(process_) + "/status");
     for (std::string word; in >> word;) {

@@ -1,4 +1,4 @@
-/// `weft check` looks at sizes and at the start, not only at keys.
+/// `weft check` tests sizes and the initial state, not only keys.
 
 #include <array>
 
@@ -18,7 +18,7 @@ void write_box(const std::string& file, const std::array<double, 3>& low, const 
   out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 }
 
-/// A shirt and a body that stands beside it.
+/// A shirt and a body next to it.
 void write_dressed_scene() {
   write_box("shirt.obj", {1, 1, 0}, {0.6, 0.7, 0.25});
   write_box("lying.obj", {1, 0, 1}, {0.6, 0.25, 0.7});

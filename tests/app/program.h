@@ -1,5 +1,5 @@
 #pragma once
-/// The program as a shell sees it.
+/// The command line program, run from a shell.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -26,13 +26,13 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// What a command left behind.
+/// Results of a command.
 struct Finished {
   int exit_code = -1;
   std::string out, err;
 };
 
-/// Each test runs in an empty folder of its own.
+/// Each test runs in its own empty folder.
 class App : public testing::Test {
  protected:
   void SetUp() override {

@@ -7,7 +7,7 @@
 namespace weft::engine::app {
 namespace {
 
-/// The lines of a run whose frames take so long [s].
+/// Log lines of a run with these frame times [s].
 std::vector<std::string> lines(const std::vector<double>& frame_seconds) {
   ProgressLog log("scene");
   std::vector<std::string> lines;

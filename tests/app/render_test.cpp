@@ -1,4 +1,4 @@
-/// `weft render` and the pictures of `weft demo`, as a shell sees them.
+/// `weft render` and the pictures of `weft demo`, from a shell.
 
 #include "tests/app/background.h"
 #include "tests/app/program.h"

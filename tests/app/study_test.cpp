@@ -1,4 +1,4 @@
-/// `weft study`: its report is committed, and must not rot.
+/// `weft study`: the committed report must stay up to date.
 
 #include <cmath>
 #include <map>
@@ -37,7 +37,7 @@ TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
         const double tolerance = figure.at("tolerance");
         if (tolerance == 0) continue;
         ++held;
-        const double rounding = 1e-3 * std::abs(committed.at(name));  // of the four digits that are printed
+        const double rounding = 1e-3 * std::abs(committed.at(name));  // of the four printed digits
         EXPECT_NEAR(figure.at("value"), committed.at(name), tolerance + rounding)
             << name << " in " << claim.at("title");
       }
@@ -47,7 +47,7 @@ TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
   const std::string page = read_text("study/study.html");
   for (const auto& chapter : json.at("chapters")) EXPECT_TRUE(contains(page, chapter.at("title")));
 
-  // Stopped and called again it goes on where it was; told so, begins anew.
+  // Stopped and called again, it resumes; on request, it restarts.
   EXPECT_TRUE(contains(shell("weft study all --quick --out study").err, "kept from an earlier run"));
   EXPECT_TRUE(contains(shell("weft study all --quick --out study --only papre").err, "--only"));
 }

@@ -19,7 +19,7 @@ TEST(SinCosDeg, IsExactAtRightAngles) {
 TEST(SinCosDeg, AgreesWithTheCLibraryToRounding) {
   for (double angle = -720; angle <= 720; angle += 0.37) {
     const double radians = angle * 3.14159265358979323846 / 180;
-    // The conversion to radians alone costs up to |radians| · 2⁻⁵³, about 1.4e-15 at two turns.
+    // The conversion to radians by itself costs up to |radians| · 2⁻⁵³, about 1.4e-15 at two turns.
     EXPECT_NEAR(sin_cos_deg(angle).sin, std::sin(radians), 3e-15) << angle;
     EXPECT_NEAR(sin_cos_deg(angle).cos, std::cos(radians), 3e-15) << angle;
   }

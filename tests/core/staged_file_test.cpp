@@ -110,7 +110,7 @@ TEST_F(StagedFiles, AreTestedForWritabilityWithoutATrace) {
   require_writable(path("b.txt"));
   EXPECT_EQ(read("a.txt"), "old");
   EXPECT_EQ(num_files(), 1);
-  fs::create_directories(path(".a.txt.partial/occupied"));  // nothing can be written aside
+  fs::create_directories(path(".a.txt.partial/occupied"));  // the partial file cannot be written
   EXPECT_EQ(error_of([&] { require_writable(path("a.txt")); }),
             path("a.txt").string() + " cannot be written: Is a directory");
   EXPECT_EQ(read("a.txt"), "old");

@@ -1,4 +1,4 @@
-/// A fabric laid on a mesh: which way warp goes, and what each triangle and edge gets of it.
+/// A fabric on a mesh: warp directions, and the elements of triangles and edges.
 
 #include "weft/fabric/elements.h"
 
@@ -30,7 +30,7 @@ TEST(WarpField, GoesWhereUGrowsWhicheverWayUvAreTurnedOrMirrored) {
 }
 
 TEST(WarpField, FollowsThreadsWhereUvAreSkewed) {
-  // u + v/2 grows across the threads too; warp is where v stays.
+  // u + v/2 also grows across the threads; warp is along constant v.
   for (const Vec3& warp : warp_from_uv(kSheet, uv_of(kSheet, Vec3(1, 0, 0.5), Vec3::UnitZ())).warp) {
     EXPECT_LT((warp - Vec3::UnitX()).norm(), 1e-12);
   }

@@ -1,4 +1,4 @@
-/// What a fabric may be, and what is refused by name.
+/// Valid and invalid fabrics, and the reported field.
 
 #include "weft/fabric.h"
 

@@ -1,4 +1,4 @@
-/// Springs on a grid, given a fabric's stiffness and asked for it again.
+/// Springs on a grid: the fabric's stiffness recovered from their energy.
 
 #include "weft/fabric/grid_springs.h"
 
@@ -52,7 +52,7 @@ double twice_density(const Grid& grid, CellDiagonals diagonals, const GridSpring
 }
 
 TEST(GridSprings, HaveTheFabricsStiffnessOnAnyCellsAtAnyResolution) {
-  constexpr double kStrain = 1e-4;  // the springs' energy is quadratic but for terms of that order
+  constexpr double kStrain = 1e-4;  // the springs' energy is quadratic up to terms of that order
   constexpr double kTolerated = 5e-4;
   for (const auto diagonals : {CellDiagonals::both, CellDiagonals::alternating, CellDiagonals::parallel}) {
     for (const GridWarp warp : {GridWarp::first_axis, GridWarp::second_axis}) {
@@ -68,7 +68,7 @@ TEST(GridSprings, HaveTheFabricsStiffnessOnAnyCellsAtAnyResolution) {
         EXPECT_NEAR(zz / (is_first ? 900 : 400), 1, kTolerated);
         EXPECT_NEAR(recovered({0, 0, 1}) / 50, 1, kTolerated);
         EXPECT_NEAR((recovered({1, 1, 0}) - xx - zz) / 2 / 50, 1, 0.01) << "a difference of large numbers";
-        // C16 is what parallel diagonals add: G dx/dz.
+        // C16 is the coupling of parallel diagonals: G dx/dz.
         const double expected =
             diagonals == CellDiagonals::parallel ? grid.spacing_x() / grid.spacing_z() : 0;
         const double c16 = (recovered({1, 0, 1}) - xx - recovered({0, 0, 1})) / 2;

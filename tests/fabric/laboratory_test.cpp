@@ -1,4 +1,4 @@
-/// Laboratory sheets, with examples worked out by hand.
+/// Laboratory sheets, with examples calculated by hand.
 
 #include "weft/laboratory.h"
 

@@ -1,4 +1,4 @@
-/// What a membrane answers to a strain, by formulas.
+/// The membrane's response to strain, against formulas.
 
 #include "weft/fabric/membrane_law.h"
 
@@ -25,7 +25,7 @@ TEST(MembraneLaw, PassesThroughThePointsOfAStretchCurve) {
   for (const StretchPoint& p : kCurve) EXPECT_NEAR(tension(law, p.strain), p.tension, 1e-9 * p.tension);
   EXPECT_NEAR(tension(law, 0.005), 5, 0.05);   // straight from the origin
   EXPECT_NEAR(tension(law, 0.035), 120, 3);    // straight between points
-  EXPECT_NEAR(tension(law, 0.06), 270, 8);     // on beyond the last one
+  EXPECT_NEAR(tension(law, 0.06), 270, 8);     // extrapolated beyond the last one
   EXPECT_NEAR(tension(law, -0.01), -12, 0.2);  // c11 in compression
   EXPECT_EQ(membrane_response(law, {0, 0.02, 0.1}).stress, c * Vec3(0, 0.02, 0.1));
 }

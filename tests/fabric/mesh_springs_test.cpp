@@ -1,4 +1,4 @@
-/// Springs on the edges of a mesh that stand for a fabric.
+/// Springs on the edges of a mesh that represent a fabric.
 
 #include "weft/fabric/mesh_springs.h"
 

@@ -1,4 +1,4 @@
-/// The fabrics that have names.
+/// The named fabrics.
 
 #include "weft/fabric.h"
 

@@ -1,4 +1,4 @@
-/// Many worlds on one job system, and worlds on threads of the program.
+/// Many worlds on one job system, and worlds on the program's threads.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 
-/// A sheet that falls on a ball; each world's ball is somewhere else.
+/// A sheet that falls on a ball; the ball's position differs in each world.
 World make_world(int n) {
   World world;
   world.add_collider({.shape = Sphere{.radius = 0.2}, .pose = {{0.1 * n, -0.25, 0.3}, {}}});
@@ -52,7 +52,7 @@ TEST(WorldBatch, RefusesWhatCannotBe) {
   EXPECT_TRUE(batch.step(kStep).empty());
 }
 
-/// What world.h says of threads: different worlds beside each other, and const calls on one.
+/// The thread rules of world.h: different worlds concurrently, and const calls on one.
 TEST(SameBitsThreads, WorldsRunBesideEachOther) {
   World original = make_world(1);
   World clone = original.clone();

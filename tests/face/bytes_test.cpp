@@ -1,4 +1,4 @@
-/// World::save and World::load: the same continuation, and refusal of everything else.
+/// World::save and World::load: the same continuation, and rejection of all other bytes.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 
-/// A garment piece and a grid in contact with things that move in every way there is.
+/// A garment piece and a grid in contact with bodies of every kind of motion.
 World make_busy_world(const std::string& integrator = "newton") {
   World world;
   world.set_integrator({.integrator = integrator});
@@ -43,7 +43,7 @@ World make_busy_world(const std::string& integrator = "newton") {
     world.move_vertices(body, {{0, 0.001 * n, 0}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}});
     EXPECT_TRUE(world.step(kStep).ok);
   }
-  // What is asked for now acts in the next step.
+  // Targets set now act in the next step.
   world.move_collider(ball, {{0.28, -0.15, 0.25}, {}});
   world.move_pins(upper, {{0, 0.06, 0}, {0.5, 0.1, 0}, {0.5, 0.1, 0.05}});
   world.set_forces(lower, std::vector<Vec3>(4, Vec3{0, 1e-3, 0}));
@@ -64,7 +64,7 @@ TEST(SavedWorlds, ContinueBitForBit) {
     EXPECT_EQ(hash_after(loaded, 20), hash_after(world, 20)) << integrator;
     EXPECT_EQ(loaded.name(loaded.collider(0)), "ball");
     EXPECT_FALSE(loaded.contact_points().empty()) << "in contact";
-    // And once more from there.
+    // And a second time from there.
     World again = World::load(loaded.save());
     EXPECT_EQ(hash_after(again, 10), hash_after(loaded, 10));
   }
@@ -90,7 +90,7 @@ TEST(SavedWorlds, DamagedBytesAreRefused) {
   EXPECT_THROW(World::load({}), InputError);
 }
 
-/// As damaged, but with a checksum that fits: whatever it says, it is a world or an InputError.
+/// Damaged bytes with a valid checksum: the result is a world or an InputError.
 TEST(SavedWorlds, ForgedBytesDoNoHarm) {
   const auto forge = [](std::vector<std::byte>& bytes) {  // FNV-1a, as core/hash.h has it
     std::uint64_t sum = 0xcbf29ce484222325ULL;

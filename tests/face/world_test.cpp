@@ -14,14 +14,14 @@
 namespace weft {
 namespace {
 
-constexpr double kStep = 1.0 / 64;  // exact in binary, so that times are
+constexpr double kStep = 1.0 / 64;  // exact in binary, and so are times
 const Springs kSoft{.density = 0.2, .structural = 200, .shear = 80, .bend = 0.02};
 
 static_assert(std::is_nothrow_move_constructible_v<World> && !std::is_copy_constructible_v<World>);
 
 Grid square(int cells, double size) { return {size, size, cells, cells}; }
 
-/// A sheet in the plane x = 0, hung by two corners, its middle at the origin.
+/// A sheet in the plane x = 0, hung by two corners, its centre at the origin.
 ClothId hang_sheet(World& world, int cells = 12) {
   const Grid grid = square(cells, 0.6);
   const ClothId sheet = world.add_cloth(
@@ -51,7 +51,7 @@ void expect_contains(const std::string& sentence, const std::string& part) {
   EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
 }
 
-/// Two triangles with a vertex twice along their common edge, and one vertex that nothing uses.
+/// Two triangles with duplicate vertices along their common edge, and one unused vertex.
 TriangleMesh unsewn_square() {
   return {.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {9, 9, 9}},
           .triangles = {{0, 2, 1}, {3, 5, 4}}};
@@ -405,36 +405,60 @@ TEST(Face, WhatCannotBeIsRefusedAndChangesNothing) {
       [&] { world.add_cloth({.shape = Grid{.cells_x = 2000000000, .cells_z = 2000000000}}); },
       [&] { world.add_cloth({.fabric = Fabric{.thickness = -1}}); },
       [&] { world.add_cloth({.fabric = Springs{.density = 0}}); },
-      [&] { world.add_cloth({.pose = {{kNan, 0, 0}, {}}}); },
+      [&] {
+        world.add_cloth({.pose = {{kNan, 0, 0}, {}}});
+      },
       [&] { world.add_collider({.shape = TriangleMesh{}}); },
       [&] { world.add_collider({.shape = beyond}); },
       [&] { world.add_collider({.shape = Sphere{.radius = -1}}); },
       [&] { world.add_collider({.shape = Sphere{.radius = kNan}}); },
-      [&] { world.add_collider({.shape = Plane{.normal = {0, 5, 0}}}); },
-      [&] { world.add_collider({.shape = Sphere{}, .frames = {{0, {}}}}); },
-      [&] { world.add_collider({.shape = Sphere{}, .motion = {{1, {}, {}}, {0, {}, {}}}}); },
-      [&] { world.move_collider(ball, {{kNan, 0, 0}, {}}); },
-      [&] { world.move_collider(ball, {{}, {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}); },
+      [&] {
+        world.add_collider({.shape = Plane{.normal = {0, 5, 0}}});
+      },
+      [&] {
+        world.add_collider({.shape = Sphere{}, .frames = {{0, {}}}});
+      },
+      [&] {
+        world.add_collider({.shape = Sphere{}, .motion = {{1, {}, {}}, {0, {}, {}}}});
+      },
+      [&] {
+        world.move_collider(ball, {{kNan, 0, 0}, {}});
+      },
+      [&] {
+        world.move_collider(ball, {{}, {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}});
+      },
       [&] { world.move_vertices(ball, {}); },
       [&] { world.set_pins(sheet, {{.particles = {25}}}); },
       [&] { world.set_pins(sheet, {{.particles = {-1}, .stiffness = 1.0}}); },
       [&] { world.set_pins(sheet, {{.particles = {0}, .stiffness = kNan}}); },
-      [&] { world.move_pins(sheet, {{kNan, 0, 0}, {0, 0, 0}}); },
-      [&] { world.set_forces(sheet, {{0, 0, 0}}); },
+      [&] {
+        world.move_pins(sheet, {{kNan, 0, 0}, {0, 0, 0}});
+      },
+      [&] {
+        world.set_forces(sheet, {{0, 0, 0}});
+      },
       [&] { world.set_positions(sheet, {}); },
-      [&] { world.set_velocities(sheet, std::vector<Vec3>(25, {0, kNan, 0})); },
-      [&] { world.set_gravity({0, kNan, 0}); },
+      [&] {
+        world.set_velocities(sheet, std::vector<Vec3>(25, {0, kNan, 0}));
+      },
+      [&] {
+        world.set_gravity({0, kNan, 0});
+      },
       [&] { world.set_jobs(nullptr); },
       [&] { world.set_integrator({.integrator = "magic"}); },
       [&] { world.set_division({.shortest = 0}); },
       [&] { world.set_wind({.drag = -1}); },
       [&] { world.stiffen(sheet, {25}, 2); },
-      [&] { world.stiffen(sheet, {0, 1}, -2); },
+      [&] {
+        world.stiffen(sheet, {0, 1}, -2);
+      },
       [&] { world.step(0); },
       [&] { world.step(kNan); },
       [&] { world.cloth(1); },
       [&] { world.cast_ray({}, {}); },
-      [&] { world.closest_point({kNan, 0, 0}); },
+      [&] {
+        world.closest_point({kNan, 0, 0});
+      },
   };
   for (std::size_t c = 0; c < calls.size(); ++c) {
     EXPECT_FALSE(error_of(calls[c]).empty()) << c;

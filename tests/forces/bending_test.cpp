@@ -1,4 +1,4 @@
-/// Curvature stencils: what rigidity they show on any mesh, in any direction, beside that of hinges.
+/// Curvature stencils: effective rigidity on any mesh, in any direction, compared with hinges.
 
 #include "weft/forces/bending.h"
 
@@ -24,7 +24,7 @@ BendingRows mesh_rows(const TriangleMesh& mesh, const Fabric& fabric) {
   return build_mesh_bending(mesh, warp_from_direction(mesh, Vec3::UnitX()), fabric);
 }
 
-/// Hinges, made linear: for comparison.
+/// Linearised hinges, for comparison.
 BendingRows hinge_rows(const TriangleMesh& mesh, const Fabric& fabric) {
   BendingRows rows;
   for (const HingeElement& hinge : build_hinges(mesh, warp_from_direction(mesh, Vec3::UnitX()), fabric)) {
@@ -48,9 +48,9 @@ Eigen::MatrixXd dense(const BendingRows& rows, int n) {
   return h;
 }
 
-/// Rigidity that a square sheet of `cells`² shows when rolled by unit curvature in the direction ψ: its two
-/// outer layers of vertices are held on the cylinder (slightly bent: heights ½ s²), the others settle.
-/// Outer half cells count as they can: bending along the border only.
+/// Effective rigidity of a square sheet of `cells`² rolled by unit curvature in the direction ψ: its two
+/// outer layers of vertices are held on the cylinder (slightly bent: heights ½ s²), the others settle. Outer
+/// half cells count with their possible bending: along the border only.
 double shown_rigidity(const BendingRows& rows, const TriangleMesh& mesh, int cells, double psi,
                       const Fabric& fabric) {
   const int n = mesh.num_vertices();
@@ -104,7 +104,7 @@ TEST(BendingRows, OnGridsAreExactAtAllAngles) {
     const double c = std::cos(i * kPi / 8), s = std::sin(i * kPi / 8);
     std::vector<Vec3> x = mesh.positions;
     for (Vec3& p : x) p.y() = 0.5 * std::pow(c * p.x() + s * p.z(), 2);
-    // Along each axis all but half a cell at either end bends; the twist fills every cell.
+    // Along each axis everything bends except half a cell at either end; the twist fills every cell.
     const double twist = 4 * 1.2 - 1 - 2;
     const double along = (1 - 1.0 / kCells) * (std::pow(c, 4) + 2 * std::pow(s, 4));
     const double expected = 0.5 * (along + twist * c * c * s * s);
@@ -126,14 +126,14 @@ TEST(BendingRows, OnAGridTurnWithItsWarp) {
 }
 
 TEST(BendingRows, OfAStripAreThoseOfItsWidth) {
-  // Two cells wide: border and middle rows share the width; rolled along the strip, its ends excepted.
+  // Two cells wide: border and middle rows share the width; rolled along the strip, except its ends.
   const Grid strip{.size_x = 1, .size_z = 0.1, .cells_x = 20, .cells_z = 2};
   for (const SheetKind kind : {SheetKind::parallel, SheetKind::alternating}) {
     const TriangleMesh mesh = make_sheet(kind, strip);
     const double energy = bending_energy(mesh_rows(mesh, kIsotropic), test::rolled(mesh, 0.1, 0));
     EXPECT_NEAR(energy / (0.5 * 0.01 * 0.95 * 0.1), 1, 0.1) << to_string(kind);
   }
-  // One cell wide: nothing but hinges.
+  // One cell wide: only hinges.
   const Grid ribbon{.size_x = 1, .size_z = 0.05, .cells_x = 20, .cells_z = 1};
   const TriangleMesh mesh = make_sheet(SheetKind::alternating, ribbon);
   const double energy = bending_energy(mesh_rows(mesh, kIsotropic), test::rolled(mesh, 0.1, 0));
@@ -209,7 +209,7 @@ TEST(BendingRows, ForceIsTheGradientAndTheMatrixItsDerivative) {
 }
 
 TEST(BendingRows, FollowTheWarpOfEachTriangleAndNotTheMesh) {
-  // The mesh turned under the fabric: rolled along warp it shows bend_warp, wherever warp points.
+  // The mesh rotated under the fabric: rolled along warp it has bend_warp, for any direction of warp.
   constexpr int kCells = 16;
   const TriangleMesh mesh = make_sheet(SheetKind::random, kCells);
   for (const double angle : {0.3, 1.0}) {

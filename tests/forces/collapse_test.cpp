@@ -1,5 +1,5 @@
-/// Resistance to collapse: against differences, nothing in cloth's working range, and finite everywhere; and
-/// the search for narrow triangles against each triangle's principal stretches.
+/// Resistance to collapse: against finite differences, zero in cloth's working range, and finite everywhere;
+/// and the search for narrow triangles against each triangle's principal stretches.
 
 #include "weft/forces/collapse.h"
 
@@ -27,7 +27,7 @@ Mat3 random_turn(Random& random) {
       .toRotationMatrix();
 }
 
-/// The triangle after a linear map of its plane, which goes to space.
+/// The triangle after a linear map of its plane into space.
 TriangleCorners mapped(const Eigen::Matrix2d& map, const Mat3& turn = Mat3::Identity()) {
   TriangleCorners x;
   for (int c = 0; c < 3; ++c) {
@@ -37,13 +37,13 @@ TriangleCorners mapped(const Eigen::Matrix2d& map, const Mat3& turn = Mat3::Iden
   return x;
 }
 
-/// Stretches σ1, σ2 along axes that are turned by `angle`.
+/// Stretches σ1, σ2 along axes rotated by `angle`.
 Eigen::Matrix2d stretched(double s1, double s2, double angle) {
   const Eigen::Matrix2d r = Eigen::Rotation2Dd(angle).toRotationMatrix();
   return r * Vec2(s1, s2).asDiagonal() * r.transpose();
 }
 
-/// Threads of their own length, whose angle is γ less than a right one.
+/// Threads of rest length at an angle of 90° − γ.
 Eigen::Matrix2d sheared(double angle_deg, double warp = 1, double weft = 1) {
   const double a = angle_deg * M_PI / 180;
   Eigen::Matrix2d map;
@@ -51,7 +51,7 @@ Eigen::Matrix2d sheared(double angle_deg, double warp = 1, double weft = 1) {
   return map;
 }
 
-/// Squeezed by every amount, in every direction, sometimes in both; also beyond where ψ changes its form.
+/// Compressed by various amounts, in every direction, sometimes in both; also across the breakpoints of ψ.
 std::vector<TriangleCorners> crushed_triangles() {
   std::vector<TriangleCorners> all;
   Random random(5);
@@ -139,7 +139,7 @@ TEST(Collapse, CostsNothingInTheWorkingRangeOfCloth) {
 }
 
 TEST(Collapse, LocksInShearBetweenFiftyAndSeventyDegrees) {
-  // The couple that holds the triangle sheared, over area and stiffness.
+  // Couple of the sheared triangle, over area and stiffness.
   const auto moment = [](double angle_deg) {
     const double d = 1e-3;
     return (energy_of(mapped(sheared(angle_deg + d))) - energy_of(mapped(sheared(angle_deg - d)))) /
@@ -153,7 +153,7 @@ TEST(Collapse, LocksInShearBetweenFiftyAndSeventyDegrees) {
 }
 
 TEST(Collapse, OpensTrianglesWithoutWidth) {
-  // Warp and weft parallel, a thread of no length, three corners on a line, and in one point.
+  // Warp and weft parallel, a thread of zero length, three corners collinear, and coincident.
   Eigen::Matrix2d parallel, short_thread, line;
   parallel << 1, 1, 0, 0;
   short_thread << 1, 0, 0, 0;

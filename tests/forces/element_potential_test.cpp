@@ -1,4 +1,4 @@
-/// The fast kernels of membranes and bending against the functions they state, in double precision.
+/// Fast kernels of membranes and bending against their reference functions in double precision.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using test::SheetKind;
 
-/// Numbers that no two of are alike, so that none can stand for another.
+/// All numbers differ, so that a mix-up is detected.
 const Fabric kFabric = {.density = 0.2,
                         .c11 = 900,
                         .c22 = 2000,
@@ -43,7 +43,7 @@ std::shared_ptr<const ClothModel> model_of(const std::shared_ptr<const ClothTopo
                            elements);
 }
 
-/// Of every kind of mesh.
+/// Sheets of every kind of mesh.
 void add_sheets(const Fabric& fabric, std::vector<Sheet>& sheets) {
   for (const SpringModel model : {SpringModel::simplified, SpringModel::alternating}) {
     const auto topology = build_grid_topology(kGrid, model);
@@ -68,8 +68,8 @@ std::vector<Sheet> linear_sheets(double damping) {
   return sheets;
 }
 
-/// With a strain limit too, with stretch curves, and with both. Most triangles of a Bent sheet are beyond the
-/// limit and the curves' kinks, in one direction or in both.
+/// Also with a strain limit, with stretch curves, and with both. Most triangles of a Bent sheet are beyond
+/// the limit and the curves' kinks, in one direction or in both.
 std::vector<Sheet> all_sheets(double damping) {
   std::vector<Sheet> sheets = linear_sheets(damping);
   Fabric fabric = kFabric;
@@ -138,7 +138,7 @@ TEST(ElementPotential, IsTheSumOfTheElementsOnGridsAndMeshes) {
     add_bending_force(elements.bending, x, difference);
     const double size = norm(difference);
     for (int i = 0; i < sheet.model->num_particles(); ++i) difference[i] -= force.get(bent.at(i));
-    // Floats of places of a metre, cells of 5 cm and stiffness of 1000 N/m.
+    // Floats of positions of a metre, cells of 5 cm and stiffness of 1000 N/m.
     EXPECT_NEAR(energy / expected, 1, 1e-5) << sheet.name;
     EXPECT_LT(norm(difference), 1e-5 * size) << sheet.name;
     EXPECT_EQ(bent.potential.energy(bent.e, *bent.jobs), energy) << sheet.name;
@@ -205,7 +205,7 @@ TEST(ElementPotential, DampedForceIsTheGradientOfItsEnergy) {
   }
 }
 
-/// The energy that damping adds to a sheet at rest strain which has come there from `start`.
+/// Damping energy of a sheet at rest strain that has moved there from `start`.
 double viscous_energy(const ClothModel& model, const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
   IncrementalPotential potential;
   potential.fit(model, 100);

@@ -1,4 +1,4 @@
-/// Hinges: against differences, under rigid motion, and the rigidity they were given recovered.
+/// Hinges: against finite differences, under rigid motion, and their given rigidity recovered.
 
 #include "weft/forces/hinge.h"
 
@@ -105,8 +105,8 @@ TEST(HingeHessian, AtRestIsTheConstantOneAndTheGaussNewtonOne) {
   }
 }
 
-/// Bending energy per area over ½ κ² of a sheet rolled in the direction ψ: the rigidity that it shows, in
-/// units of the one given. Every hinge counts with a third of its triangles' areas.
+/// Bending energy per area over ½ κ² of a sheet rolled in the direction ψ: effective rigidity, in units of
+/// the given one. Every hinge counts with a third of its triangles' areas.
 double shown_rigidity(const TriangleMesh& mesh, double psi) {
   constexpr double kCurvature = 0.01;
   const std::vector<Vec3> x = test::rolled(mesh, kCurvature, psi);
@@ -140,13 +140,13 @@ TEST(Hinges, BentToACylinderAlongTheGridStoreExactlyTheGivenRigidity) {
       };
       energy += hinge_energy(hinge_stiffness(3, corners(mesh.positions)), 0, corners(x));
     }
-    // 19 inner edges, each standing for one cell; angles are κ dx exactly, for arcs were cut to equal chords.
+    // 19 inner edges, one per cell; angles are exactly κ dx, because arcs were cut into equal chords.
     EXPECT_NEAR(energy, 0.5 * 3 * kCurvature * kCurvature * 19 * 0.05 * 0.05, 1e-12);
   }
 }
 
 TEST(Hinges, OnDiagonalsAreTooStiffAt45Degrees) {
-  // A finding, for which curvature stencils are the remedy: the shares of rigidity at 0, 45, 90 and 135°.
+  // Known hinge error, which curvature stencils avoid: the shares of rigidity at 0, 45, 90 and 135°.
   for (const SheetKind kind : {SheetKind::parallel, SheetKind::alternating, SheetKind::random}) {
     const TriangleMesh mesh = make_sheet(kind, 32);
     double shown[4];

@@ -1,4 +1,5 @@
-/// The fast kernels against the plain double formulas, and against themselves on other machines and threads.
+/// Fast kernels against the plain double formulas, and against themselves at other SIMD levels and thread
+/// counts.
 
 #include "weft/forces/increments.h"
 
@@ -25,7 +26,7 @@ struct Case {
 std::vector<Case> make_cases() {
   std::vector<Case> cases;
   for (const SpringModel model : {SpringModel::basic, SpringModel::simplified, SpringModel::alternating}) {
-    // Widths around a full vector register, and the smallest grids there are.
+    // Widths around a full vector register, and the smallest grids.
     for (const auto& [cells_x, cells_z] :
          {std::pair{1, 1}, {1, 5}, {5, 1}, {14, 3}, {15, 7}, {16, 6}, {40, 9}}) {
       const Grid grid{

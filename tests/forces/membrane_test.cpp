@@ -1,4 +1,4 @@
-/// The triangle membrane: against differences, under rigid motion, and the stiffness it was given recovered.
+/// The triangle membrane: against finite differences, under rigid motion, and its given stiffness recovered.
 
 #include "weft/forces/membrane.h"
 
@@ -26,7 +26,7 @@ Mat3 make_stiffness(double c11, double c22, double c12, double g) {
 const Mat3 kDenim = make_stiffness(410.7, 2027.8, 20.5, 53.4);
 const RestTriangle kRest = make_rest_triangle({0, 0}, {0.9, 0.2}, {0.3, 0.8});
 
-/// Stretched by up to a third, and anywhere.
+/// Stretched by up to a third, at random positions.
 TriangleCorners random_corners(Random& random) {
   const Mat3 turn = Eigen::Quaterniond(1, random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
                         .normalized()
@@ -100,7 +100,7 @@ TEST(Membrane, FilteredHessianIsNeverIndefiniteAndExactUnderTension) {
     EXPECT_LT(exact.eigenvalues().minCoeff(), -1);
     EXPECT_GT(filtered.eigenvalues().minCoeff(), -1e-9) << "zero to rounding of 1e3";
   }
-  // A right triangle under tension along its legs: all edge weights are positive, and nothing is changed.
+  // A right triangle under tension along its legs: all edge weights are positive, and nothing changes.
   const RestTriangle right = make_rest_triangle({0, 0}, {1, 0}, {0, 1});
   const TriangleCorners pulled = {Vec3(0, 0, 0), Vec3(1.1, 0, 0), Vec3(0, 1.1, 0)};
   const MembraneHessian hessian = membrane_hessian(right, make_stiffness(100, 100, 0, 30), pulled);
@@ -139,7 +139,7 @@ TEST(Membrane, PrincipalStretchesAreThoseOfTheMap) {
 }
 
 /// Elastic energy per area of a sheet whose every vertex follows a homogeneous strain (ε11, ε22, γ) of the
-/// axes (warp, weft), which lie `angle` from the sheet's own x and z.
+/// axes (warp, weft), which are at `angle` from the sheet's x and z.
 double energy_density(const TriangleMesh& mesh, const Vec3& strain, double angle, const Mat3& stiffness) {
   const double c = std::cos(angle), s = std::sin(angle);
   const auto to_fabric = [&](const Vec3& p) { return Vec2(c * p.x() + s * p.z(), c * p.z() - s * p.x()); };
@@ -160,8 +160,8 @@ double energy_density(const TriangleMesh& mesh, const Vec3& strain, double angle
 }
 
 TEST(Membrane, StiffnessIsRecoveredOnEveryMeshInEveryDirection) {
-  // Strain of 1e-4: the quartic part of the energy is a 1e-4 of it. The element is exact for a homogeneous
-  // strain, whatever the mesh; 1 % on grids and 2 % on random meshes is asked for.
+  // Strain of 1e-4: the quartic part of the energy is 1e-4 of it. The element is exact for a homogeneous
+  // strain on any mesh; the requirement is 1 % on grids and 2 % on random meshes.
   constexpr double kStrain = 1e-4, kTolerated = 3e-4;
   for (const SheetKind kind : {SheetKind::parallel, SheetKind::alternating, SheetKind::random}) {
     for (const int cells : {4, 8, 16}) {
@@ -203,7 +203,7 @@ TEST(Membrane, WithALimitForceAndHessianAreThoseOfItsEnergy) {
 }
 
 TEST(Membrane, LimitOnlyPullsAndIsConvex) {
-  // All that is stretched by it, whichever way: no negative eigenvalue of the whole Hessian.
+  // With tension in every direction: no negative eigenvalue of the whole Hessian.
   Random random(12);
   const MembraneLaw limit_alone = {Mat3::Zero(), kLimited.limit};
   for (int trial = 0; trial < 50; ++trial) {

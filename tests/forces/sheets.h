@@ -15,7 +15,7 @@ namespace weft::engine::test {
 /// A sheet in the x–z plane, cut into cells² squares of two triangles.
 enum class SheetKind {
   parallel,     // all diagonals along (i,j)–(i+1,j+1)
-  alternating,  // every second one the other way
+  alternating,  // alternating from cell to cell
   random,       // inner vertices moved by up to 0.3 cells, each cell cut along its shorter diagonal
 };
 

@@ -47,7 +47,7 @@ TEST(CleanMesh, DropsTrianglesWithoutAreaByName) {
   TriangleMesh mesh = kSquare;
   mesh.positions.push_back({2, 0, 0});
   mesh.triangles.push_back({0, 0, 1});  // a repeated corner
-  mesh.triangles.push_back({0, 1, 4});  // three on a line
+  mesh.triangles.push_back({0, 1, 4});  // three collinear
   const CleanMesh clean = clean_mesh(mesh);
   EXPECT_EQ(clean.mesh.num_triangles(), 2);
   EXPECT_TRUE(has_warning(clean, "2 triangles without area"));
@@ -61,7 +61,7 @@ TEST(CleanMesh, DropsRepeatedTrianglesAndIsolatedVertices) {
   for (Triangle& tri : mesh.triangles) {
     for (int& v : tri) ++v;
   }
-  mesh.triangles.push_back({2, 3, 1});  // the first again, turned
+  mesh.triangles.push_back({2, 3, 1});  // the first again, rotated
   const CleanMesh clean = clean_mesh(mesh);
   EXPECT_EQ(clean.mesh.positions, kSquare.positions);
   EXPECT_EQ(clean.mesh.triangles, kSquare.triangles);
@@ -71,7 +71,7 @@ TEST(CleanMesh, DropsRepeatedTrianglesAndIsolatedVertices) {
 }
 
 TEST(CleanMesh, TellsOfSeamsAndSewsThemOnRequest) {
-  // Two squares side by side with a doubled edge at x = 1, one of its vertices a little off.
+  // Two adjacent squares with a duplicate edge at x = 1, one of its vertices slightly off.
   TriangleMesh mesh = kSquare;
   for (const Vec3& p : kSquare.positions) mesh.positions.push_back(p + Vec3(1, 0, 0));
   for (const auto& [a, b, c] : kSquare.triangles) mesh.triangles.push_back({a + 4, b + 4, c + 4});

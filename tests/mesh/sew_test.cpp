@@ -22,7 +22,7 @@ int root(std::vector<int>& parent, int v) {
   return v;
 }
 
-/// What a mesh is as a surface.
+/// Surface properties of a mesh.
 struct Shape {
   int pieces = 0, borders = 0, euler = 0;
   int most_triangles = 0;  // at an edge
@@ -268,7 +268,7 @@ TEST(Sew, SewsATWhateverTheVertexCounts) {
 // ---- Layers
 
 TEST(Sew, LeavesALiningApart) {
-  // Flat, and rolled with the lining's mesh another one; 1 mm apart, so that borders lie above each other.
+  // Flat, and rolled with a different mesh of the lining; 1 mm apart, so that borders are above each other.
   for (const double radius : {1e4, 0.1}) {
     TriangleMesh mesh;
     add(mesh, sheet(0.2, 0.2, 10, 20), rolled(radius));
@@ -296,8 +296,8 @@ TEST(Sew, SewsShellAndLiningEachForItself) {
 }
 
 TEST(Sew, ClosesAPillowAndKeepsItsCorners) {
-  // Two panels with different meshes that bulge: at the seam 60° between them. Corners of both are triangles
-  // with two border edges, which must not end up as one triangle twice.
+  // Two bulging panels with different meshes: 60° between them at the seam. Corners of both are triangles
+  // with two border edges, which must not become duplicate triangles.
   for (const int cells : {12, 17}) {
     TriangleMesh mesh;
     const auto bulged = [](double sign) {
@@ -317,8 +317,8 @@ TEST(Sew, ClosesAPillowAndKeepsItsCorners) {
 
 // ---- Random cuts
 
-/// A sheet cut along random edges; the right part's and some of the left part's edges at the cut divided at
-/// random, the right part moved.
+/// A sheet cut along random edges. Edges of the right part, and some of the left part's, are divided at
+/// random at the cut; the right part is moved.
 struct CutSheet {
   TriangleMesh whole, cut;
   double distance = 0, way = 0;  // [m]
@@ -384,12 +384,12 @@ TEST(Sew, MakesACutSheetWholeAgain) {
     EXPECT_EQ(is.pieces, 1) << seed;
     EXPECT_EQ(is.borders, 1) << seed;
     EXPECT_EQ(is.euler, was.euler) << seed;
-    // What is pulled apart has, besides, the area of the gap: at most its width along a cut of twice 0.3 m.
+    // The separated sheet additionally has the area of the gap: at most its width along a cut of twice 0.3 m.
     EXPECT_NEAR(is.area, was.area, 0.01 * was.area + 0.6 * sheet.way) << seed;
   }
 }
 
-// ---- What comes with it
+// ---- Attributes
 
 TEST(Sew, SaysWhereTheCornersOfPartsLie) {
   const CutSheet sheet(7, 0.005);

@@ -14,7 +14,6 @@
 namespace weft::engine {
 namespace {
 
-
 constexpr double kFlatness = SliverLimits{}.flatness;
 
 double least_height_share(const TriangleMesh& mesh) {
@@ -47,7 +46,7 @@ int max_triangles_at_an_edge(const TriangleMesh& mesh) {
   return most;
 }
 
-/// Every corner lies where its weights say, within `tolerance` [m].
+/// Every corner is at the position of its weights, within `tolerance` [m].
 void expect_corners_in_place(const TriangleMesh& source, const DerivedMesh& derived, double tolerance) {
   ASSERT_EQ(derived.source_triangle.size(), derived.mesh.triangles.size());
   ASSERT_EQ(derived.corner_weights.size(), derived.mesh.triangles.size());
@@ -82,7 +81,7 @@ TEST(Slivers, DropsACapAtTheBorder) {
 }
 
 TEST(Slivers, CollapsesANeedleAndKeepsTheBorder) {
-  // Vertex 4 is 1 mm beside vertex 2, which is on the border.
+  // Vertex 4 is 1 mm from vertex 2, which is on the border.
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, 0, 1}, {0.5, 0, 0.3}, {0.5005, 0, 0.999}, {0, 0, 1}},
                           {{0, 1, 3}, {0, 3, 5}, {1, 2, 4}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}}};
   const MeshWithoutSlivers result = remove_slivers(mesh);
@@ -94,7 +93,7 @@ TEST(Slivers, CollapsesANeedleAndKeepsTheBorder) {
 }
 
 TEST(Slivers, LeavesARibbonAsItIs) {
-  // All of it is flat. It must not come apart, or become a line from its ends on.
+  // All triangles are flat. The sheet must not separate, or shrink to a line from its ends.
   for (const int cells : {1, 2, 5}) {
     const TriangleMesh mesh = build_grid_mesh(
         {.size_x = 10.0 * cells, .size_z = 0.05, .cells_x = cells, .cells_z = 1}, GridDiagonals::alternating);
@@ -124,7 +123,7 @@ auto count_edges_below(double length, const TriangleMesh& mesh) {
   });
 }
 
-/// Cells of 1 cm, and a last row of 0.3 mm, as a cut through a mesh leaves it.
+/// Cells of 1 cm, and a last row of 0.3 mm, as after a cut through a mesh.
 TriangleMesh sheet_with_a_narrow_row() {
   TriangleMesh mesh = build_grid_mesh({.size_x = 0.1, .size_z = 0.11, .cells_x = 10, .cells_z = 11},
                                       GridDiagonals::alternating);
@@ -151,7 +150,7 @@ TEST(Slivers, AreNoSmallTrianglesAmongOthersOfTheirSize) {
 }
 
 TEST(Slivers, AreRemovedWhereverTheyAre) {
-  // Sheets and spheres with caps and needles at random edges: what is left has the same topology and area.
+  // Sheets and spheres with caps and needles at random edges: the result has the same topology and area.
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
     TriangleMesh mesh = seed % 2 == 1 ? build_random_mesh({1, 1, 12, 12}, seed)

@@ -27,7 +27,7 @@ TEST(CapsuleMesh, IsClosedOutwardAndAlmostTheCapsule) {
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a), std::pair(a, a)}) {
     const TriangleMesh mesh = make_capsule_mesh(from, to, r, 32);
     const SurfaceEdges edges = count_surface_edges(mesh);
-    // Without length the two ends lie on each other, and the side between them has no area.
+    // With zero length both ends coincide, and the side between them has no area.
     EXPECT_EQ(edges.border + edges.non_manifold + edges.twisted, 0);
     const double capsule = pi * r * r * (4.0 / 3 * r + (to - from).norm());
     EXPECT_GT(compute_signed_volume(mesh), 0.98 * capsule);

@@ -5,7 +5,7 @@
 namespace weft::engine {
 namespace {
 
-/// Where a point is in the picture [pixels].
+/// Position of a point in the picture [pixels].
 Eigen::Vector2d project(const Camera& camera, const Vec3& p, PictureSize size) {
   const Eigen::Vector4d clip =
       Camera::projection(camera.fov_deg, size.aspect(), 0.01, 100) * camera.view() * p.homogeneous();
@@ -34,7 +34,7 @@ TEST(Camera, RayThroughAPixelHitsWhatIsDrawnThere) {
 TEST(Camera, ElevationLiftsTheEyeAndUpStaysUp) {
   EXPECT_GT(Camera{.elevation_deg = 30}.eye().y(), 0);
   Camera camera = kCamera;
-  camera.orbit(400, 1000);  // far too much
+  camera.orbit(400, 1000);  // far beyond the limits
   EXPECT_LT(camera.elevation_deg, 90);
   EXPECT_GT(camera.up().y(), 0);
   camera.orbit(0, -1000);

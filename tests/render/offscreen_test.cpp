@@ -1,5 +1,5 @@
-/// What OpenGL makes of pictures: claims about places in them, and one whole picture. Drivers differ in
-/// rounding and in how they filter, so colours are compared with a tolerance of a few steps of 255.
+/// OpenGL rendering: tests of single pixels, and one whole picture. Drivers differ in rounding and filtering,
+/// so colours are compared with a tolerance of a few steps of 255.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ int red(const Image& image, int x, int y) { return image.pixel(x, y)[0]; }
 int green(const Image& image, int x, int y) { return image.pixel(x, y)[1]; }
 int alpha(const Image& image, int x, int y) { return image.pixel(x, y)[3]; }
 
-/// Seen from straight above, north up, `half` metres from the middle to the upper border.
+/// View from straight above, north up, `half` metres from the centre to the upper border.
 Camera from_above(double half) {
   return {.target = Vec3::Zero(),
           .distance = half / std::tan(0.08726646),
@@ -138,7 +138,7 @@ TEST_F(Offscreen, EdgesHaveNoSteps) {
   Picture picture;
   picture.transparent = true;
   picture.camera = from_above(1);
-  picture.camera.azimuth_deg = 10;  // the sheet's border runs slantwise
+  picture.camera.azimuth_deg = 10;  // the sheet's border is slanted in the picture
   picture.meshes.push_back(make_sheet({0, 0, 0}, 1, fabric({0.8, 0.8, 0.8})));
   const auto num_between = [](const Image& image) {
     int between = 0;
@@ -199,7 +199,7 @@ TEST_F(Offscreen, TheStillLifeLooksAsItDid) {
   const Image image = picture_of(make_still_life(), {480, 270});
   std::filesystem::create_directories(WEFT_OUTPUT_DIR);
   write_image(WEFT_OUTPUT_DIR "/still_life.png", image);
-  // Two drivers differ by less than half a step on average; lost shadows make 5.7.
+  // Two drivers differ by less than half a step on average; missing shadows give 5.7.
   EXPECT_LT(difference(image, read_png(reference)), 0.5)
       << "look at " << WEFT_OUTPUT_DIR << "/still_life.png, and copy it to " << reference
       << " if it is better";

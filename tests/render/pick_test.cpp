@@ -24,7 +24,7 @@ TEST(Pick, FindsThePointOfABallThatFacesTheCamera) {
   const std::array meshes = {drawn(make_sphere_mesh(Vec3::Zero(), 1, 24))};
   const auto hit = find_first_hit(meshes, kCamera.ray(320, 180, kSize));
   ASSERT_TRUE(hit.has_value());
-  // The mesh lies up to 1 - cos(π/48) inside the sphere.
+  // The mesh is up to 1 - cos(π/48) inside the sphere.
   EXPECT_NEAR(hit->distance, 3, 0.005);
   EXPECT_NEAR(hit->weights.sum(), 1, 1e-12);
   Vec3 point = Vec3::Zero();
@@ -58,7 +58,7 @@ TEST(Pick, ARayThatMissesMeetsNothing) {
   const std::array meshes = {drawn(make_sphere_mesh(Vec3::Zero(), 0.1, 16))};
   EXPECT_FALSE(find_first_hit(meshes, kCamera.ray(5, 5, kSize)).has_value());
   EXPECT_FALSE(find_first_hit({}, kCamera.ray(5, 5, kSize)).has_value());
-  // Nor does what lies behind the eye.
+  // Nor are points behind the eye.
   const Ray away{kCamera.eye(), -kCamera.forward()};
   EXPECT_FALSE(find_first_hit(meshes, away).has_value());
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures that tests draw.
+/// Pictures for tests.
 
 #include "weft/mesh/grid.h"
 #include "weft/render/picture.h"
@@ -21,7 +21,7 @@ inline DrawnMesh draw(const TriangleMesh& mesh, const Look& look) {
           .look = look};
 }
 
-/// A level square sheet of fabric around the given place.
+/// A horizontal square sheet of fabric around the given point.
 inline DrawnMesh make_sheet(const Vec3& center, double side, const Look& look) {
   TriangleMesh mesh = build_grid_mesh({.size_x = side, .size_z = side, .cells_x = 8, .cells_z = 8},
                                       GridDiagonals::alternating);
@@ -40,7 +40,7 @@ inline Look fabric(const Color& color, double check_size = 0) {
 }
 inline Look solid(const Color& color) { return {Look::Kind::solid, color, 0}; }
 
-/// A ball over the ground, and checked cloth beside it.
+/// A ball over the ground, and checked cloth next to it.
 inline Picture make_still_life() {
   Picture picture;
   picture.meshes.push_back(draw(make_sphere_mesh({0, 0.3, 0}, 0.3, 24), solid({0.6, 0.6, 0.6})));

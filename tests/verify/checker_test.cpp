@@ -31,7 +31,7 @@ TEST(Checker, FindsNothingWhereThereIsNothing) {
 
 TEST(Checker, NamesWhatCrossesAndWhatIsInside) {
   const TriangleMesh sheet = sheet_at(0.1);
-  // A spike through the inside of one triangle of the sheet, as cloth and as collider.
+  // A spike through the interior of one triangle of the sheet, as cloth and as collider.
   const TriangleMesh spike{{{0.1, -1, 0.2}, {0.11, -1, 0.2}, {0.1, 0.25, 0.2}}, {{0, 1, 2}}};
   const Frame frame{
       {cloth("sheet", sheet), cloth("rag", spike)},

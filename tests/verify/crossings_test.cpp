@@ -13,7 +13,7 @@
 namespace weft::engine::verify {
 namespace {
 
-// ---- The slow exact version, in integers ----
+// ---- Slow exact reference in integers ----
 
 __extension__ typedef __int128 Integer;
 using Point = std::array<std::int64_t, 3>;
@@ -37,7 +37,8 @@ struct Fraction {
   }
 };
 
-/// Where a triangle's inside meets a plane, as an interval along `direction`; empty if it lies on one side.
+/// Intersection of a triangle's interior with a plane, as an interval along `direction`; empty if it is on
+/// one side.
 std::optional<std::pair<Fraction, Fraction>> cut(const IntegerCorners& t, const IntegerCorners& plane,
                                                  const Point& direction) {
   std::array<std::int64_t, 3> height;
@@ -111,12 +112,12 @@ TriangleMesh moved(const TriangleMesh& mesh, const Vec3& by) {
   return mapped(mesh, [&](const Vec3& p) { return Vec3(p + by); });
 }
 
-/// The sheet x, z in [0, 1] put upright: x in [0, 1], y in [-1/2, 1/2], z = 1/2.
+/// The sheet x, z in [0, 1] turned upright: x in [0, 1], y in [-1/2, 1/2], z = 1/2.
 TriangleMesh upright(const TriangleMesh& mesh) {
   return mapped(mesh, [](const Vec3& p) { return Vec3(p.x(), p.z() - 0.5, 0.5); });
 }
 
-/// n triangles of about the given size, each with corners of its own.
+/// n triangles of about the given size, without common vertices.
 TriangleMesh soup(int n, double size, std::uint64_t seed) {
   Random random(seed);
   TriangleMesh mesh;
@@ -209,7 +210,7 @@ TEST(FindCrossings, NotOfCollidersAmongThemselves) {
 }
 
 TEST(FindCrossings, FindEveryPlantedOne) {
-  // A needle through each single triangle of a sheet, wherever it is pushed through.
+  // A needle through each single triangle of a sheet, at any point.
   const TriangleMesh cloth = sheet(12);
   Random random(3);
   for (int t = 0; t < cloth.num_triangles(); ++t) {
@@ -225,8 +226,7 @@ TEST(FindCrossings, FindEveryPlantedOne) {
 }
 
 TEST(FindCrossings, SeeSheetsThatCrossWhereverTheirVerticesLie) {
-  // The line along which they cross runs through insides, along edges of one or of both, and through
-  // vertices.
+  // The intersection line runs through interiors, along edges of one or of both, and through vertices.
   for (const int cells : {3, 4, 7, 8}) {
     for (const auto diagonals : {GridDiagonals::parallel, GridDiagonals::alternating}) {
       const TriangleMesh a = sheet(cells, diagonals);
@@ -245,7 +245,7 @@ TEST(FindCrossings, SeeSheetsThatCrossWhereverTheirVerticesLie) {
 }
 
 TEST(FindCrossings, OnSheetsThatTouchAndTurnBackAreNone) {
-  // A fold whose crease lies exactly on a sheet: along its edges, across them, from above and from below.
+  // A fold whose crease is exactly on a sheet: along its edges, across them, from above and from below.
   for (const int cells : {1, 2, 3, 4}) {
     const TriangleMesh flat = sheet(4);
     for (const double side : {-1.0, 1.0}) {
@@ -263,7 +263,7 @@ TEST(FindCrossings, OnSheetsThatTouchAndTurnBackAreNone) {
   }
 }
 
-/// Two triangles, one of each, lie in one plane, or one has no area.
+/// Whether a triangle of each are coplanar, or one is degenerate.
 bool have_triangles_in_one_plane(const TriangleMesh& a, const TriangleMesh& b) {
   const auto is_on = [](const Corners& plane, const Corners& t) {
     const Vec3 n = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
@@ -278,9 +278,9 @@ bool have_triangles_in_one_plane(const TriangleMesh& a, const TriangleMesh& b) {
 }
 
 TEST(FindCrossings, AreWhatNoSmallMovementOfTheVerticesUndoes) {
-  // Two strips with small integer corners, so that every degeneracy occurs. Where they are said to cross,
-  // moving the corners a little cannot part them: and then no corner lies in another's plane, and only
-  // insides count. Where they are said to touch, one of some hundred small movements parts them.
+  // Two strips with small integer corners, so that every degeneracy occurs. Where they are reported to cross,
+  // small movements of the corners cannot separate them. The moved corners are in no other's plane, so only
+  // interiors count. Where they are reported to touch, one of some hundred small movements separates them.
   Random random(4);
   int num_crossing = 0, num_touching = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -311,7 +311,7 @@ TEST(FindCrossings, AreWhatNoSmallMovementOfTheVerticesUndoes) {
 
 TEST(FindCrossings, CountPairsAlongACut) {
   // Each of the four columns of cells is cut once across, through both of its triangles; twice 4 + 4 − 1
-  // pairs where neither mesh has a vertex on the cut.
+  // pairs if neither mesh has a vertex on the cut.
   const TriangleMesh a = sheet(4, GridDiagonals::parallel);
   const auto found = crossings(a, moved(upright(sheet(1, GridDiagonals::parallel)), {0, 0.3, 0.1}));
   EXPECT_GE(found.size(), 8u);
@@ -319,7 +319,7 @@ TEST(FindCrossings, CountPairsAlongACut) {
 }
 
 TEST(FindCrossings, OfClothWithItself) {
-  // A strip bent round so that its end passes through its middle.
+  // A strip bent so that its end passes through its middle.
   const TriangleMesh strip =
       build_grid_mesh({.size_x = 1, .size_z = 0.2, .cells_x = 40, .cells_z = 4}, GridDiagonals::alternating);
   const auto bend = [&](double turns) {
@@ -361,8 +361,7 @@ TEST(FindCrossings, AreNoneWhereThereIsNone) {
 }
 
 TEST(FindCrossings, AreNoneInSmoothAndCrumpledSurfacesWithoutOverhang) {
-  // Heights over a plane: whatever they are, the surface cannot cross itself, nor its copy a millimetre
-  // above.
+  // Height fields over a plane: the surface cannot intersect itself, nor its copy a millimetre above.
   Random random(5);
   for (const double height : {1e-9, 1e-3, 0.3}) {
     const TriangleMesh rough =

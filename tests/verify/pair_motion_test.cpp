@@ -29,7 +29,7 @@ Vec3 random_grid_point(Random& random, int reach) {
   return p;
 }
 
-// ---- The slow careful version: roots of the cubic, in long doubles ----
+// ---- Slow reference: roots of the cubic, in long doubles ----
 
 using Real = long double;
 using Vec = Eigen::Matrix<Real, 3, 1>;
@@ -39,7 +39,7 @@ Vec at(const PointMotion& p, Real t) { return (1 - t) * p.start.cast<Real>() + t
 
 Real value(const Cubic& c, Real t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
 
-/// det(a, b, c) of three vectors that are linear in time, through four of its values.
+/// det(a, b, c) of three vectors that are linear in time, interpolated from four of its values.
 template <class Volume>
 Cubic cubic_through(const Volume& volume) {
   const Real y0 = volume(0), y1 = volume(1), y2 = volume(2), y3 = volume(3);
@@ -47,7 +47,7 @@ Cubic cubic_through(const Volume& volume) {
   return {y0, d1 - d2 / 2 + d3 / 3, d2 / 2 - d3 / 2, d3 / 6};
 }
 
-/// In [0, 1], each between neighbouring extremes; empty where one is too close to being double, or to an end.
+/// In [0, 1], each bracketed by adjacent extrema; empty if one is nearly double, or close to an end.
 std::optional<std::vector<Real>> simple_roots(const Cubic& c) {
   const Real size = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]) + std::abs(c[3]), margin = 1e-9L * size;
   std::vector<Real> stops = {0};
@@ -74,7 +74,7 @@ std::optional<std::vector<Real>> simple_roots(const Cubic& c) {
   return roots;
 }
 
-/// Is a parity odd of roots at which the places lie in [0, 1]? Empty if one is close to the border.
+/// Parity of the roots at which the positions are in [0, 1]; empty if one is close to the border.
 template <class Places>
 std::optional<bool> is_odd(const Cubic& cubic, const Places& places) {
   constexpr Real kMargin = 1e-7L;
@@ -147,8 +147,8 @@ TEST(PairMotion, AgreesWithTheRootsOfTheCubic) {
 }
 
 TEST(PairMotion, OfAPointAndAClosedSurfaceIsOddWhereItGoesInOrOut) {
-  // A tetrahedron whose corners go any way, turning inside out as they may, and a point. In whole numbers, so
-  // that the point goes through corners and edges, along faces, and so on, exactly.
+  // A point and a tetrahedron with arbitrary corner motions, which may invert it. In integers, so that the
+  // point goes through corners and edges, along faces, and so on, exactly.
   Random random(2);
   const std::vector<Triangle> faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
   int num_judged = 0, num_changed = 0, num_graze = 0;
@@ -185,7 +185,7 @@ TEST(PairMotion, OfAPointAndAClosedSurfaceIsOddWhereItGoesInOrOut) {
   EXPECT_GT(num_graze, 10000);
 }
 
-/// How often the sides of one triangle go through the other, modulo 2; empty if anything touches.
+/// Number of crossings of one triangle's sides through the other, modulo 2; empty if anything touches.
 std::optional<bool> are_linked(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   bool odd = false;
   for (int k = 0; k < 3; ++k) {

@@ -37,7 +37,7 @@ TriangleMesh moved(const TriangleMesh& mesh, const Vec3& by) {
   return mapped(mesh, [&](const Vec3& p) { return Vec3(p + by); });
 }
 
-/// A rag of one triangle, far smaller than a sheet's, with its first corner at p.
+/// A cloth of one triangle, far smaller than a sheet's, with its first corner at p.
 TriangleMesh needle(const Vec3& p) { return {{p, p + Vec3(1e-3, 1, 0), p + Vec3(0, 1, 1e-3)}, {{0, 1, 2}}}; }
 
 NamedCloth cloth(const std::string& name, const TriangleMesh& mesh) {
@@ -48,7 +48,7 @@ NamedCollider body(const std::string& name, const TriangleMesh& mesh) {
   return {name, MeshView{mesh.positions, mesh.triangles, true}};
 }
 
-/// What passes from each moment to the next: meshes as cloths, in their order.
+/// Passages from each frame to the next: meshes as cloths, in their order.
 std::vector<std::vector<FeaturePair>> passages(const std::vector<std::vector<TriangleMesh>>& moments) {
   const auto frame_of = [](const std::vector<TriangleMesh>& meshes) {
     Frame frame;
@@ -108,7 +108,7 @@ TEST(Passages, OfAParticleThroughAnyTriangleAreFound) {
     const double u = random.uniform(0.01, 0.98), v = random.uniform(0.01, 0.99 - u);
     const Vec3 at = flat.positions[a] + u * (flat.positions[b] - flat.positions[a]) +
                     v * (flat.positions[c] - flat.positions[a]);
-    const Mat3 turn = random_rotation(random);  // all of it, and a motion that all have in common
+    const Mat3 turn = random_rotation(random);  // a rotation of everything, and a common motion
     const Vec3 travel = random_vector(random, 10);
     const double depth = random.uniform(1e-6, 0.5);
     const auto place = [&](const TriangleMesh& mesh, const Vec3& by) {
@@ -124,7 +124,7 @@ TEST(Passages, OfAParticleThroughAnyTriangleAreFound) {
 TEST(Passages, OfAHemOverAHemAreFound) {
   Random random(2);
   for (int i = 0; i < 300; ++i) {
-    // Two triangles side by side, so that only the edge of the one and the edge of the other can meet.
+    // Two adjacent triangles, so that only one edge of each can meet.
     const Mat3 turn = random_rotation(random);
     const Vec3 travel = random_vector(random, 3);
     const double lean = random.uniform(-0.5, 0.5), low = random.uniform(-0.4, -1e-6),
@@ -165,7 +165,7 @@ TEST(Passages, OfParticlesThroughPlainShapesAreFoundIfDeepEnough) {
   Random random(4);
   int num_shallow = 0, num_deep = 0;
   for (int i = 0; i < 1000; ++i) {
-    // A straight way past the middle at a given distance, whose deepest point is known.
+    // A straight path past the centre at a given distance, whose deepest point is known.
     const Vec3 middle = random_vector(random, 1), travel = random_vector(random, 0.3);
     const Mat3 turn = random_rotation(random);
     const double size = random.uniform(0.01, 0.5), depth = random.uniform(-2e-4, 4e-4);
@@ -185,7 +185,7 @@ TEST(Passages, OfParticlesThroughPlainShapesAreFoundIfDeepEnough) {
       after = capsule(middle + travel);
       from = middle + turn * Vec3(reach, away, 0.1);
       to = middle + travel + turn * Vec3(-reach, away, 0.1);
-    } else {  // along a face, and the box turns besides
+    } else {  // along a face, and the box also rotates
       const Mat3 turn_after = turn * Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vec3::UnitZ());
       const Vec3 half(0.7, size, 0.6);
       before = OrientedBox{middle, half, turn};
@@ -228,9 +228,9 @@ TEST(Passages, AreFoundAfterALongWayThroughNothing) {
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k].size(), k == 100 ? 1u : 0u) << k;
 }
 
-// ---- No passages where there are none ----
+// ---- No passages ----
 
-/// n triangles with corners of their own.
+/// n triangles without common vertices.
 TriangleMesh soup(int n, double size, Random& random) {
   TriangleMesh mesh;
   for (int t = 0; t < n; ++t) {
@@ -247,7 +247,7 @@ std::vector<std::array<int, 2>> edges_of(const TriangleMesh& mesh) {
   return edges;
 }
 
-/// Every vertex with every triangle, every edge with every other.
+/// Every vertex with every triangle, every edge with every other edge.
 std::vector<FeaturePair> all_passages(const std::vector<TriangleMesh>& start,
                                       const std::vector<TriangleMesh>& end, int num_cloths) {
   std::vector<FeaturePair> found;
@@ -279,8 +279,8 @@ std::vector<FeaturePair> all_passages(const std::vector<TriangleMesh>& start,
 }
 
 TEST(Passages, AreThoseOfAllPairs) {
-  // Small steps, for which pairs are listed, and long ones, for which they are not; cloth that flies, a body
-  // that rests, far ones and near ones.
+  // Small steps, for which pairs are listed, and long ones, for which they are not; flying cloth, a body at
+  // rest, far pairs and near ones.
   for (const double way : {0.002, 0.02, 0.3}) {
     Random random(5);
     std::vector<TriangleMesh> now = {soup(40, 0.15, random), sheet(5), soup(20, 0.3, random)};
@@ -306,7 +306,8 @@ TEST(Passages, AreThoseOfAllPairs) {
 }
 
 TEST(Passages, AreNoneInWildMotionOfASheetThatStaysAGraph) {
-  // Heights over a plane that change at will, and sheets that stay above each other: nothing can pass.
+  // Height fields over a plane with arbitrary changes, and sheets that stay above each other: nothing can
+  // pass.
   Random random(6);
   std::vector<std::vector<TriangleMesh>> moments;
   for (int step = 0; step < 20; ++step) {
@@ -324,8 +325,8 @@ TEST(Passages, AreNoneInWildMotionOfASheetThatStaysAGraph) {
 
 TEST(Passages, AreNoneWhereAParticleGrazesOrComesBack) {
   const TriangleMesh flat = sheet(3);
-  // It dips to and fro because the sheet waves while it flies past: in, and out again, within one motion. The
-  // triangle turns about an axis, and straight lines make it shrink through the particle and back.
+  // The particle dips through because the sheet waves as it flies past: in and out again, within one motion.
+  // The triangle rotates about an axis, and linear motion makes it shrink through the particle and back.
   const TriangleMesh left{{{-1, 0, -1}, {-1, 0, 1}, {-3, 0, 0}}, {{0, 1, 2}}};
   EXPECT_TRUE(passages({left, needle({-1.5, 0.2, 0})}, {left, needle({5, 0.1, 0})}).empty());
   EXPECT_TRUE(passages({flat, needle({-0.5, 1e-9, 0.4})}, {flat, needle({1.5, 1e-9, 0.45})}).empty());
@@ -347,7 +348,7 @@ TEST(Passages, InAPlaneAreNone) {
 
 // ---- Exactly through vertices and edges ----
 
-/// How often the tip of a needle, the second mesh, goes through the first.
+/// Number of passages of the tip of a needle, the second mesh, through the first.
 int num_through(const std::vector<FeaturePair>& found) {
   return static_cast<int>(std::ranges::count_if(found, [](const FeaturePair& p) {
     return p.kind == Kind::vertex_triangle && p.surface == 1 && p.feature[0] == 0;
@@ -358,7 +359,7 @@ TEST(Passages, ThroughAVertexOrAnEdgeOfASheetAreOddInNumber) {
   for (const auto diagonals : {GridDiagonals::parallel, GridDiagonals::alternating}) {
     const TriangleMesh flat = sheet(4, diagonals);
     for (int i = 1; i < 8; ++i) {
-      for (int j = 1; j < 8; ++j) {  // vertices, middles of edges, middles of cells, all on the grid
+      for (int j = 1; j < 8; ++j) {  // vertices, edge midpoints, cell centres, all on the grid
         const Vec3 at(i / 8.0, 0, j / 8.0);
         for (const Vec3& slope : {Vec3(0, 0, 0), Vec3(0.125, 0, 0.125), Vec3(0.25, 0, 0)}) {
           const auto found = passages({flat, needle(at + slope + Vec3(0, 0.5, 0))},
@@ -409,8 +410,8 @@ TEST(Passages, OfAVisitThatTakesSeveralMomentsAreToldAtItsEnd) {
 }
 
 TEST(Passages, AreNoneOnABallThatSpins) {
-  // By half a radian per moment: the straight way of what turns with it goes deep into a ball that stands
-  // still, that of what stands still goes deep into one that turns.
+  // Rotation of half a radian per frame: the straight path of a corotating particle goes deep into a static
+  // ball, that of a static particle goes deep into a rotating one.
   const Sphere ball{{0.3, 0.2, 0.1}, 1};
   const auto turned = [](double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix(); };
   const Vec3 rides(1.001, 0, 0), rests(0, 0, 1.001);
@@ -428,7 +429,7 @@ TEST(Passages, OfAHalfSpaceAreNone) {
   EXPECT_EQ(num_passages({0, 1, 0}, {5, 1, 0}, Plane{}, Plane{{0, 0.5, 0}, Vec3::UnitX()}), 0);
 }
 
-// ---- What is left out, and names ----
+// ---- Skipped motions, and names ----
 
 TEST(Passages, AreNoneOfThingsThatMayPass) {
   const TriangleMesh low = sheet(3), high = moved(sheet(4), {0.1, 0.5, 0.1}),

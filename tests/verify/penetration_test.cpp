@@ -21,7 +21,7 @@ Mat3 random_rotation(Random& random) {
   return Eigen::AngleAxisd(random.uniform(-3, 3), random_vector(random, 1).normalized()).toRotationMatrix();
 }
 
-// ---- Depth of a point, by the definition ----
+// ---- Depth of a point, by definition ----
 
 double depth(const Sphere& s, const Vec3& p) { return s.radius - (p - s.center).norm(); }
 
@@ -37,7 +37,7 @@ double depth(const OrientedBox& box, const Vec3& p) {
   return (box.half_size - (box.rotation.transpose() * (p - box.center)).cwiseAbs()).minCoeff();
 }
 
-/// The greatest depth among points all over the triangle, `steps` to a side.
+/// Maximum depth over sample points of the triangle, `steps` per side.
 template <class Shape>
 double sampled_depth(const Shape& shape, const Corners& t, int steps) {
   double deepest = -1e300;
@@ -50,8 +50,8 @@ double sampled_depth(const Shape& shape, const Corners& t, int steps) {
   return deepest;
 }
 
-/// No sample is deeper than depth_in says, and some sample is nearly as deep: depth changes by at most the
-/// distance.
+/// No sample is deeper than depth_in's result, and some sample is nearly as deep: depth changes by at most
+/// the distance.
 template <class Shape>
 void expect_as_sampled(const Shape& shape, const Corners& t) {
   constexpr int kSteps = 60;
@@ -94,9 +94,9 @@ TEST(DepthOfATriangle, WhoseCornersAreAllOutside) {
 }
 
 TEST(DepthOfATriangle, ThroughWhichACornerOfABoxPokes) {
-  // A cube stands on its corner: the opposite one, √3 above the centre, pokes through by c. Under the plane
-  // its three upper faces are met at the angle whose sine is 1/√3, so the deepest point, below the tip, is
-  // c/√3 from each.
+  // A cube on its corner: the opposite one, √3 above the centre, pokes through by c. Under the plane its
+  // three upper faces are at the angle whose sine is 1/√3, so the deepest point, below the tip, is c/√3 from
+  // each.
   const Vec3 up = Vec3(1, 1, 1).normalized();
   const Mat3 standing = Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitY()).toRotationMatrix();
   const double c = 0.07;
@@ -123,7 +123,7 @@ MeshView view(const TriangleMesh& mesh) {
   return {mesh.positions, mesh.triangles, is_closed(mesh.triangles)};
 }
 
-/// A cloth of particles alone.
+/// A cloth of particles only.
 double deepest_of(const std::vector<Vec3>& particles, const Solid& solid) {
   const SurfaceView cloth[] = {{particles, {}, true}};
   const Solid solids[] = {solid};
@@ -165,7 +165,7 @@ TEST(DepthInAMesh, IsNearThatOfTheBallItShows) {
     Random random(3);
     for (int i = 0; i < 500; ++i) {
       const Vec3 p = random_vector(random, 1.2);
-      // The mesh is inscribed: flat sides of 1/10 lie up to 1 - cos(1/20 √2) = 0.0025 below the ball's
+      // The mesh is inscribed: flat sides of 1/10 are up to 1 - cos(1/20 √2) = 0.0025 below the ball's
       // surface.
       const double found = deepest_of({p}, view(mesh)), expected = std::max(0.0, depth(ball, p));
       EXPECT_LE(found, expected + kRounding);

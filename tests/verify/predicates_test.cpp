@@ -50,8 +50,8 @@ class Integers {
 };
 
 TEST(Orient3d, IsThatOfIntegersNearThePlane) {
-  // d is an integer combination of a, b, c, give or take one unit: in or next to their plane, where rounding
-  // in doubles (2^36 cubed has 108 bits) decides nothing.
+  // d is an integer combination of a, b, c, within one unit: in or next to their plane, where rounding in
+  // doubles (2^36 cubed has 108 bits) is inconclusive.
   Integers integers;
   int zeros = 0;
   for (int i = 0; i < 1000000; ++i) {
@@ -77,7 +77,7 @@ TEST(Orient3d, IsThatOfSmallIntegers) {
 }
 
 TEST(Orient3d, HoldsFromTheLeastFloatToTheGreatest) {
-  // Multiplied by powers of two the sign stays, also where a careless product would under- or overflow.
+  // Scaling by powers of two keeps the sign, even where a naive product would under- or overflow.
   Integers integers;
   for (int i = 0; i < 100000; ++i) {
     const Point a = integers.point(3), b = integers.point(3), c = integers.point(3), d = integers.point(3);
@@ -90,7 +90,7 @@ TEST(Orient3d, HoldsFromTheLeastFloatToTheGreatest) {
 }
 
 TEST(Orient3d, SeesTheLastBitOfNumbersOfUnequalSize) {
-  // The plane through a, b, c is x = 1; d is off it by less than differences in doubles can tell.
+  // The plane through a, b, c is x = 1; d is off it by less than the resolution of differences in doubles.
   const Vec3 a(1, 0, 0), b(1, 1e30, 0), c(1, 0, 1e30);
   EXPECT_EQ(orient3d(a, b, c, {1, 1e-40, 1e-40}), 0);
   EXPECT_EQ(orient3d(a, b, c, {std::nextafter(1.0, 2.0), 3, 5}), -1);

@@ -1,6 +1,6 @@
-/// `weft view` as a person uses it: mouse and keys on a screen of its own (Xvfb, xdotool), judged by what the
-/// window reports and by a picture of it. Waits for states, never for times: machines may be slow.
-/// Exit code 77 where Xvfb or xdotool is missing.
+/// `weft view` under real input: mouse and keys on a separate screen (Xvfb, xdotool), checked by the window's
+/// report and by a picture of it. Waits for states, never for times: machines may be slow. Exit code 77 if
+/// Xvfb or xdotool is missing.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr PictureSize kSize = {760, 480};
-constexpr int kPatience = 60;  // [s]; all of it is only ever used up by a failure
+constexpr int kPatience = 60;  // [s]; only failures take this long
 
 bool is_program(const std::string& name) {
   return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
@@ -37,7 +37,7 @@ bool is_program(const std::string& name) {
 
 void pause_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
-/// A program under way, which ends with this.
+/// A running program, terminated by the destructor.
 class Program {
  public:
   /// `open`: a file descriptor that it may keep.
@@ -77,13 +77,13 @@ class Program {
   int exit_code_ = -1;
 };
 
-/// A screen that nobody sees, for all tests.
+/// An invisible screen for all tests.
 class Screen : public testing::Environment {
  public:
   void SetUp() override {
     int ends[2];
     ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
-    // -noreset: else it starts anew, and refuses, when the last window is gone.
+    // -noreset: otherwise the server restarts, and refuses connections, after the last window closes.
     server_ = std::make_unique<Program>(
         std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x720x24",
                                  "-nolisten", "tcp", "-noreset"},
@@ -104,7 +104,7 @@ class Screen : public testing::Environment {
 
 void xdotool(const std::string& words) { ASSERT_EQ(std::system(("xdotool " + words).c_str()), 0) << words; }
 
-/// A window of `weft view`, and a hand and an eye for it.
+/// A window of `weft view`, with simulated input and its report.
 class View : public testing::Test {
  protected:
   void open(std::vector<std::string> more = {}) {
@@ -113,7 +113,7 @@ class View : public testing::Test {
     fs::remove_all(folder);
     fs::create_directories(folder);
     fs::current_path(folder);
-    // Small, soft and cheap, so that it goes in real time on a busy machine.
+    // Small, soft and cheap, so that it runs in real time on a busy machine.
     std::vector<std::string> words = {WEFT_PROGRAM,
                                       "view",
                                       "paper/fig6_ball",
@@ -129,12 +129,12 @@ class View : public testing::Test {
                                       "solver.integrator=paper_fixed"};
     words.insert(words.end(), more.begin(), more.end());
     program_ = std::make_unique<Program>(words, -1, "words.txt");
-    // Whoever has the mouse gets the keys: no window manager is here.
+    // Keys go to the window under the mouse: there is no window manager.
     xdotool("mousemove 700 440");
     until("the window is there", [](const Json& j) { return j["controls"].contains("wind x"); });
   }
 
-  /// Presses J until the window has reported something that is wanted.
+  /// Presses J until the window reports a wanted state.
   Json until(const std::string& what, const std::function<bool(const Json&)>& is_wanted) {
     const auto start = std::chrono::steady_clock::now();
     Json state;
@@ -155,7 +155,7 @@ class View : public testing::Test {
     return state;
   }
 
-  /// As it is after all that was done up to now has been seen and drawn.
+  /// State after all previous input has been processed and drawn.
   Json state() {
     std::int64_t first = -1;
     return until("pictures are drawn", [&](const Json& j) {
@@ -205,7 +205,7 @@ class View : public testing::Test {
             .elevation_deg = c["elevation"]};
   }
 
-  /// Where a point is in the window.
+  /// Position of a point in the window.
   static Eigen::Vector2i pixel(const Camera& camera, const Vec3& p) {
     const Eigen::Vector4d clip =
         Camera::projection(camera.fov_deg, kSize.aspect(), 0.1, 100) * camera.view() * p.homogeneous();
@@ -282,7 +282,7 @@ TEST_F(View, PausesStepsResetsAndSwitches) {
 TEST_F(View, GrabsClothPullsItUpAndLetsItGo) {
   open();
   const Json near = paused();
-  xdotool("click --repeat 5 5");  // to have room above the cloth
+  xdotool("click --repeat 5 5");  // for space above the cloth
   xdotool("key r");
   const Json start = until("it is at the start, farther away", [&](const Json& j) {
     return j["sides"][0]["steps"] == 0 &&
@@ -293,7 +293,7 @@ TEST_F(View, GrabsClothPullsItUpAndLetsItGo) {
   move(at.x(), at.y());
   xdotool("mousedown 1");
   const Json held = until("cloth is held", [](const Json& j) { return !j["sides"][0]["held"].is_null(); });
-  // A pixel is 5 mm, and three times that along the cloth that is seen from 20 degrees above.
+  // A pixel is 5 mm, and three times that along the cloth, viewed from 20 degrees above.
   EXPECT_LT((vector(held["sides"][0]["held"]) - center).norm(), 0.04);
   EXPECT_EQ(held["camera"], start["camera"]) << "a grab does not turn the view";
   xdotool("key space");
@@ -342,7 +342,7 @@ TEST_F(View, ComparesTwoIntegratorsAndSavesThePicture) {
   const Image image = read_png(saved["pictures"][0].get<std::string>());
   ASSERT_EQ(image.width, kSize.width);
   ASSERT_EQ(image.height, kSize.height);
-  // Both halves show red cloth and something that is not red.
+  // Both halves show red cloth and other colours.
   for (const int half : {0, 1}) {
     int red = 0, other = 0;
     for (int y = 0; y < image.height; ++y) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh that changes its shape by prescription: places of its vertices at given times.
+/// A mesh with prescribed deformation: vertex positions at given times.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace weft::engine {
 
-/// Between two keys vertices move in straight lines; before the first and after the last they stay.
+/// Vertices move linearly between keys and are fixed before the first and after the last.
 class MeshSequence {
  public:
   struct Key {
@@ -15,7 +15,7 @@ class MeshSequence {
     std::vector<Vec3> positions;  // (num_vertices) [m]
   };
 
-  /// Two keys, and how far between them.
+  /// Two keys, and the interpolation weight.
   struct Blend {
     int from = 0, to = 0;
     double share = 0;  // of `to` [1]

@@ -41,7 +41,7 @@ bool RigidMotion::is_still() const {
          passage_->from.rotation == passage_->to.rotation;
 }
 
-/// Rotations by a straight line between unit quaternions.
+/// Rotations by linear interpolation of unit quaternions (nlerp).
 Pose RigidMotion::Passage::at(double time) const {
   if (time <= start || time >= end) return time < end ? from : to;
   const double s = (time - start) / (end - start);

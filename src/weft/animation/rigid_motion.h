@@ -1,5 +1,5 @@
 #pragma once
-/// Motion by key frames: how pins and colliders move by prescription.
+/// Prescribed motion of pins and colliders by key frames.
 
 #include <optional>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace weft::engine {
 
-/// A rigid displacement from the initial place: p ↦ pivot + R (p − pivot) + translation.
+/// A rigid displacement from the initial pose: p ↦ pivot + R (p − pivot) + translation.
 struct Pose {
   Vec3 translation = Vec3::Zero();  // [m]
   Mat3 rotation = Mat3::Identity();
@@ -19,12 +19,12 @@ Mat3 rotation_from_angles_deg(const Vec3& angles_deg);
 
 struct KeyFrame {
   double time = 0;                  // [s]
-  Vec3 translation = Vec3::Zero();  // from the initial place [m]
-  Vec3 angles_deg = Vec3::Zero();   // about fixed x, then y, then z; several turns are fine [degrees]
+  Vec3 translation = Vec3::Zero();  // from the initial position [m]
+  Vec3 angles_deg = Vec3::Zero();   // about fixed x, then y, then z; may exceed a full turn [degrees]
 };
 
-/// Key frames in order of time; between them translation and angles are interpolated linearly, before the
-/// first and after the last they stay. No key frames: no motion.
+/// Key frames by ascending time. Translation and angles are interpolated linearly between them, and constant
+/// before the first and after the last. No key frames: no motion.
 class RigidMotion {
  public:
   RigidMotion() = default;
@@ -32,14 +32,14 @@ class RigidMotion {
   /// Throws InputError if the times do not increase strictly.
   explicit RigidMotion(std::vector<KeyFrame> keys);
 
-  /// At a pose, for good.
+  /// Constant pose.
   explicit RigidMotion(const Pose& pose) : RigidMotion(0, pose, 0, pose) {}
 
-  /// From one pose to another, at rest before and after: the translation evenly, the rotation the shorter way
-  /// about one axis, evenly to 1 % up to a sixth of a turn.
+  /// From one pose to another, at rest before and after: the translation at constant speed, the rotation the
+  /// shorter way about one axis, even to 1 % up to a sixth of a turn.
   RigidMotion(double start, const Pose& from, double end, const Pose& to);
 
-  bool is_still() const;  // nothing moves, at any time
+  bool is_still() const;  // no motion at any time
   Pose at(double time) const;
 
   struct Passage {
@@ -48,19 +48,19 @@ class RigidMotion {
     Pose at(double time) const;
   };
   const std::vector<KeyFrame>& keys() const { return keys_; }
-  const std::optional<Passage>& passage() const { return passage_; }  // in place of key frames
+  const std::optional<Passage>& passage() const { return passage_; }  // set: replaces key frames
 
  private:
   std::vector<KeyFrame> keys_;
   std::optional<Passage> passage_;
 };
 
-/// Where the pose takes p when it turns about `pivot`.
+/// Maps p by the pose, which turns about `pivot`.
 inline Vec3 apply(const Pose& pose, const Vec3& pivot, const Vec3& p) {
   return pivot + pose.rotation * (p - pivot) + pose.translation;
 }
 
-/// The point that the pose takes to p.
+/// Inverse of apply(): the point that the pose maps to p.
 inline Vec3 apply_inverse(const Pose& pose, const Vec3& pivot, const Vec3& p) {
   return pivot + pose.rotation.transpose() * (p - pivot - pose.translation);
 }

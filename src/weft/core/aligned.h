@@ -1,6 +1,5 @@
 #pragma once
-/// Arrays whose first element begins a line of the cache: a full vector register read from such a place
-/// touches one line, from anywhere else two.
+/// Cache-line aligned arrays: a full vector register then loads from one cache line instead of two.
 
 #include <cstddef>
 #include <new>

@@ -1,5 +1,5 @@
 #pragma once
-/// Sine and cosine with the same bits on every machine (the C library's last bit is not specified).
+/// Sine and cosine with the same bits on every machine (C libraries differ in the last bit).
 
 namespace weft::engine {
 
@@ -8,8 +8,8 @@ struct SinCos {
   double cos = 1;
 };
 
-/// Sine and cosine of an angle in degrees: exact at multiples of 90, elsewhere to about 2e-16.
-/// The angle must be finite; it is reduced by fmod, so large angles are fine.
+/// Sine and cosine of an angle in degrees: exact at multiples of 90, elsewhere to about 2e-16. The angle must
+/// be finite; fmod reduces large ones.
 SinCos sin_cos_deg(double angle_deg);
 
 }  // namespace weft::engine

@@ -1,5 +1,5 @@
 #pragma once
-/// FNV-1a over bytes: small, fixed for ever, good enough to tell two states apart.
+/// FNV-1a over bytes: small, permanently fixed, sufficient to distinguish two states.
 
 #include <cstdint>
 #include <span>

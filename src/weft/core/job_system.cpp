@@ -24,9 +24,9 @@ class SerialJobs final : public JobSystem {
 };
 
 #if WEFT_PLAIN_THREADS
-/// For the thread sanitizer, which cannot look into oneTBB. Every thread gets every num_threads-th job, and
-/// nothing but its start and its end puts it in order with the others: neighbouring jobs that touch the same
-/// place are seen to do so, however fast the threads happen to be.
+/// Threads for the thread sanitizer, which does not see oneTBB's synchronisation. Each thread runs every
+/// num_threads-th job, synchronised only at start and end: neighbouring jobs that access the same memory are
+/// detected independently of timing.
 class PlainThreads final : public JobSystem {
  public:
   explicit PlainThreads(int num_threads) : num_threads_(num_threads) {}
@@ -62,7 +62,7 @@ class TbbJobs final : public JobSystem {
 
  private:
   int num_threads_;
-  std::optional<tbb::global_control> more_than_processors_;  // else oneTBB ignores them, and prints it
+  std::optional<tbb::global_control> more_than_processors_;  // else oneTBB ignores them, with a warning
   tbb::task_arena arena_;
 };
 #endif

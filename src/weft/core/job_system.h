@@ -1,12 +1,12 @@
 #pragma once
-/// Loops cut into jobs.
+/// Loops split into jobs.
 
 #include "weft/jobs.h"
 
 namespace weft::engine {
 
-/// Calls body(begin, end) over [0, count) cut into chunks of `grain`. The cut depends on `grain` alone,
-/// never on the number of threads, so whatever is computed per chunk has the same bits for any of them.
+/// Calls body(begin, end) over [0, count) split into chunks of `grain`. The split depends only on `grain`,
+/// not on the number of threads, so results per chunk have the same bits for any of them.
 template <class Body>
 void parallel_for(JobSystem& jobs, int count, int grain, const Body& body) {
   const int num_chunks = (count + grain - 1) / grain;

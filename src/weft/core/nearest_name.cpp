@@ -8,7 +8,7 @@ namespace weft::engine {
 int edit_distance(std::string_view a, std::string_view b, int limit) {
   const int na = static_cast<int>(a.size()), nb = static_cast<int>(b.size());
   if (std::abs(na - nb) > limit) return limit + 1;
-  // Row i holds the distances of a's first i letters to each beginning of b.
+  // Row i holds the distances of a's first i letters to each prefix of b.
   std::vector<int> row(nb + 1), above(nb + 1), above_that(nb + 1);
   for (int j = 0; j <= nb; ++j) row[j] = j;
   for (int i = 1; i <= na; ++i) {

@@ -1,9 +1,9 @@
 #pragma once
-/// A few floats side by side in a vector register, for kernels that plain loops do not make fast enough.
+/// Packs of floats in a vector register, for kernels where auto-vectorised loops are too slow.
 ///
 /// A kernel is a template over the width W; WEFT_MULTIVERSION_PACKS compiles it for 4, 8 and 16 lanes and
-/// chooses when it is called. Results must not depend on W: elementwise work never does, and sums go through
-/// LaneSums, which has sixteen lanes whatever W is.
+/// dispatches at run time. Results do not depend on W: elementwise work never does, and sums use LaneSums,
+/// which has sixteen lanes for any W.
 
 #include <cstddef>
 #include <cstring>
@@ -16,7 +16,7 @@
 
 namespace weft::engine {
 
-/// Every row of floats that packs run over is readable and writable up to a multiple of this [1].
+/// Rows of floats for packs are readable and writable up to a multiple of this [1].
 constexpr int kPackLanes = 16;
 
 constexpr int round_up_to_pack(int n) { return (n + kPackLanes - 1) / kPackLanes * kPackLanes; }
@@ -29,7 +29,7 @@ struct PackOf {
 template <int W>
 using Pack = typename PackOf<W>::Type;
 
-/// A choice for every lane: all bits set, or none.
+/// Lane mask: all bits of a lane set, or none.
 template <int W>
 struct MaskOf {
   typedef int Type __attribute__((vector_size(4 * W)));
@@ -157,15 +157,15 @@ WEFT_ALWAYS_INLINE float widest(Pack<W> a) {
   return most;
 }
 
-/// 1 where first, first + 1, … is less than `end`, else 0: without comparisons, which compilers cut into
-/// single lanes where both outcomes are constants.
+/// 1 where first, first + 1, … is less than `end`, else 0. Without comparisons, which compilers scalarise
+/// where both outcomes are constants.
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> count_below(std::ptrdiff_t end, std::ptrdiff_t first) {
   const Pack<W> left = static_cast<float>(end) - count_from<W>(first);
   return smaller(larger(left, broadcast<W>(0)), broadcast<W>(1));
 }
 
-/// Where first, first + 1, … is even.
+/// Mask of the even numbers among first, first + 1, …
 template <int W>
 WEFT_ALWAYS_INLINE Mask<W> even_from(std::ptrdiff_t first) {
   Mask<W> even{};
@@ -185,7 +185,7 @@ WEFT_ALWAYS_INLINE V square_root(V a) {
   return r;
 }
 
-/// Sums in sixteen lanes, which are added up in order at the end: the same bits for every W.
+/// Sums in sixteen lanes, added up in order at the end: the same bits for every W.
 template <int W>
 class LaneSums {
  public:
@@ -220,7 +220,7 @@ WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
 }  // namespace weft::engine
 
 // WEFT_MULTIVERSION_PACKS(name, (parameters), (arguments)): as WEFT_MULTIVERSION, for a body that is a
-// template over the width of its packs.
+// template over the pack width.
 #if WEFT_HAS_SIMD_LEVELS
 #define WEFT_MULTIVERSION_PACKS(name, parameters, arguments)                                         \
   [[gnu::target("arch=x86-64-v3")]] static void name##_avx2 parameters { name##_body<8> arguments; } \
@@ -229,12 +229,12 @@ WEFT_ALWAYS_INLINE void for_packs(std::ptrdiff_t count, const Body& body) {
   }                                                                                                  \
   static void name##_baseline parameters { name##_body<4> arguments; }                               \
   static void name parameters {                                                                      \
-    switch (::weft::engine::simd_level()) {                                                                  \
-      case ::weft::engine::SimdLevel::avx512:                                                                \
+    switch (::weft::engine::simd_level()) {                                                          \
+      case ::weft::engine::SimdLevel::avx512:                                                        \
         return name##_avx512 arguments;                                                              \
-      case ::weft::engine::SimdLevel::avx2:                                                                  \
+      case ::weft::engine::SimdLevel::avx2:                                                          \
         return name##_avx2 arguments;                                                                \
-      case ::weft::engine::SimdLevel::baseline:                                                              \
+      case ::weft::engine::SimdLevel::baseline:                                                      \
         return name##_baseline arguments;                                                            \
     }                                                                                                \
   }

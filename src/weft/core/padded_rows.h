@@ -1,6 +1,6 @@
 #pragma once
-/// Where the particles of a cloth are in the arrays of the solver: rows that stand apart, with zeros between
-/// and around them, so that stencils need not know where the border is. Cloth without a grid is one row.
+/// Layout of a cloth's particles in the solver's arrays: rows padded with zeros between and around them, so
+/// that stencils need no special case at the border. Cloth without a grid is one row.
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// SplitMix64: random numbers that are the same on every machine (unlike std:: distributions).
+/// SplitMix64: random numbers with the same bits on every machine (unlike std:: distributions).
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Plain shapes: what colliders and regions of space are made of.
+/// Primitive shapes of colliders and regions of space.
 
 #include <variant>
 
@@ -12,7 +12,7 @@ struct Sphere {
   double radius = 1;           // > 0 [m]
 };
 
-/// The half space below the plane is solid: { p : (p - point) · normal < 0 }.
+/// Half space below a plane, solid: { p : (p - point) · normal < 0 }.
 struct Plane {
   Vec3 point = Vec3::Zero();    // [m]
   Vec3 normal = Vec3::UnitY();  // unit length [1]
@@ -25,14 +25,14 @@ struct Capsule {
   double radius = 0.5;     // > 0 [m]
 };
 
-/// A solid box, turned any way.
+/// A solid box in any orientation.
 struct OrientedBox {
   Vec3 center = Vec3::Zero();            // [m]
   Vec3 half_size = Vec3::Constant(0.5);  // along its own axes, > 0 [m]
   Mat3 rotation = Mat3::Identity();      // from the box's own axes (its columns) to the world's [1]
 };
 
-/// A solid that is given by a formula.
+/// A solid primitive.
 using SolidShape = std::variant<Sphere, Plane, Capsule, OrientedBox>;
 
 /// Axis-aligned box.

@@ -1,9 +1,9 @@
 #pragma once
-/// Run-time choice of the vector instructions that the kernels use.
+/// Run-time dispatch of the kernels' vector instructions.
 ///
-/// A kernel is one plain loop, compiled once per level by WEFT_MULTIVERSION and chosen when it is called.
-/// Every lane does the same IEEE operations in the same order (no fused multiply-add, no estimates), so the
-/// level changes the speed and never a bit of the result.
+/// A kernel is one plain loop, compiled once per level by WEFT_MULTIVERSION and dispatched at run time. Every
+/// lane does the same IEEE operations in the same order (no fused multiply-add, no estimates), so the level
+/// changes the speed but no bit of the result.
 
 #include <string_view>
 
@@ -11,13 +11,13 @@ namespace weft::engine {
 
 enum class SimdLevel { baseline, avx2, avx512 };
 
-/// The best level that this machine can run.
+/// Best level that this machine supports.
 SimdLevel best_simd_level();
 
-/// The level in use: the best one, unless limited.
+/// Level in use: the best one, unless limited.
 SimdLevel simd_level();
 
-/// Uses at most this level from now on (for tests and benchmarks; not to be called during a step).
+/// Limits the level from now on (for tests and benchmarks; must not be called during a step).
 void limit_simd_level(SimdLevel level);
 
 std::string_view to_string(SimdLevel level);
@@ -25,9 +25,8 @@ std::string_view to_string(SimdLevel level);
 }  // namespace weft::engine
 
 // WEFT_MULTIVERSION(name, (parameters), (arguments)) defines `name(parameters)`, which forwards to the
-// always-inlined function `name_body(arguments)` compiled for the level in use.
-// Everything that the body calls must be inlined too, lambdas included, or it is compiled for the lowest
-// level.
+// always-inlined function `name_body(arguments)` compiled for the level in use. All callees of the body must
+// be inlined too, lambdas included, or they are compiled for the lowest level.
 #if defined(__GNUC__)
 #define WEFT_ALWAYS_INLINE [[gnu::always_inline]] inline
 #define WEFT_INLINE_LAMBDA __attribute__((always_inline))
@@ -36,7 +35,7 @@ std::string_view to_string(SimdLevel level);
 #define WEFT_INLINE_LAMBDA
 #endif
 
-// Before a loop: no iteration reads what another one writes.
+// Before a loop without dependencies between iterations.
 #if defined(__clang__)
 #define WEFT_IVDEP _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)
@@ -45,7 +44,7 @@ std::string_view to_string(SimdLevel level);
 #define WEFT_IVDEP
 #endif
 
-// Under sanitizers the baseline alone: all levels share one body, and three copies of it take very long to compile.
+// Baseline only under sanitizers: all levels share one body, and three copies compile very slowly.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define WEFT_HAS_SIMD_LEVELS 1
@@ -61,12 +60,12 @@ std::string_view to_string(SimdLevel level);
   }                                                                                                \
   static void name##_baseline parameters { name##_body arguments; }                                \
   static void name parameters {                                                                    \
-    switch (::weft::engine::simd_level()) {                                                                \
-      case ::weft::engine::SimdLevel::avx512:                                                              \
+    switch (::weft::engine::simd_level()) {                                                        \
+      case ::weft::engine::SimdLevel::avx512:                                                      \
         return name##_avx512 arguments;                                                            \
-      case ::weft::engine::SimdLevel::avx2:                                                                \
+      case ::weft::engine::SimdLevel::avx2:                                                        \
         return name##_avx2 arguments;                                                              \
-      case ::weft::engine::SimdLevel::baseline:                                                            \
+      case ::weft::engine::SimdLevel::baseline:                                                    \
         return name##_baseline arguments;                                                          \
     }                                                                                              \
   }

@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
   throw InputError(file.string() + " cannot be written: " + reason.message());
 }
 
-/// The reason of the last call that failed.
+/// Error code of the last failed call.
 std::error_code last_error() { return {errno != 0 ? errno : EIO, std::generic_category()}; }
 
-/// /dev/stdout opened a second time would write over what the first has written to the same file.
+/// Opening /dev/stdout a second time would overwrite earlier output to the same file.
 std::ostream* find_standard_stream(const fs::path& file) {
   std::error_code not_there;
   if (fs::equivalent(file, "/dev/stdout", not_there)) return &std::cout;
@@ -43,7 +43,7 @@ fs::path resolve_link(const fs::path& file) {
   return error ? file : target;
 }
 
-/// From the system's memory to the disk.
+/// Flushes to disk (fsync).
 void sync_to_disk(const fs::path& file, const fs::path& part) {
 #ifndef _WIN32
   const int descriptor = open(part.c_str(), O_WRONLY | O_CLOEXEC);

@@ -1,5 +1,5 @@
 #pragma once
-/// Files that are replaced whole or not at all.
+/// Atomic replacement of files.
 
 #include <filesystem>
 #include <fstream>
@@ -9,15 +9,15 @@
 
 namespace weft::engine {
 
-/// New content for a file: written aside in the same folder (`.NAME.partial`), then renamed over the old one.
-/// Until replace() has returned, the old content stays, whatever happens. A partial file that an ended
-/// program left is overwritten. Pipes, devices and standard output have no old content: they are written
-/// directly. Every error is an InputError with the file's name and the system's reason.
+/// New content for a file: written to `.NAME.partial` in the same folder, then renamed over the old one. The
+/// old content stays intact until replace() returns. A partial file left by a terminated program is
+/// overwritten. Pipes, devices and standard output have no old content: they are written directly. Every
+/// error is an InputError with the file's name and the system's reason.
 class StagedFile {
  public:
   explicit StagedFile(const std::filesystem::path& file);
 
-  /// Without replace() the partial file goes.
+  /// Removes the partial file if replace() was not called.
   ~StagedFile();
 
   StagedFile(const StagedFile&) = delete;
@@ -26,25 +26,25 @@ class StagedFile {
   const std::filesystem::path& file() const { return file_; }
   std::ostream& out() { return standard_ ? *standard_ : stream_; }
 
-  /// The new content is complete: takes it to the disk (fsync). Called once, before replace().
+  /// Completes the new content: flushes it to disk (fsync). Call once, before replace().
   void finish();
 
-  /// Renames the new content over the old; a symbolic link and the old file's permissions stay.
+  /// Renames the new content over the old; symbolic links and the old file's permissions are kept.
   void replace();
 
  private:
   bool is_direct() const { return part_.empty(); }
 
   std::filesystem::path file_;
-  std::filesystem::path target_, part_;  // links resolved; both empty where the file is written directly
+  std::filesystem::path target_, part_;  // links resolved; both empty for directly written files
   std::ofstream stream_;
-  std::ostream* standard_ = nullptr;  // instead of stream_, where the file is standard output or error
+  std::ostream* standard_ = nullptr;  // replaces stream_ for standard output and error
 };
 
-/// Replaces the file's content. Throws InputError, and leaves the old content, if it cannot be written.
+/// Replaces the file's content. Throws InputError, and keeps the old content, if it cannot be written.
 void write_file(const std::filesystem::path& file, std::string_view content);
 
-/// Throws InputError if StagedFile could not replace the file now. Its content stays, and so does a pipe.
+/// Throws InputError if StagedFile could not replace the file now. Does not change a file or pipe.
 void require_writable(const std::filesystem::path& file);
 
 }  // namespace weft::engine

@@ -1,5 +1,5 @@
 #pragma once
-/// Many 3-vectors as three arrays of floats (structure of arrays): what the fast kernels read and write.
+/// Arrays of 3-vectors as structure of arrays of floats, for the fast kernels.
 
 #include <cstddef>
 
@@ -10,7 +10,7 @@ namespace weft::engine {
 
 class Vec3Array {
  public:
-  /// Readable zeros after the last element, so that kernels may run to the end of a full vector register.
+  /// Readable zeros after the last element, so that kernels may process full vector registers.
   static constexpr std::size_t kPadding = 32;
 
   Vec3Array() = default;

@@ -1,5 +1,5 @@
 #pragma once
-/// Stopwatches of a step by kinds of work (WorkTimes, in weft/report.h).
+/// Stopwatches of a step by kind of work (WorkTimes, in weft/report.h).
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace weft::engine {
 
-/// Measures the WorkTimes of a step. One kind runs at a time, so that a block within a block counts once.
+/// Measures the WorkTimes of a step. One kind runs at a time: time in a nested block counts only there.
 class WorkClock {
  public:
   using Kind = double WorkTimes::*;
@@ -28,7 +28,7 @@ class WorkClock {
     return times;
   }
 
-  /// From now on time is of this kind; null: of none. Returns the kind before.
+  /// Attributes time to this kind from now on; null: to none. Returns the previous kind.
   Kind turn_to(Kind kind) {
     const Clock::time_point now = Clock::now();
     if (kind_) times.*kind_ += since(turned_, now);
@@ -36,7 +36,7 @@ class WorkClock {
     return std::exchange(kind_, kind);
   }
 
-  /// Calls body(), whose time is of no kind and not in the total.
+  /// Calls body(), excluding its time from all kinds and the total.
   template <class Body>
   void leave_out(const Body& body) {
     const Kind kind = turn_to(nullptr);
@@ -64,7 +64,7 @@ class WorkClock {
   Clock::time_point began_, turned_;
 };
 
-/// A block of one kind of work. Without a clock it does nothing.
+/// Scope of one kind of work. A no-op without a clock.
 class WorkScope {
  public:
   WorkScope(WorkClock* clock, WorkClock::Kind kind) : clock_(clock) {

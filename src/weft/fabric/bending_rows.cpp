@@ -9,8 +9,8 @@ namespace weft::engine {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr double kHingeShare = 0.02;   // of the rigidity that hinges stand for beside stencils
-constexpr double kCornerCosine = 0.7;  // a border that turns more has a corner there
+constexpr double kHingeShare = 0.02;   // rigidity share of the hinges that supplement stencils
+constexpr double kCornerCosine = 0.7;  // cosine of the border's turn below which a vertex is a corner
 
 double twist_rigidity(const Fabric& f) { return std::max(0.0, 4 * f.bend_bias - f.bend_warp - f.bend_weft); }
 
@@ -24,14 +24,14 @@ void add_row(BendingRows& rows, double stiffness, std::initializer_list<std::pai
   rows.stiffness.push_back(stiffness);
 }
 
-/// Second derivatives x,11 x,22 x,12 at a vertex, each a combination of vertices.
+/// Second derivatives x,11 x,22 x,12 at a vertex, each a linear combination of vertices.
 using Combination = std::map<int, double>;
 struct CurvatureStencil {
   std::array<Combination, 3> derivative;  // [1/m²]
   Mat3 form = Mat3::Zero();               // energy ½ kᵀ form k of the three, area included [N·m³]
 };
 
-/// Splits the form into independent rows: form = Σ_c d_c l_c l_cᵀ (Cholesky without roots).
+/// Splits the form into independent rows: form = Σ_c d_c l_c l_cᵀ (square-root-free Cholesky).
 void add_stencil(BendingRows& rows, const CurvatureStencil& stencil) {
   Mat3 rest = stencil.form;
   for (int c = 0; c < 3; ++c) {
@@ -52,13 +52,13 @@ void add_stencil(BendingRows& rows, const CurvatureStencil& stencil) {
   }
 }
 
-/// The triangles around an inner vertex, in order, and the vertices between them.
+/// One-ring of an inner vertex: its triangles in order, and the vertices between them.
 struct Ring {
   std::vector<int> triangles;
   std::vector<int> vertices;  // vertices[k], vertices[k + 1] and the centre make triangles[k]
 };
 
-/// What is around each vertex of a mesh.
+/// Neighbours of each vertex of a mesh.
 class Neighbourhood {
  public:
   explicit Neighbourhood(const TriangleMesh& mesh) : mesh_(mesh), around_(mesh.positions.size()) {
@@ -67,7 +67,7 @@ class Neighbourhood {
     }
   }
 
-  /// Empty for vertices on the border, for non-manifold ones, and where triangles disagree about the front.
+  /// Empty for border and non-manifold vertices, and where triangles are oriented inconsistently.
   Ring ring(int center) const {
     Ring ring;
     const std::vector<int>& around = around_[center];
@@ -83,7 +83,7 @@ class Neighbourhood {
   }
 
  private:
-  /// The corner `steps` after `center` in the triangle's sense.
+  /// The corner `steps` after `center` in the triangle's orientation.
   int next_corner(int t, int center, int steps) const {
     const Triangle& v = mesh_.triangles[t];
     const int at = v[0] == center ? 0 : v[1] == center ? 1 : 2;
@@ -105,7 +105,7 @@ class Neighbourhood {
   std::vector<std::vector<int>> around_;
 };
 
-/// A vertex's ring laid flat: angles around the vertex are stretched to 360° together, lengths from it kept.
+/// A vertex's one-ring flattened: angles around the vertex scaled to a sum of 360°, distances from it kept.
 struct FlatRing {
   std::vector<double> angle;   // of each ring vertex, from the first one
   std::vector<double> length;  // of the edge to it [m]
@@ -135,7 +135,7 @@ FlatRing lay_flat(const TriangleMesh& mesh, int center, const Ring& ring) {
   return flat;
 }
 
-/// The warp's angle in the flat ring: the mean over its triangles, by area, of directions without sign.
+/// The warp's angle in the flat ring: mean over its triangles, by area, of undirected axes.
 double warp_angle(const TriangleMesh& mesh, int center, const Ring& ring, const FlatRing& flat,
                   const WarpField& warp) {
   double c = 0, s = 0;
@@ -153,7 +153,7 @@ double warp_angle(const TriangleMesh& mesh, int center, const Ring& ring, const 
   return 0.5 * std::atan2(s, c);
 }
 
-/// −Σ_j (∫ ∂a φ_i ∂b φ_j) x_j / A_i over the flat ring turned so that warp is the first axis; A_i in `area`.
+/// −Σ_j (∫ ∂a φ_i ∂b φ_j) x_j / A_i over the flat ring, with warp as the first axis; A_i in `area`.
 std::array<Combination, 3> second_derivatives(int center, const Ring& ring, const FlatRing& flat,
                                               double warp_at, double& area) {
   const std::size_t n = ring.vertices.size();
@@ -230,8 +230,8 @@ CurvatureStencil make_stencil(const TriangleMesh& mesh, int center, const Ring& 
   return stencil;
 }
 
-/// Hinges, made linear at rest: all of them where a vertex next to the edge is reached by no stencil, else
-/// a small share, so that no mesh is so small or narrow that some bending is free.
+/// Hinges, linearised at rest: with full rigidity if no stencil reaches a vertex next to the edge, else with
+/// a small share, so that small or narrow meshes have no bending mode of zero energy.
 void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
   std::vector<char> is_reached(mesh.positions.size(), 0);
   for (const int v : rows.vertex) is_reached[v] = 1;
@@ -247,7 +247,7 @@ void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& wa
       weight[0] -= (1 - along) * weight[side];
       weight[1] -= along * weight[side];
     }
-    // A row is the angle per edge length, as a curvature is; the stiffness makes up for it.
+    // A row is the angle per edge length, like a curvature; the stiffness compensates.
     const double length = edge.norm();
     add_row(
         rows, share * hinge.stiffness * length * length,

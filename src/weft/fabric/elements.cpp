@@ -6,7 +6,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kLeastSine = 1e-6;  // of the angle between a direction and a triangle's normal
+constexpr double kLeastSine = 1e-6;  // minimum for the angle between a direction and a triangle's normal
 
 struct TriangleCorners3 {
   Vec3 a, b, c;
@@ -18,7 +18,7 @@ TriangleCorners3 corners(const TriangleMesh& mesh, int t) {
   return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
 }
 
-/// The direction in the plane of the triangle, or zero.
+/// Projection on the plane of the triangle, normalised, or zero.
 Vec3 project(const Vec3& direction, const Vec3& normal) {
   const Vec3 n = normal.normalized();
   const Vec3 flat = direction - direction.dot(n) * n;
@@ -91,7 +91,7 @@ std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const War
 
 std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp,
                                        const Fabric& fabric) {
-  // The triangles at each edge, by the vertex opposite to it.
+  // Triangle at each edge, by the opposite vertex.
   std::map<std::array<int, 3>, int> triangle_of;  // (a, b, opposite), a < b
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     const Triangle& v = mesh.triangles[t];
@@ -107,7 +107,7 @@ std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField
     double rigidity = 0, area = 0;
     for (const int opposite : e.opposite) {
       const int t = triangle_of.at({e.a, e.b, opposite});
-      // Bending goes across the edge: its direction's cosine to warp is the edge's sine.
+      // Bending is across the edge: the cosine of its direction to warp is the edge's sine.
       const double along = edge.normalized().dot(warp.warp[t]);
       const double across = std::sqrt(std::max(0.0, 1 - along * along));
       rigidity += 0.5 * bending_rigidity(fabric, across, along);

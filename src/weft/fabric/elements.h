@@ -1,5 +1,5 @@
 #pragma once
-/// A fabric laid on a triangle mesh: where warp goes, membranes, hinges.
+/// A fabric on a triangle mesh: warp directions, membranes, hinges.
 
 #include <array>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace weft::engine {
 
-/// Which way warp goes in each triangle; weft is across it, in the triangle's plane.
+/// Warp direction of each triangle; weft is perpendicular to it, in the triangle's plane.
 struct WarpField {
   std::vector<Vec3> warp;  // unit vectors in the triangles' planes (num_triangles)
-  int num_guessed = 0;     // triangles whose input gave no direction: they got another one [1]
+  int num_guessed = 0;     // triangles without a direction in the input: they got a fallback axis [1]
 };
 
-/// Warp along the direction in which u grows while v stays. Where a triangle's uv are not numbers or have no
-/// area, the world's x axis serves as below.
+/// Warp along the gradient of u at constant v. Triangles with non-finite or degenerate uv use the world's x
+/// axis as below.
 WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<CornerUv>& uv);
 
-/// The same by vertices: u = uv[vertex].x().
+/// From uv per vertex: u = uv[vertex].x().
 WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv);
 
 /// Warp along a direction, projected on every triangle; where that is perpendicular to the triangle, along
@@ -35,7 +35,7 @@ struct MembraneElement {
   RestTriangle rest;
 };
 
-/// One for each triangle, in its order. Rest lengths are those of the mesh; `warp` only turns the frame.
+/// One per triangle, in its order. Rest lengths are the mesh's; `warp` only rotates the frame.
 std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const WarpField& warp);
 
 struct HingeElement {
@@ -43,10 +43,10 @@ struct HingeElement {
   double stiffness = 0;         // k [N·m]
 };
 
-/// One for each edge between two triangles. k = D |e|²/(A0 + A1), D the rigidity of bending across the edge:
+/// One per edge between two triangles. k = D |e|²/(A0 + A1), D the rigidity of bending across the edge:
 /// bending_rigidity() in the direction perpendicular to it, so a hinge along weft threads bends warp. Exact
 /// for cylinders around rows of parallel edges, but up to three times too stiff for the diagonals of a grid,
-/// whose hinges count on top of the others: BendingRows has not that fault.
+/// whose hinges add to the others. BendingRows avoids that error.
 std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
 
 }  // namespace weft::engine

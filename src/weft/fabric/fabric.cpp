@@ -52,7 +52,7 @@ void judge_ranges(const Fabric& f, Judge& judge) {
                 "from 0 (none) to 10");
 }
 
-/// What the numbers must be to each other.
+/// Relations between the numbers.
 void judge_relations(const Fabric& f, Judge& judge) {
   if (f.c12 * f.c12 >= f.c11 * f.c22) {
     judge.refuse(
@@ -88,7 +88,7 @@ void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judg
                             std::to_string(curve.size()));
 }
 
-/// The least slope of the stress along a thread [N/m].
+/// Smallest slope of the stress along a thread [N/m].
 double least_slope(const std::vector<StretchPoint>& curve, double linear) {
   double slope = linear, least = linear;
   for (const engine::StretchKink& kink : engine::make_stretch_kinks(curve, linear)) {

@@ -7,9 +7,9 @@ namespace weft::engine {
 namespace {
 
 constexpr double kBegin = 0.85, kFull = 1.05, kLoaded = 1.3;  // of the fabric's strain limit
-constexpr double kTimesWeight = 20;                           // that one edge bears at kLoaded
+constexpr double kTimesWeight = 20;                           // load of a single edge at kLoaded
 constexpr double kGravity = 9.81;
-constexpr double kSameSlope = 0.05;  // a curve that begins within this share of the linear law begins as it
+constexpr double kSameSlope = 0.05;  // an initial slope within this share of the linear one is replaced by it
 
 /// ψ(e) of a principal Green strain e = (σ² − 1)/2, and its derivatives by e.
 struct Principal {
@@ -23,7 +23,7 @@ Principal principal(const StrainLimit& limit, double green) {
   return {r.energy, r.tension / stretch, (r.stiffness - r.tension / stretch) / (stretch * stretch)};
 }
 
-/// What the limit adds, by the principal axes of the strain.
+/// Adds the limit's response, in the principal axes of the strain.
 void add_limit(const StrainLimit& limit, const Vec3& e, MembraneResponse& response) {
   const double mean = (e[0] + e[1]) / 2, half = (e[0] - e[1]) / 2, shear = e[2] / 2;
   const double radius = std::sqrt(half * half + shear * shear);

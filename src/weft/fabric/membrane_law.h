@@ -1,15 +1,14 @@
 #pragma once
-/// What a membrane answers to a strain: the fabric's linear law, its stretch curves, and its strain limit.
+/// Response of a membrane to strain: the fabric's linear law, its stretch curves, and its strain limit.
 ///
-///     tension                   A principal stretch σ (the length of a direction over that at rest) beyond
-///     the
-///        |            /         limit is held back by a tension of its own, with u = σ − 1 − begin:
+///     tension                    A principal stretch σ (length of a direction over rest length) beyond the
+///        |            /          limit has an additional tension, with u = σ − 1 − begin:
 ///        |           / k
 ///        |        _.´               k u²/(2 w)          for u < w = full − begin
 ///        |____..-´                  k (u − w/2)         beyond
 ///        0   begin full
-///                               The energy is convex in the positions for any such law that only pulls, and
-///                               smooth (C²), so that Newton's method follows it.
+///                                The energy is convex in the positions for any such law that only pulls, and
+///                                smooth (C²), which suits Newton's method.
 
 #include <utility>
 #include <vector>
@@ -19,14 +18,14 @@
 
 namespace weft::engine {
 
-/// Of principal stretches (stiffness in N/m), or of a spring (in N).
+/// Limit of principal stretches (stiffness in N/m), or of a spring (in N).
 struct StrainLimit {
-  double begin = 0;      // strain at which it begins to pull [1]
-  double full = 0;       // strain from which its stiffness is full [1]
-  double stiffness = 0;  // k; 0: there is no limit
+  double begin = 0;      // strain above which the limit pulls [1]
+  double full = 0;       // strain above which its stiffness is full [1]
+  double stiffness = 0;  // k; 0: no limit
 
-  /// The strain that a solver may leave a stretch at: twice as far beyond `begin` as where it is full,
-  /// 1.25 times the fabric's strain_limit [1].
+  /// Maximum strain that a solver may leave: twice as far beyond `begin` as `full` is, 1.25 times the
+  /// fabric's strain_limit [1].
   double allowed() const { return begin + 2 * (full - begin); }
 };
 
@@ -37,22 +36,21 @@ struct LimitResponse {
 };
 LimitResponse limit_response(const StrainLimit& limit, double strain);
 
-/// The limit of a cloth of this area, of triangles whose edges are about so long [m²], [m]. It begins at
-/// 0.85 strain_limit, is full at 1.05 of it, and bears at 1.3 of it what twenty times the cloth's weight make
-/// of tension when a single edge holds it: more than cloth that is dropped, swung or pulled does. None for
-/// strain_limit = 0.
+/// Limit for a cloth of this area [m²] and this mean edge length [m]. It begins at 0.85 strain_limit and is
+/// full at 1.05 of it. At 1.3 of it, it bears the tension of twenty times the cloth's weight on a single
+/// edge: more than cloth that is dropped, swung or pulled. None for strain_limit = 0.
 StrainLimit make_strain_limit(const Fabric& fabric, double cloth_area, double edge_length);
 
-/// From a Green strain along a thread on, the stress along it rises more steeply than before.
+/// A Green strain along a thread at which the slope of the stress changes.
 struct StretchKink {
   double strain = 0;  // >= 0 [1]
-  double slope = 0;   // by so much; negative: less steeply [N/m]
+  double slope = 0;   // change of slope; negative: less steep [N/m]
 };
 
-/// What a measured curve is beyond a straight line of slope `linear` [N/m]: kinks by ascending strain, none
-/// for no curve. Stress is tension over stretch, T/(1 + ε) at the Green strain ε + ε²/2; it is straight
-/// between the points and goes on beyond the last one. It is that of `linear` in compression, and up to the
-/// first point if it begins within 5 % of that.
+/// Deviation of a measured curve from a straight line of slope `linear` [N/m]: kinks by ascending strain,
+/// none without a curve. Stress is tension over stretch, T/(1 + ε) at the Green strain ε + ε²/2; it is
+/// piecewise linear between the points and extrapolated beyond the last one. It has the slope `linear` in
+/// compression, and up to the first point if its initial slope is within 5 % of that.
 std::vector<StretchKink> make_stretch_kinks(const std::vector<StretchPoint>& curve, double linear);
 
 struct MembraneLaw {
@@ -66,7 +64,7 @@ struct MembraneLaw {
       : stiffness(c), limit(l), warp(std::move(along_warp)), weft(std::move(along_weft)) {}
 };
 
-/// At the Green strain e = (ε11, ε22, 2 ε12).
+/// Response at the Green strain e = (ε11, ε22, 2 ε12).
 struct MembraneResponse {
   double energy = 0;            // per area [J/m²]
   Vec3 stress = Vec3::Zero();   // ∂energy/∂e [N/m]

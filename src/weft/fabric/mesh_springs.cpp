@@ -10,8 +10,9 @@ namespace weft::engine {
 namespace {
 
 constexpr int kMostSweeps = 1000;
-constexpr double kSettled = 1e-4;    // of the stiffest edge
-constexpr double kSmallness = 1e-4;  // weight of k² itself, for edges that the fabric leaves undecided
+constexpr double kSettled = 1e-4;  // of the stiffest edge
+constexpr double kSmallness =
+    1e-4;  // weight of k² (regularisation), for edges that the fabric leaves undetermined
 
 /// An edge's C per stiffness in the triangles on one side of it.
 struct Side {
@@ -44,13 +45,13 @@ std::vector<std::array<Side, 2>> find_sides(const TriangleMesh& mesh, const Warp
   return sides;
 }
 
-/// What an edge adds, per stiffness, to the scaled C around a vertex.
+/// Contribution of an edge, per stiffness, to the scaled C around a vertex.
 struct Column {
   int vertex = 0;
   Mat3 part;
 };
 
-/// Least squares with k >= 0, one edge after the other (coordinate descent).
+/// Non-negative least squares, k >= 0, by coordinate descent over the edges.
 class Fit {
  public:
   Fit(const std::vector<std::vector<Column>>& columns, const Mat3& target, int num_vertices)
@@ -88,7 +89,7 @@ class Fit {
   }
 
   const std::vector<std::vector<Column>>& columns_;
-  std::vector<Mat3> rest_;  // of the target, that is not met yet
+  std::vector<Mat3> rest_;  // residual of the target
   std::vector<double> square_, stiffness_;
 };
 

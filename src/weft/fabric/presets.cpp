@@ -190,7 +190,7 @@ std::vector<FabricPreset> make_presets() {
   };
 }
 
-/// As names are written here: small letters, "_" between words.
+/// Canonical spelling of names: lower case, "_" between words.
 std::string to_plain(std::string_view name) {
   std::string plain(name);
   for (char& c : plain) {

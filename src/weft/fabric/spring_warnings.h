@@ -1,5 +1,5 @@
 #pragma once
-/// Private to fabric/: what springs that stand for a fabric have to tell.
+/// Private to fabric/: warnings of springs that represent a fabric.
 
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace weft::engine {
 
-/// A number in four digits.
+/// A number with four digits.
 std::string short_text(double number);
 
-/// What no springs can be, on whatever mesh: C12 other than G, stretch curves.
+/// Properties that no springs can have, on any mesh: C12 other than G, stretch curves.
 std::vector<std::string> warn_of_springs(const Fabric& fabric, const std::string& name);
 
 }  // namespace weft::engine

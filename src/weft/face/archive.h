@@ -1,9 +1,9 @@
 #pragma once
-/// Private to face/: values as bytes and back, by one description of each type.
+/// Private to face/: binary serialisation, with one description of each type.
 ///
-/// describe(archive, value) lists a type's members; a Writer appends them, a Reader fills them in. Numbers are
-/// little-endian, as on every machine that Weft runs on. A Reader never reserves more memory than a small multiple
-/// of the bytes that are left: whatever the bytes say, it ends with a value or with an InputError.
+/// describe(archive, value) lists a type's members; a Writer appends them, a Reader fills them in. Numbers
+/// are little-endian, as on every supported machine. A Reader never reserves more memory than a small
+/// multiple of the remaining bytes: any input ends with a value or with an InputError.
 
 #include <array>
 #include <bit>
@@ -73,7 +73,7 @@ void members(Archive& archive, Members&... member) {
   (describe(archive, member), ...);
 }
 
-/// The number of elements of a list; each takes a byte at least.
+/// Number of elements of a list; each takes at least one byte.
 template <class Archive>
 std::size_t describe_size(Archive& archive, std::size_t size) {
   auto count = static_cast<std::uint64_t>(size);

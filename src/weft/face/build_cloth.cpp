@@ -11,13 +11,13 @@
 namespace weft::engine {
 namespace {
 
-/// Edges are short that are below so many thicknesses: contact leaves particles up to 0.15 of a thickness
-/// from where they belong (kMaxLack of a gap), 8 % of such an edge, which step_check.h takes for a fault.
+/// Edges shorter than this many thicknesses count as short: contact leaves position errors of up to 0.15 of a
+/// thickness (kMaxLack of a gap), 8 % of such an edge, which step_check.h reports as a fault.
 constexpr double kShortEdge = 2;  // [1]
 
-/// The axis of a grid that warp goes along, if it is one.
+/// The grid axis along warp, if any.
 std::optional<GridWarp> grid_warp(const ClothDesc& desc) {
-  constexpr double kAlong = 0.999999;  // least cosine of the angle between them
+  constexpr double kAlong = 0.999999;  // minimum cosine of the angle between them
   const Vec3 direction = desc.warp ? to_engine(*desc.warp).normalized() : Vec3(Vec3::UnitX());
   if (std::abs(direction.x()) > kAlong) return GridWarp::first_axis;
   if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
@@ -36,7 +36,7 @@ CellDiagonals cell_diagonals(SpringModel model) {
   return CellDiagonals::parallel;
 }
 
-/// Whether most of the surface is nearer to upright than to level, at rest.
+/// Whether most of the rest surface is closer to vertical than to horizontal.
 bool stands_upright(const TriangleMesh& mesh) {
   double upright = 0;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -46,8 +46,8 @@ bool stands_upright(const TriangleMesh& mesh) {
   return upright > 0;
 }
 
-/// Along the direction that is given, or as the mesh's texture coordinates say; without either, along the
-/// body in what is worn.
+/// Along the given direction, or by the mesh's texture coordinates; without either, along the body in
+/// garments.
 WarpField find_warp(const ClothDesc& desc, const RestShape& rest, const std::string& who,
                     std::vector<std::string>& warnings) {
   const TriangleMesh& mesh = rest.topology->mesh;
@@ -124,7 +124,7 @@ ClothSubstance make_triangles(const ClothDesc& desc, const Fabric& fabric, const
   return {make_material(fabric), elements};
 }
 
-/// At most half of a mean edge, so that few neighbours are nearer than the thickness.
+/// At most half the mean edge length, so that few neighbours are nearer than the thickness.
 double fit_thickness(double thickness, const TriangleMesh& mesh) {
   constexpr double kShareOfEdge = 0.5;
   const std::vector<Edge> edges = build_edges(mesh);
@@ -134,7 +134,7 @@ double fit_thickness(double thickness, const TriangleMesh& mesh) {
 }
 
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
-  // A grid whose warp is along neither axis is a mesh like any other.
+  // A grid with warp along neither axis is treated as a mesh.
   const bool is_mesh = std::holds_alternative<Fabric>(desc.fabric) && !grid_warp(desc);
   RestShape rest{is_mesh ? build_mesh_topology(build_grid_mesh(grid, diagonals_of(desc.model)))
                          : build_grid_topology(grid, desc.model),

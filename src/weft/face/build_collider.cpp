@@ -10,7 +10,7 @@ namespace {
 
 std::string count_edges(int count) { return std::to_string(count) + (count == 1 ? " edge" : " edges"); }
 
-/// Turns the mesh right side out if it needs that, and says what else is wrong with it as a solid.
+/// Flips inside-out shells, and warns of the mesh's other defects as a solid.
 void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
   const SurfaceEdges edges = count_surface_edges(mesh);
   if (edges.non_manifold > 0) {
@@ -37,7 +37,7 @@ void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
                      std::string(" turned right side out"));
 }
 
-/// Shapes where the pose puts them.
+/// Shapes transformed by the pose.
 struct ShapeBuilder {
   const ColliderDesc& desc;
   const std::string& who;
@@ -123,8 +123,8 @@ std::vector<Vec3> select_vertices(const std::vector<weft::Vec3>& given, const Bu
   return positions;
 }
 
-// With R0, T0 of desc.pose and R, T of the pose, the displacement is R R0ᵀ about the pivot p and
-// (T − R R0ᵀ T0) + (R R0ᵀ p − p): without rounding where nothing turns and T0 is 0.
+// With R0, T0 of desc.pose and R, T of the pose, the displacement is R R0ᵀ about the pivot p and (T − R R0ᵀ
+// T0) + (R R0ᵀ p − p): free of rounding errors without rotation and with T0 = 0.
 
 Pose to_displacement(const weft::Pose& pose, const ColliderDesc& desc, const Vec3& pivot) {
   const Pose to = to_engine(pose), from = to_engine(desc.pose);

@@ -1,4 +1,4 @@
-/// World::save and World::load: the descriptions that a world was made of, and its state.
+/// World::save and World::load: a world's descriptions and state as bytes.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 
 namespace weft {
 
-// Members of each type, in order. A change of any list is a new version of the format.
+// Members of each type, in order. Any change of a list is a new version of the format.
 
 namespace engine {
 
@@ -190,7 +190,7 @@ constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
 constexpr std::uint32_t kVersion = 1;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
-/// Everything that decides the future.
+/// All data that determines the next steps.
 struct SavedCloth {
   ClothDesc desc;
   std::vector<Stiffening> stiffened;
@@ -314,7 +314,7 @@ void check(const engine::World::Guide& guide, const engine::Collider& collider) 
   }
 }
 
-/// Of lists, so that nothing is built that has no state.
+/// Checks the sizes of lists first, so that bodies without a state are never built.
 void check_sizes(const SavedWorld& saved) {
   const engine::World::Snapshot& state = saved.state;
   require(state.states.size() == saved.cloths.size() && state.held.size() == saved.cloths.size());

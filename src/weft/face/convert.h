@@ -1,5 +1,5 @@
 #pragma once
-/// Private to face/: public plain types to the engine's and back.
+/// Private to face/: conversions between public plain types and the engine's.
 
 #include <vector>
 
@@ -45,7 +45,7 @@ std::vector<weft::KeyFrame> from_engine(const std::vector<KeyFrame>& keys);
 TriangleMesh to_engine(const weft::TriangleMesh& mesh);  // without texture coordinates
 std::vector<CornerUv> to_engine(const std::vector<weft::CornerUv>& uv);
 
-/// The public mesh, with texture coordinates if there are any (num_triangles or none).
+/// The public mesh, with texture coordinates if any (num_triangles or none).
 weft::TriangleMesh from_engine(const TriangleMesh& mesh, const std::vector<CornerUv>& uv);
 
 std::vector<WindKey> to_engine(const std::vector<weft::WindKey>& keys);

@@ -1,4 +1,4 @@
-/// World: rays and nearest points.
+/// World: ray casts and closest points.
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-/// World: reading and measuring.
+/// World: cloth data and measurements.
 
 #include <cmath>
 #include <cstring>
@@ -17,7 +17,7 @@ namespace {
 
 using engine::from_engine;
 
-/// Three numbers a particle into the caller's memory; get(i) gives a vector.
+/// Copies get(i), three numbers per particle, into the caller's memory.
 template <class Number, class Get>
 void copy_out(std::size_t count, const Get& get, Number* out, std::size_t stride) {
   if (stride < 3 * sizeof(Number)) throw InputError("a stride must be at least the size of three numbers");

@@ -14,7 +14,7 @@ using engine::to_engine;
 
 std::string who(const std::string& kind, const std::string& name) { return kind + " \"" + name + "\": "; }
 
-/// Held by springs, each particle by its own: see Pin.
+/// Soft pin: a separate spring per particle; see Pin.
 engine::Grab make_soft_pin(const Pin& pin, int particle, const engine::Vec3& position) {
   return {.particles = {particle},
           .shares = {1.0},
@@ -33,7 +33,7 @@ void check_pin(const Pin& pin, const std::string& owner) {
   }
 }
 
-/// Springs hold where their particles are.
+/// Sets the springs' targets to the particles' positions.
 void hold_soft_pins(engine::World& world, ClothId cloth) {
   const int count = static_cast<int>(world.grabs(cloth).size());
   for (int g = 0; g < count; ++g)

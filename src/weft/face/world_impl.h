@@ -1,5 +1,5 @@
 #pragma once
-/// Private to face/: what a public World consists of.
+/// Private to face/: the implementation of the public World.
 
 #include <memory>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace weft {
 
-/// Springs that are stiffer than a cloth's others, or softer.
+/// Particles whose springs are stiffer or softer than the cloth's others.
 struct Stiffening {
   std::vector<int> particles;
   double factor = 1;
@@ -34,8 +34,8 @@ struct World::Impl {
   };
 
   engine::World world;
-  std::vector<Cloth> cloths;        // as in `world`
-  std::vector<Collider> colliders;  // likewise
+  std::vector<Cloth> cloths;        // in the order of `world`
+  std::vector<Collider> colliders;  // in the order of `world`
   std::vector<engine::WindKey> wind_keys;
   weft::Wind wind;
 
@@ -48,12 +48,12 @@ struct World::Impl {
 };
 
 struct Snapshot::Data {
-  std::uint32_t world = 0;  // which; 0: none
+  std::uint32_t world = 0;  // its identifier; 0: none
   engine::World::Snapshot state;
   std::vector<std::vector<char>> is_soft;  // (cloths)
 };
 
-/// The engine inside a World, for the library's other parts.
+/// Access to the engine inside a World, for the library's other parts.
 struct WorldAccess {
   static engine::World& engine(World& world) { return world.impl_->world; }
   static const engine::World& engine(const World& world) { return world.impl_->world; }

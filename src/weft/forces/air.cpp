@@ -8,9 +8,9 @@ namespace weft::engine {
 namespace {
 
 constexpr double kRootMeanSquare =
-    0.35447;  // of noise below between lattice values from −1 to 1, by integration
+    0.35447;  // rms of the noise below with lattice values from −1 to 1, by integration
 
-/// The value of a point of the lattice, each component from −1 to 1.
+/// Value at a lattice point, each component from −1 to 1.
 Vec3 lattice_value(const Gusts& gusts, const std::int64_t (&point)[4]) {
   std::uint64_t key = gusts.seed;
   for (const std::int64_t p : point) key = Random(key ^ static_cast<std::uint64_t>(p)).next();

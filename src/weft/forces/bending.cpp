@@ -2,7 +2,7 @@
 
 namespace weft::engine {
 Vec3 bending_curvature(const BendingRows& rows, int row, const std::vector<Vec3>& x) {
-  // Differences from the row's first vertex: as exact wherever the cloth is.
+  // Differences from the row's first vertex: the same accuracy at any position of the cloth.
   const Vec3 origin = x[rows.vertex[rows.begin[row]]];
   Vec3 sum = Vec3::Zero();
   for (int k = rows.begin[row] + 1; k < rows.begin[row + 1]; ++k) {

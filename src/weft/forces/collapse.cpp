@@ -5,7 +5,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kNoLength = 1e-12;  // a stretch without a direction [1]
+constexpr double kNoLength = 1e-12;  // stretch below which the direction is undefined [1]
 constexpr double kHalfRoot = 0.70710678118654752;
 
 using Columns = std::array<Vec3, 2>;  // a 3×2 matrix
@@ -17,7 +17,7 @@ struct PrincipalAxes {
   std::array<Vec2, 2> at_rest;  // v, orthonormal
 };
 
-/// A unit vector across another one.
+/// A unit vector perpendicular to u.
 Vec3 any_across(const Vec3& u) {
   int least = 0;
   u.cwiseAbs().minCoeff(&least);
@@ -38,7 +38,7 @@ Columns deformation(const RestTriangle& rest, const TriangleCorners& x) {
           rest.gradient[1].y() * d1 + rest.gradient[2].y() * d2};
 }
 
-/// σ2 >= kCollapseBegin: FᵀF less its square is positive definite.
+/// σ2 >= kCollapseBegin: FᵀF − kCollapseBegin² I is positive definite.
 bool is_wide(const Columns& f) {
   constexpr double kLeast = kCollapseBegin * kCollapseBegin;
   const double a = f[0].squaredNorm() - kLeast, b = f[1].squaredNorm() - kLeast, c = f[0].dot(f[1]);

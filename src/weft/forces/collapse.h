@@ -1,5 +1,5 @@
 #pragma once
-/// Resistance of a triangle to collapse: shear locking, and a least width of crumpled cells.
+/// Resistance of a triangle to collapse: shear locking, and a minimum width of crumpled cells.
 ///
 ///     W = A [ψ(σ1) + ψ(σ2)]           σ1 >= σ2: principal stretches of F (forces/membrane.h) [1]
 ///
@@ -9,19 +9,18 @@
 ///       |_______`--.________ σ
 ///       0      0.3  0.5    1
 ///
-/// One function covers every collapse, for each takes σ2 to 0: threads of constant length sheared by γ have
-/// σ2 = √(1 − sin γ), a thread compressed to half its length has 0.5, three corners on a line have 0.
+/// One function covers every collapse, because each takes σ2 to 0: threads of constant length sheared by γ
+/// have σ2 = √(1 − sin γ), a thread compressed to half its length has 0.5, three collinear corners have 0.
 ///
-/// Shear locking: sheared woven fabric stiffens where its yarns touch side by side (A. G. Prodromou, J. Chen,
-/// On the relationship between shear angle and wrinkling of textile composite preforms, Composites A 28,
-/// 1997). That ψ begins at 48.6° and has its full stiffness from 65.5° on is our choice, not a measurement.
-/// Compression: the tension of Green strain is greatest at σ = 1/√3 and vanishes at σ = 0; ψ replaces it
-/// there. Bounds of principal stretches from below and from above: H. Wang, J. O'Brien, R. Ramamoorthi,
-/// Multi-Resolution Isotropic Strain Limiting, ACM TOG 29(6), 2010. k is the mean tensile stiffness of the
-/// cloth.
+/// Shear locking: sheared woven fabric stiffens where adjacent yarns touch (A. G. Prodromou, J. Chen, On the
+/// relationship between shear angle and wrinkling of textile composite preforms, Composites A 28, 1997). The
+/// onset of ψ at 48.6° and its full stiffness from 65.5° are our choice, not a measurement. Compression: the
+/// tension of Green strain is greatest at σ = 1/√3 and vanishes at σ = 0; ψ replaces it there. Lower and
+/// upper bounds of principal stretches: H. Wang, J. O'Brien, R. Ramamoorthi, Multi-Resolution Isotropic
+/// Strain Limiting, ACM TOG 29(6), 2010. k is the mean tensile stiffness of the cloth.
 ///
-/// At σ2 = 0 the gradient has no direction of its own: the triangle opens to a side that depends on its
-/// longer axis only, the same for all triangles on one line.
+/// At σ2 = 0 the gradient's direction is undefined: the triangle then opens to a side that depends only on
+/// its longer axis, the same for all triangles on one line.
 ///
 /// All functions take the corners' positions [m].
 
@@ -35,20 +34,20 @@ namespace weft::engine {
 inline constexpr double kCollapseBegin = 0.5;  // principal stretch below which ψ > 0 [1]
 inline constexpr double kCollapseFull = 0.3;   // principal stretch below which ψ'' = k [1]
 
-/// ψ as a limit of the narrowing 1 − σ. k is the mean of C11 and C22 of membranes, plus the mean of the
-/// structural springs [N/m].
+/// ψ as a limit of the narrowing 1 − σ. k is the mean of C11 and C22 of membranes, plus the mean stiffness of
+/// the structural springs [N/m].
 StrainLimit make_collapse_law(const ClothModel& model);
 
 /// W [J].
 double collapse_energy(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x);
 
-/// Force on each corner: −∂W/∂x [N]. They sum to zero, and so do their moments.
+/// Force on each corner: −∂W/∂x [N]. Forces and their moments sum to zero.
 TriangleCorners collapse_force(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x);
 
-/// ∂²W/∂x² = Σ_m stiffness_m w_m w_mᵀ with the closed eigenvectors of an isotropic energy (B. Smith, F. de
-/// Goes, T. Kim, Analytic Eigensystems for Isotropic Distortion Energies, ACM TOG 38(1), 2019): w_m has one
-/// vector per corner. The w_m are orthogonal as functions of F, and no stiffness exceeds A k: the Hessian is
-/// bounded by k times the cotangent Laplacian, which preconditioners have already.
+/// ∂²W/∂x² = Σ_m stiffness_m w_m w_mᵀ with the closed-form eigenvectors of an isotropic energy (B. Smith, F.
+/// de Goes, T. Kim, Analytic Eigensystems for Isotropic Distortion Energies, ACM TOG 38(1), 2019): w_m has
+/// one vector per corner. The w_m are orthogonal as functions of F, and no stiffness exceeds A k: the Hessian
+/// is bounded by k times the cotangent Laplacian, which preconditioners already contain.
 struct CollapseHessian {
   static constexpr int kMaxModes = 6;
 
@@ -59,7 +58,7 @@ struct CollapseHessian {
 
 enum class CollapseFilter {
   exact,     // the true Hessian, indefinite
-  positive,  // SPD projection: without the modes of negative stiffness, by which compression buckles
+  positive,  // SPD projection: drops the modes of negative stiffness, the buckling modes of compression
 };
 
 CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x,

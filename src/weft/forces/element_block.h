@@ -1,12 +1,12 @@
 #pragma once
-/// Private to forces/: what the kernels of grids and meshes have in common.
+/// Private to forces/: shared element code of the grid and mesh kernels.
 
 #include "weft/forces/element_kernels.h"
 #include "weft/forces/pack3.h"
 
 namespace weft::engine::kernels {
 
-/// Columns of F: where warp and weft go.
+/// Columns of F: images of the warp and weft directions.
 template <int W>
 struct Frame {
   Three<W> f1, f2;
@@ -56,7 +56,7 @@ WEFT_ALWAYS_INLINE Tangent<W> load_tangent(const float* from, std::ptrdiff_t pit
           load<W>(from + 5 * pitch)};
 }
 
-/// What a limit does to a principal Green strain: energy per area and its derivatives by it.
+/// Response of the strain limit to a principal Green strain: energy per area and its derivatives.
 template <int W>
 struct LimitPrincipal {
   Pack<W> energy, first, second;
@@ -69,7 +69,7 @@ WEFT_ALWAYS_INLINE LimitPrincipal<W> limit_principal(const LimitNumbers& n, Pack
   return {pull.energy, tension, (pull.stiffness - tension) * inverse * inverse};
 }
 
-/// What limit and curves add at the strain e, as membrane_response() does it.
+/// Contribution of limit and curves at the strain e, as in membrane_response().
 template <int W>
 struct StiffeningAnswer {
   Pack<W> energy, peak;  // peak: the larger principal strain
@@ -79,7 +79,7 @@ struct StiffeningAnswer {
 
 template <int W>
 WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const LimitNumbers& n, const Three<W>& e) {
-  constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below, the axes are noise
+  constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below it the axes are noise
   const Pack<W> mean = 0.5f * (e.x + e.y), half = 0.5f * (e.x - e.y), shear = 0.5f * e.z;
   const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kLeastRadius);
   const Pack<W> radius = square_root(half * half + shear * shear), inverse = 1.0f / larger(radius, least);
@@ -101,7 +101,7 @@ WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const LimitNumbers& n, const
            (p1.second * b - p2.second * a) * h + t * h * g, (p1.second + p2.second) * h * h + t * g * g}};
 }
 
-/// Adds a thread's curve at its strain.
+/// Adds the response of a thread's stretch curve at its strain.
 template <int W>
 WEFT_ALWAYS_INLINE void add_curve(const CurveNumbers& curve, Pack<W> strain, Pack<W>& energy, Pack<W>& stress,
                                   Pack<W>& tangent) {
@@ -122,7 +122,7 @@ WEFT_ALWAYS_INLINE StiffeningAnswer<W> stiffening_answer(const StiffeningNumbers
   return answer;
 }
 
-/// A 3×3 block of the Hessian, with the sign of a coupling: q_i = Σ_j N_ij (p_i − p_j).
+/// A 3×3 block of the Hessian, signed as a coupling: q_i = Σ_j N_ij (p_i − p_j).
 template <int W>
 struct Block {
   Three<W> row[3] = {};
@@ -149,7 +149,7 @@ struct Block {
   }
 };
 
-/// q += N d, the block's numbers `pitch` apart.
+/// q += N d, with the block's entries `pitch` apart.
 template <int W>
 WEFT_ALWAYS_INLINE void add_product(const float* n, std::ptrdiff_t pitch, const Three<W>& d, Three<W>& q) {
   q.x += dot<W>(load3<W>({n, n + pitch, n + 2 * pitch}, 0), d);

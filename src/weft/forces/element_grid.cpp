@@ -1,6 +1,6 @@
-/// Membranes and bending on a grid, as stencils. Between the right angle O of a triangle and the ends H and V
-/// of its legs along x and z, σ = ±1 being the sign of the legs' directions from O (−1 in cells cut from a to
-/// d, +1 in the others), the stress makes springs of the slopes
+/// Membranes and bending on a grid, as stencils. O is a triangle's right angle, H and V are the ends of its
+/// legs along x and z. σ = ±1 is the sign of the legs' directions from O (−1 in cells cut from a to d, +1 in
+/// the others). The stress gives springs of the slopes
 ///
 ///     w_OH = s1 dz/(2 dx) + σ s3/2      w_OV = s2 dx/(2 dz) + σ s3/2      w_HV = −σ s3/2
 ///
@@ -15,11 +15,11 @@
 namespace weft::engine::kernels {
 namespace {
 
-/// A cell's triangles from the column at which a pack begins.
+/// A cell's triangles from the first column of a pack.
 template <int W, bool kAlternates>
 class Cells {
  public:
-  /// Those whose upper left particles are in row j, from column i on, i >= −1.
+  /// Cells whose upper left particles are in row j, from column i on, i >= −1.
   WEFT_ALWAYS_INLINE Cells(const GridElements& g, std::ptrdiff_t i, int j)
       : at_(g.rows.row(j) + i), is_main_(even_from<W>(i + j)) {
     exists_ = count_below<W>(g.rows.row_length - 1, i) - count_below<W>(0, i);
@@ -39,7 +39,7 @@ class Cells {
     return {choose(main.x, other.x), choose(main.y, other.y), choose(main.z, other.z)};
   }
 
-  /// 1 where a cell is cut from a to d (from b to c) and exists.
+  /// 1 where a cell exists and is cut from a to d (from b to c).
   WEFT_ALWAYS_INLINE Pack<W> mains() const { return choose(exists_, broadcast<W>(0)); }
   WEFT_ALWAYS_INLINE Pack<W> others() const { return choose(broadcast<W>(0), exists_); }
 
@@ -80,7 +80,7 @@ WEFT_ALWAYS_INLINE Rows strain_planes(const GridElements& g, float* planes, int 
   return {g.plane(planes, first), g.plane(planes, first + 1), g.plane(planes, first + 2)};
 }
 
-/// Stiffening's tangents of tops (plane 0) or bottoms (plane 3).
+/// Tangents of the stiffening of tops (plane 0) or bottoms (plane 3).
 WEFT_ALWAYS_INLINE float* tangent_of(const GridElements& g, int plane) {
   return g.plane(g.tangent, 2 * plane);
 }
@@ -178,7 +178,7 @@ WEFT_ALWAYS_INLINE void membranes_body(const GridElements& g, int row_begin, int
 WEFT_MULTIVERSION_PACKS(membranes, (const GridElements& g, int row_begin, int row_end, double* energy),
                         (g, row_begin, row_end, energy))
 
-/// What an edge collects from its triangles.
+/// Sum of an edge's contributions from its triangles.
 template <int W>
 struct EdgeSum {
   Block<W> block;
@@ -196,7 +196,7 @@ struct Mixed {
   Pack<W> x12, x21;
 };
 
-/// X where the cell is cut from a to d and Xᵀ elsewhere, or the other way round.
+/// X where the cell is cut from a to d and Xᵀ elsewhere, or vice versa.
 template <int W, class C>
 WEFT_ALWAYS_INLINE Mixed<W> mixed(const GridElements& g, const C& cells, bool main_is_plain) {
   const float c12 = 0.5f * g.membrane.c12, shear = 0.5f * g.membrane.g;
@@ -205,8 +205,8 @@ WEFT_ALWAYS_INLINE Mixed<W> mixed(const GridElements& g, const C& cells, bool ma
   return {cells.exists() * m.x12, cells.exists() * m.x21};
 }
 
-/// What the stiffening of a cell's triangle gives to its edge across or down: α D11 + γ D13 in place of α
-/// C11, and likewise; X has α D13 (or β D23) besides.
+/// Contribution of a triangle's stiffening to its cell's edge across or down: α D11 + γ D13 in place of α
+/// C11, and likewise; X additionally has α D13 (or β D23).
 template <int W, class C>
 WEFT_ALWAYS_INLINE void add_stiffening(const GridElements& g, const C& cells, const Frame<W>& f,
                                        const Tangent<W>& d, bool is_across, bool main_is_plain,
@@ -275,7 +275,7 @@ WEFT_ALWAYS_INLINE EdgeSum<W> across_edge(const GridElements& g, std::ptrdiff_t 
   return sum;
 }
 
-/// The triangle at the left (right) edge of a cell: its bottom (top) where it is cut from a to d.
+/// The triangle at a cell's left (right) edge: its bottom (top) where the cell is cut from a to d.
 template <int W, class C>
 WEFT_ALWAYS_INLINE void add_side(const GridElements& g, const C& cells, bool is_left, EdgeSum<W>& sum) {
   const Frame<W> top = cells.top(g), bottom = cells.bottom(g);

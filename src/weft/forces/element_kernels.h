@@ -1,5 +1,5 @@
 #pragma once
-/// Private to forces/: what element_potential.cpp hands to the kernels of grids and meshes.
+/// Private to forces/: views that element_potential.cpp passes to the grid and mesh kernels.
 
 #include "weft/core/padded_rows.h"
 #include "weft/fabric.h"
@@ -8,18 +8,18 @@
 
 namespace weft::engine::kernels {
 
-/// C with damping in it: (1 + η) [C11 C12 0; C12 C22 0; 0 0 G] [N/m].
+/// C with damping: (1 + η) [C11 C12 0; C12 C22 0; 0 0 G] [N/m].
 struct MembraneNumbers {
   float c11 = 0, c22 = 0, c12 = 0, g = 0;
 };
 
-/// The kinks of a stretch curve, in floats.
+/// Kinks of a stretch curve, in floats.
 struct CurveNumbers {
   int count = 0;
   float strain[kMostStretchPoints] = {}, slope[kMostStretchPoints] = {};
 };
 
-/// What a membrane's law has beyond the linear one: its strain limit, and its stretch curves.
+/// The nonlinear part of a membrane's law: its strain limit and its stretch curves.
 struct StiffeningNumbers {
   LimitNumbers limit;
   CurveNumbers along_1, along_2;
@@ -27,41 +27,41 @@ struct StiffeningNumbers {
   bool is_set() const { return limit.is_set() || along_1.count > 0 || along_2.count > 0; }
 };
 
-/// Numbers of what stiffening adds to the tangent: its upper triangle, D11 D12 D13 D22 D23 D33.
+/// Entries of the stiffening's tangent: its upper triangle, D11 D12 D13 D22 D23 D33.
 inline constexpr int kTangentSize = 6;
 
-/// Numbers of a Hessian's block: row by row, from the particle that owns it.
+/// Entries of a Hessian block: row by row, from the particle that owns it.
 inline constexpr int kBlockSize = 9;
 
-/// The triangles of a cell have their right angles where its edges meet, so that an edge along x, over dx, is
-/// the first column of F, and one along z, over dz, the second:
+/// The right angles of a cell's triangles are at the cell's corners, so that an edge along x, over dx, is the
+/// first column of F, and one along z, over dz, the second:
 ///
 ///     a--h0--b      cut from a to d:   top (h0, v1), with its right angle at b    bottom (h1, v0), at c
 ///     |      |      cut from b to c:   top (h0, v0), at a                         bottom (h1, v1), at d
 ///    v0      v1
-///     |      |      Edges are owned by a particle each: those of family 0 go to the right, 1 down, 2 down
-///     c--h1--d      and right, 3 down and left, 4 two to the right, 5 two down.
+///     |      |      Each edge is owned by one particle. Direction by family: 0 right, 1 down, 2 down and
+///     c--h1--d      right, 3 down and left, 4 two to the right, 5 two down.
 struct GridElements {
   static constexpr int kFamilies = 6;
   static constexpr int kRow[kFamilies] = {0, 1, 1, 1, 0, 2}, kColumn[kFamilies] = {1, 0, 1, -1, 2, 0};
 
   PaddedRows rows;
-  bool alternates = false;   // cells are cut both ways by turns; else all from a to d
+  bool alternates = false;   // cell diagonals alternate; else all run from a to d
   float dx = 1, dz = 1;      // [m]
   MembraneNumbers membrane;  // with C11 along x
   float damping = 0;         // η
   StiffeningNumbers stiffening;
-  float* tangent = nullptr;        // that of stiffening, of tops and bottoms (12), if there is any [N/m]
-  float* peak = nullptr;           // likewise: largest principal strain of each row [1]
-  const float* bending = nullptr;  // of every family: coupling b_ij at the owner [N/m]
-  float* past = nullptr;           // strain that damping pulls to, of tops and bottoms (6)
+  float* tangent = nullptr;        // of stiffening, for tops and bottoms (12); null: none [N/m]
+  float* peak = nullptr;           // largest principal strain of each row; null: none [1]
+  const float* bending = nullptr;  // couplings b_ij of every family, at the owner [N/m]
+  float* past = nullptr;           // rest strain of damping, of tops and bottoms (6)
   ConstRows x{}, damped{}, bent{};
   float* stress = nullptr;  // of tops and bottoms (6) [N/m]
   float* slope = nullptr;   // of the first four families [N/m]
   float* hessian = nullptr;
   Rows force{};
 
-  /// The families whose edges are those of triangles.
+  /// Families whose edges are triangle edges.
   int num_edge_families() const { return alternates ? 4 : 3; }
   std::ptrdiff_t plane_pitch() const { return static_cast<std::ptrdiff_t>(rows.size()); }
   float* plane(float* planes, int k) const { return planes + k * rows.size(); }
@@ -78,21 +78,21 @@ struct GridElements {
 /// past += share · strain at x, for the cells of these rows.
 void grid_past(const GridElements& g, float share, int row_begin, int row_end);
 
-/// Stresses, and the energies of the rows: of their cells, and of the bending couplings they own.
+/// Stresses, and the energies of the rows: their cells, and the bending couplings they own.
 void grid_membranes(const GridElements& g, int row_begin, int row_end, double* energy);
 
-/// Slopes and blocks of the edges that the rows own, from the stresses.
+/// Slopes and Hessian blocks of the edges that the rows own, from the stresses.
 void grid_blocks(const GridElements& g, int row_begin, int row_end);
 
-/// force += that of the slopes and of bending.
+/// force += forces of the slopes and of bending.
 void grid_element_forces(const GridElements& g, int row_begin, int row_end);
 
 /// q += A p, and p·(A p) of the rows.
 void grid_multiply_elements(const GridElements& g, ConstRows p, Rows q, int row_begin, int row_end,
                             double* dot);
 
-/// Triangles, and the entries of particles' tables, go in slices of sixteen: value k of an item is at
-/// (slice · count + k) · 16 + lane.
+/// Triangles and particle table entries are stored in slices of sixteen: value k of an item is at (slice ·
+/// count + k) · 16 + lane.
 struct MeshElements {
   static constexpr int kShapeSize = 5;  // gradients of corners 1 and 2, area
   static constexpr int kFrameSize = 9;  // F's columns, stress
@@ -102,17 +102,17 @@ struct MeshElements {
   MembraneNumbers membrane;
   float damping = 0;  // η
   StiffeningNumbers stiffening;
-  float* tangent = nullptr;          // that of stiffening, of each triangle, if there is any [N/m]
-  float* peak = nullptr;             // likewise: largest principal strain of each slice [1]
+  float* tangent = nullptr;          // of stiffening, per triangle; null: none [N/m]
+  float* peak = nullptr;             // largest principal strain of each slice; null: none [1]
   const int* corner = nullptr;       // three of each triangle
   const float* shape = nullptr;      // of each triangle
-  float* past = nullptr;             // strain that damping pulls to, of each triangle
+  float* past = nullptr;             // rest strain of damping, per triangle
   float* frame = nullptr;            // of each triangle
   const int* slice_begin = nullptr;  // of the particles' edges
   const int* neighbour = nullptr;    // of each entry
   const int* triangle = nullptr;     // two of each entry
   const float* entry = nullptr;
-  const int* far_begin = nullptr;  // of the particles that only bending joins
+  const int* far_begin = nullptr;  // of the particles joined only by bending
   const int* far_neighbour = nullptr;
   const float* far_bending = nullptr;
   ConstRows x{}, damped{}, bent{};
@@ -125,10 +125,10 @@ void mesh_past(const MeshElements& m, float share, int slice_begin, int slice_en
 /// Frames and energies of slices of triangles.
 void mesh_membranes(const MeshElements& m, int slice_begin, int slice_end, double* energy);
 
-/// Energies of bending of slices of particles, half of every coupling's at each end.
+/// Bending energies of slices of particles; each end counts half of every coupling.
 void mesh_bending(const MeshElements& m, int slice_begin, int slice_end, double* energy);
 
-/// force += that of membranes and bending; blocks of the entries.
+/// force += forces of membranes and bending; Hessian blocks of the entries.
 void mesh_blocks(const MeshElements& m, int slice_begin, int slice_end);
 
 void mesh_multiply_elements(const MeshElements& m, ConstRows p, Rows q, int slice_begin, int slice_end,

@@ -1,12 +1,12 @@
-/// Membranes and bending on any mesh. Sixteen triangles side by side find their frames and stresses; then
-/// sixteen particles side by side gather over their edges, each of which has one or two triangles t (edges of
-/// more come up more often), with the gradients g of its ends:
+/// Membranes and bending on any mesh. Sixteen triangles in parallel compute their frames and stresses. Then
+/// sixteen particles in parallel gather over their edges, each of which has one or two triangles t (an edge
+/// of more triangles has several entries), with the gradients g of its ends:
 ///
 ///     slope w = −A Σ_t g_i·S g_j      block N_ij = Σ_t |w_t| I − A (F Mᵗ Fᵀ)_t
 ///     M = [C11 gi1 gj1 + G gi2 gj2    C12 gi1 gj2 + G gi2 gj1]
 ///         [C12 gi2 gj1 + G gi1 gj2    C22 gi2 gj2 + G gi1 gj1]
 ///
-/// Every edge is computed at both of its ends.
+/// Every edge is computed twice, once per end.
 
 #include "weft/forces/element_block.h"
 
@@ -121,7 +121,7 @@ WEFT_ALWAYS_INLINE void bending_body(const MeshElements& m, int slice_begin, int
 WEFT_MULTIVERSION_PACKS(bending, (const MeshElements& m, int slice_begin, int slice_end, double* energy),
                         (m, slice_begin, slice_end, energy))
 
-/// Stiffening's part of a triangle's block, of gradients i and j: a = i1 j1, b = i2 j2, c = i1 j2, d = i2 j1.
+/// Stiffening in a triangle's block, with gradients i and j: a = i1 j1, b = i2 j2, c = i1 j2, d = i2 j1.
 template <int W>
 WEFT_ALWAYS_INLINE void add_stiffening(const MeshElements& m, const int* triangle, const Frame<W>& f,
                                        Pack<W> a, Pack<W> b, Pack<W> c, Pack<W> d, Block<W>& block) {
@@ -133,7 +133,7 @@ WEFT_ALWAYS_INLINE void add_stiffening(const MeshElements& m, const int* triangl
             0.0f - (number(1) * c + d33 * d + own), 0.0f - (number(1) * d + d33 * c + own));
 }
 
-/// Adds what triangle `which` of an entry gives to its slope and block.
+/// Adds the contribution of triangle `which` of an entry to its slope and block.
 template <int W>
 WEFT_ALWAYS_INLINE void add_triangle(const MeshElements& m, int row, int lane, int which, Pack<W>& slope,
                                      Block<W>& block) {

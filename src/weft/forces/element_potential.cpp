@@ -109,12 +109,12 @@ double ElementPotential::peak_strain() const {
   return peak_.empty() ? 0.0 : static_cast<double>(*std::max_element(peak_.begin(), peak_.end()));
 }
 
-/// Half the trace of a triangle's tangent for stretching, as (C11 + C22)/2 [N/m].
+/// Half the trace of a triangle's stretching tangent, as (C11 + C22)/2 [N/m].
 double ElementPotential::stiffening_rate(int triangle) const {
   constexpr int kD11 = 0, kD22 = 3;
   std::ptrdiff_t first = 0, pitch = kPackLanes;
   if (is_grid_) {
-    // The mesh names the lower triangle of a cell cut from a to d first, the upper one of the others.
+    // The mesh lists the lower triangle first in a cell cut from a to d, the upper one in the others.
     const int cell = triangle / 2, cells_x = rows_.row_length - 1, i = cell % cells_x, j = cell / cells_x;
     const bool is_main = is_main_diagonal(diagonals_of(topology_->spring_model), i, j);
     const bool is_top = (triangle % 2 == 1) == is_main;

@@ -1,20 +1,20 @@
 #pragma once
-/// What a fabric's elements add to the incremental potential of the fast solver, in floats:
+/// A fabric's elements in the incremental potential of the fast solver, in floats:
 ///
 ///     Σ ½ A (eᵀ C e + η δeᵀ C δe) + ½ Σ b_ij (|x_j − x_i|² + η |z_j − z_i|²),      η = τ β/h
 ///
-/// e is a triangle's Green strain and δe what a step with β changes of it (see remember()): zero for rigid
-/// motions. Both squares of a triangle are one, ½ (1 + η) A (e − e*)ᵀ C (e − e*) and a constant, which is
-/// left out. The second sum is bending by stencils (fabric/bending_rows.h), whose quadratic form has the
-/// constant couplings b_ij; z = x − y + (h/β) v_y as in potential.h. Its damping acts on all of the relative
-/// velocity: a curl of curvature κ that spins as a whole loses by it the share 2 τ D κ²/(ρ r²) of its energy
-/// per second, r being its radius of gyration.
+/// e is a triangle's Green strain and δe its change in a step with β (see remember()): zero for rigid
+/// motions. Both squares of a triangle combine to ½ (1 + η) A (e − e*)ᵀ C (e − e*) and a constant, which is
+/// omitted. The second sum is bending by stencils (fabric/bending_rows.h), whose quadratic form has the
+/// constant couplings b_ij; z = x − y + (h/β) v_y as in potential.h. Its damping acts on the full relative
+/// velocity: a rigidly spinning curl of curvature κ loses by it the share 2 τ D κ²/(ρ r²) of its energy per
+/// second, r being its radius of gyration.
 ///
-/// The Hessian is kept as a 3×3 block per edge: the material term as it is, the stress term as three scalar
-/// edge weights per triangle with absolute values, the bending as it is: positive semidefinite.
+/// The Hessian is stored as one 3×3 block per edge: the exact material term, the stress term as three scalar
+/// edge weights per triangle with absolute values, the exact bending: positive semidefinite.
 ///
-/// On grids everything is a stencil; on meshes it comes from tables of the particles' edges. Sums have one
-/// fixed order: the same bits for any number of threads and any vector width.
+/// Grids use stencils; meshes use tables of the particles' edges. Sums have one fixed order: the same bits
+/// for any number of threads and any vector width.
 
 #include <memory>
 #include <vector>
@@ -33,7 +33,7 @@ struct GridElements;
 struct MeshElements;
 }  // namespace kernels
 
-/// What a triangle's stiffness gives to a coupling: `share` of it.
+/// Contribution of a triangle's stiffness to a coupling: `share` of it.
 struct TriangleCoupling {
   int coupling = 0, triangle = 0;
   double share = 0;  // cotangent weight [1]
@@ -41,7 +41,7 @@ struct TriangleCoupling {
 
 class ElementPotential {
  public:
-  /// Lays everything out for the cloth's elements; none is well. `damping_rate` is β/h [1/s]. Throws
+  /// Allocates the layout for the cloth's elements; there may be none. `damping_rate` is β/h [1/s]. Throws
   /// InputError for hinges, and for a grid whose warp is along neither axis.
   void fit(const ClothModel& model, const PaddedRows& rows, double damping_rate);
 
@@ -51,24 +51,24 @@ class ElementPotential {
   const StrainLimit& limit() const { return elements_->limit; }
   bool stiffens() const { return has_limit() || (elements_ != nullptr && elements_->has_curves()); }
 
-  /// The largest principal stretch less one, where energy() or linearise() were last; with a limit only [1].
+  /// Largest principal stretch minus one, at the last energy() or linearise(); only with a limit [1].
   double peak_strain() const;
 
-  /// What limit and curves add to the stiffness of each of the elements' couplings, at the place of
-  /// linearise(), as C does to theirs; false: nothing [N/m].
+  /// Stiffness that limit and curves add to each of the elements' couplings at the last linearise(), as C
+  /// contributes to the couplings themselves; false: none [N/m].
   bool compute_stiffer_couplings(std::vector<double>& added) const;
 
-  /// Takes the strains e₀ and e₋₁ before the step and the one before it; δe = e − e₀ − memory (e₀ − e₋₁).
-  /// Positions are laid out by the rows. To be called before a damped step.
+  /// Stores the strains e₀ and e₋₁ at the starts of this step and of the previous one; δe = e − e₀ − memory
+  /// (e₀ − e₋₁). Positions are laid out by the rows. Call before a damped step.
   void remember(const Vec3Array& start, const Vec3Array& before, double memory, JobSystem& jobs);
 
-  /// The value at x [J]; `z` is only read with damping.
+  /// Value at x [J]; `z` is read only with damping.
   double energy(const Vec3Array& x, const Vec3Array& z, JobSystem& jobs);
 
-  /// The same; adds the force to `force` [N], and keeps the Hessian.
+  /// Value at x; adds the force to `force` [N], and stores the Hessian.
   double linearise(const Vec3Array& x, const Vec3Array& z, JobSystem& jobs, Vec3Array& force);
 
-  /// q += A p with the Hessian A of linearise(), and p·A p. p must be zero where no particle is.
+  /// q += A p with the Hessian A of linearise(), and p·A p. p must be zero in the padding.
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
 
  private:
@@ -90,7 +90,7 @@ class ElementPotential {
   AlignedFloats bending_;  // on a grid, couplings of each family [N/m]
   ElementTables tables_;   // on a mesh
   AlignedFloats past_;     // η/(1 + η) times the strain without δe: e*
-  AlignedFloats stress_;   // on a grid; on a mesh frames too
+  AlignedFloats stress_;   // on a grid; on a mesh also the frames
   AlignedFloats slope_;
   AlignedFloats tangent_, peak_;  // of stiffening
   std::vector<TriangleCoupling> triangle_couplings_;

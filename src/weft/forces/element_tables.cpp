@@ -12,7 +12,7 @@ using kernels::MeshElements;
 
 constexpr int kLanes = kPackLanes;
 
-/// An edge as one of its ends sees it, with one or two of its triangles.
+/// An edge from one of its ends, with one or two of its triangles.
 struct Entry {
   int neighbour = 0;
   int triangle[2] = {0, 0};
@@ -52,7 +52,7 @@ std::vector<std::vector<Entry>> find_entries(const ClothElements& elements, int 
   return around;
 }
 
-/// Bending goes with the first entry of an edge, and where there is none to a list of its own.
+/// Adds bending to the first entry of its edge; couplings without an edge go to a separate list.
 std::vector<std::vector<FarEntry>> add_bending(const BendingRows& rows,
                                                std::vector<std::vector<Entry>>& around) {
   const int n = static_cast<int>(around.size());
@@ -74,7 +74,7 @@ std::vector<std::vector<FarEntry>> add_bending(const BendingRows& rows,
   return far;
 }
 
-/// First row of each slice, and after the last one: as many rows as its longest list.
+/// First row of each slice, and the end of the last one: a slice has as many rows as its longest list.
 template <class Item>
 std::vector<int> slice_rows(const std::vector<std::vector<Item>>& lists) {
   std::vector<int> begin = {0};

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh's elements laid out for vector registers, sixteen triangles or particles side by side (see
+/// Element tables of a mesh for vector registers, sixteen triangles or particles per slice (see
 /// kernels::MeshElements).
 
 #include <vector>

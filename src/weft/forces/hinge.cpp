@@ -7,9 +7,9 @@ namespace weft::engine {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr double kLeastHeight = 1e-3;  // of a triangle over its edge, for the gradient [edge lengths]
+constexpr double kLeastHeight = 1e-3;  // minimum triangle height over edge length, for the gradient [1]
 
-/// Normals as long as twice their triangle's area.
+/// Normals with a length of twice their triangle's area.
 struct Normals {
   Vec3 edge, n0, n1;
 };
@@ -53,7 +53,7 @@ HingeCorners hinge_angle_gradient(const HingeCorners& x) {
   HingeCorners gradient = {Vec3::Zero(), Vec3::Zero(), tip_gradient(n.n0, length),
                            tip_gradient(n.n1, length)};
   if (length == 0) return gradient;
-  // The edge's ends balance the tips by the lever: where along the edge each tip stands over it.
+  // Lever rule: the edge's ends balance each tip by its projection on the edge.
   const double inv_length_sq = 1 / n.edge.squaredNorm();
   for (const int tip : {2, 3}) {
     const double along = (x[tip] - x[0]).dot(n.edge) * inv_length_sq;

@@ -6,7 +6,7 @@
 namespace weft::engine {
 namespace {
 
-/// Particles per chunk of work: enough to outweigh handing a chunk to another thread.
+/// Particles per chunk of work: enough to outweigh the cost of scheduling it.
 constexpr int kGrain = 4096;
 
 /// Zeros to the left and right of a row of an IncrementField; stencils reach two to each side.

@@ -1,5 +1,5 @@
 #pragma once
-/// The fast kernels: all forces of a cloth at once, in floats, gathered per particle.
+/// Fast kernels: all forces of a cloth in one pass, in floats, gathered per particle.
 ///
 /// On grids the springs are stencils without index arrays; on meshes they come from the NeighbourTable.
 /// Sums have one fixed order, so the result has the same bits for any number of threads and any vector width.
@@ -11,14 +11,14 @@
 
 namespace weft::engine {
 
-/// One 3-vector per particle, laid out for the kernels: on grids the rows stand apart, with zeros between and
-/// around them, so that stencils need not know where the border is.
+/// One 3-vector per particle in the kernels' layout: on grids, rows are padded with zeros between and around
+/// them, so that stencils need no special case at the border.
 class IncrementField {
  public:
-  /// Zeros, laid out for the given cloth. Does nothing if it is so already.
+  /// Allocates zeros for the given cloth; a no-op if already laid out for it.
   void fit(const ClothModel& model);
 
-  /// Where particle i of the cloth is in `values`.
+  /// Index of particle i in `values`.
   int index(int i) const { return first_ + (i / row_length_) * stride_ + i % row_length_; }
 
   int row_length() const { return row_length_; }
@@ -37,7 +37,7 @@ class IncrementField {
   int stride_ = 1;  // from one row to the next
 };
 
-/// What acts besides the springs' elasticity, and the step.
+/// Step, damping and external forces.
 struct IncrementSettings {
   float step = 0;                    // h [s]
   float damping = 0;                 // b of every spring [N·s/m]; may be negative (the paper's printed sign)
@@ -58,7 +58,7 @@ void compute_increments(const ClothModel& model, const ClothState& state, const 
 void apply_increments(const IncrementField& u, float step, const Vec3& g_step, JobSystem& jobs,
                       ClothState& state);
 
-/// What changes velocities outside the filter: v becomes keep · v + gain.
+/// Velocity changes outside the filter: v becomes keep · v + gain.
 struct Outside {
   float keep = 1;            // [1]
   Vec3 gain = Vec3::Zero();  // [m/s]
@@ -69,7 +69,7 @@ void apply_filtered_increments(const ClothModel& model, const IncrementField& u,
                                const std::vector<float>& weight, const Outside& outside, JobSystem& jobs,
                                ClothState& state);
 
-/// Values of a per-particle quantity as the kernels want them: floats, padded with zeros.
+/// A per-particle quantity in the kernels' layout: floats, padded with zeros.
 std::vector<float> to_padded_floats(const std::vector<double>& values);
 
 }  // namespace weft::engine

@@ -1,8 +1,8 @@
 /// Springs on a grid as stencils.
 ///
-/// Each spring is evaluated once, by the upper left of its two particles (its owner), a whole row of owners
-/// at a time, into small row buffers. A particle then gathers: its own springs with +, those that end in it
-/// with −.
+/// Each spring is evaluated once, by the upper left of its two particles (its owner), one row of owners at a
+/// time, into small row buffers. A particle then gathers: its own springs with +, those that end at it with
+/// −.
 ///
 ///     o--H--o          owner of: H across, V down, D main diagonal, BH and BV to the particle two away
 ///     | \ D |          E, the other diagonal of the cell, joins the particle to the right of the owner
@@ -10,8 +10,8 @@
 ///     |   \ |
 ///     o-----o
 ///
-/// Rows are computed to the end of a full vector register, beyond the row's end; what is computed there is
-/// set to zero before anybody reads it.
+/// Rows are computed in full vector registers, beyond the row's end; that padding is set to zero before it is
+/// read.
 
 #include <algorithm>
 
@@ -33,7 +33,7 @@ struct ForceRow {
   }
 };
 
-/// Row buffers of one thread, kept between calls so that a step allocates nothing.
+/// Row buffers of one thread, kept between calls to avoid allocations in a step.
 class ForceRows {
  public:
   ForceRow down(int j) const { return row(0 + slot(j, 2)); }
@@ -62,7 +62,7 @@ class ForceRows {
   std::vector<float> values_;
 };
 
-/// The forces on p of `count` springs p–q, where p and q advance together.
+/// Forces on p of `count` springs p–q, with p and q advancing together.
 template <bool kProjected>
 WEFT_ALWAYS_INLINE void spring_row(ConstRows x, ConstRows v, int p, int q, int count, Family family,
                                    const Forcing& forcing, ForceRow out) {
@@ -83,7 +83,7 @@ WEFT_ALWAYS_INLINE void spring_row(ConstRows x, ConstRows v, int p, int q, int c
   }
 }
 
-/// One diagonal per cell, its direction alternating: main where i + j is even. Each goes to its own row.
+/// One diagonal per cell, of alternating direction: main where i + j is even. Each direction has its own row.
 template <bool kProjected>
 WEFT_ALWAYS_INLINE void alternating_row(ConstRows x, ConstRows v, int p, int q, int j, int count,
                                         Family family, const Forcing& forcing, ForceRow main_row,
@@ -141,7 +141,7 @@ WEFT_ALWAYS_INLINE void grid_rows_impl(const GridStencil& stencil, const Forcing
   constexpr bool kAnti = kModel != SpringModel::simplified;
   const int nx = stencil.num_columns, nz = stencil.num_rows, count = round_up(nx);
 
-  // The springs from row j to the rows below.
+  // Springs from row j to the rows below.
   const auto compute_down = [&](int j) WEFT_INLINE_LAMBDA {
     const int p = j * nx, q = p + nx;
     const ForceRow down = buffers.down(j), main = buffers.main_diagonal(j), anti = buffers.anti_diagonal(j);
@@ -169,7 +169,7 @@ WEFT_ALWAYS_INLINE void grid_rows_impl(const GridStencil& stencil, const Forcing
   compute_down(row_begin - 2);
   compute_down(row_begin - 1);
   for (int j = row_begin; j < row_end; ++j) {
-    // Rows across first: they are read shifted, which stalls while their stores are still under way.
+    // Rows across first: their shifted loads stall while their stores are still in flight.
     const int p = j * nx;
     const ForceRow across = buffers.across(), bend_across = buffers.bend_across();
     spring_row<kProjected>(x, v, p, p + 1, count, stencil.across, forcing, across);
@@ -232,8 +232,8 @@ WEFT_ALWAYS_INLINE void grid_rows_body(const GridRowsArguments& a, SpringModel m
 
 WEFT_MULTIVERSION(grid_rows, (const GridRowsArguments& a, SpringModel model), (a, model))
 
-/// One component of one row of the second sweep. `even` is the parity of i + j where the alternating model
-/// has all four diagonals around a particle; elsewhere it has none.
+/// One component of one row of the second sweep. `even` is the parity of i + j at which a particle of the
+/// alternating model has all four diagonals; at the other parity it has none.
 template <SpringModel kModel>
 WEFT_ALWAYS_INLINE void filtered_component(int count, int stride, int j, float structural, float shear,
                                            float bend, float step, const float* weight, float keep,

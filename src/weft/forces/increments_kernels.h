@@ -1,5 +1,5 @@
 #pragma once
-/// Private to forces/: what increments.cpp hands to the kernels of grids and meshes.
+/// Private to forces/: data that increments.cpp passes to the grid and mesh kernels.
 
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace weft::engine::kernels {
 
 /// Elastic and projected damping force on i of a spring with d = x_j − x_i and w = v_j − v_i, as a factor of
-/// d [N/m]: [k (l − l0) l + b w·d] / l². Zero times d where the spring has no length, and in the unused
-/// places of tables.
+/// d [N/m]: [k (l − l0) l + b w·d] / l². Zero times d for a spring of length zero, and in the padding of
+/// tables.
 template <bool kProjected>
 WEFT_ALWAYS_INLINE float pull(float k, float rest_length, float b, float dx, float dy, float dz, float wx,
                               float wy, float wz) {
@@ -47,10 +47,10 @@ struct GridStencil {
 /// Settings in floats.
 struct Forcing {
   float step, damping_plain, damping_projected, stiffness_damping, wind_rate;
-  float ax, ay, az;  // uniform acceleration, including that of the wind's velocity
+  float ax, ay, az;  // uniform acceleration, with that of the wind's velocity
 };
 
-/// Where row 0 of an IncrementField begins, and the distance between rows.
+/// Start of row 0 of an IncrementField, and the distance between rows.
 struct FieldLayout {
   int first, stride;
 };

@@ -1,5 +1,5 @@
-/// Springs of any mesh: each particle gathers over its row of the NeighbourTable, sixteen particles side by
-/// side.
+/// Springs of any mesh: each particle gathers over its row of the NeighbourTable, sixteen particles in
+/// parallel.
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to forces/: a strain limit (fabric/membrane_law.h) for the kernels.
+/// Private to forces/: the strain limit (fabric/membrane_law.h) for the kernels.
 
 #include "weft/core/pack.h"
 #include "weft/fabric/membrane_law.h"

@@ -5,13 +5,13 @@
 namespace weft::engine {
 namespace {
 
-/// Where warp and weft go: the columns of F.
+/// Columns of F: images of the warp and weft directions.
 struct Deformation {
   Vec3 warp, weft;
 };
 
 Deformation deformation(const RestTriangle& rest, const TriangleCorners& x) {
-  // Differences, so that the result does not depend on where the triangle is.
+  // Differences, so that the result does not depend on the triangle's position.
   const Vec3 d1 = x[1] - x[0], d2 = x[2] - x[0];
   return {rest.gradient[1].x() * d1 + rest.gradient[2].x() * d2,
           rest.gradient[1].y() * d1 + rest.gradient[2].y() * d2};
@@ -43,7 +43,7 @@ std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const T
 }
 
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x) {
-  // The roots of FᵀF's eigenvalues, the smaller one from the determinant |warp × weft|².
+  // Square roots of the eigenvalues of FᵀF, the smaller one from the determinant |warp × weft|².
   const Deformation f = deformation(rest, x);
   const double a = f.warp.squaredNorm(), b = f.weft.squaredNorm(), c = f.warp.dot(f.weft);
   const double largest = std::sqrt(0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c));

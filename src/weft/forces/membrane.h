@@ -1,18 +1,17 @@
 #pragma once
-/// Stretching and shearing of a triangle: the St. Venant–Kirchhoff membrane.
+/// Stretching and shearing of a triangle: the St. Venant–Kirchhoff (StVK) membrane.
 ///
-///            x2                 F = Σ_c x_c g_cᵀ, 3×2: where warp and weft go       g_c:
-///            RestTriangle::gradient
-///           /  \                e = (ε11, ε22, 2 ε12) of ε = ½ (Fᵀ F − I)            Green strain
-///     weft /    \               s = C e, C = [C11 C12 0; C12 C22 0; 0 0 G]           tensions [N/m]
+///            x2                 F = Σ_c x_c g_cᵀ, 3×2: deformation gradient     g_c: RestTriangle::gradient
+///           /  \                e = (ε11, ε22, 2 ε12) of ε = ½ (Fᵀ F − I)     Green strain
+///     weft /    \               s = C e, C = [C11 C12 0; C12 C22 0; 0 0 G]    tensions [N/m]
 ///      ↑  /      \              W = A ½ eᵀ C e,  S = [s1 s3; s3 s2]
 ///       x0 ------ x1
 ///          → warp
 ///
 /// Green strain is linear in the three squared edge lengths, so this is a network of quartic springs (H.
 /// Delingette, Triangular Springs for Modeling Nonlinear Membranes, IEEE TVCG 14(2), 2008, is the isotropic
-/// case); it is zero for every rigid motion. Stretched to λ times its length along warp alone, a strip that
-/// keeps its width pulls with C11 λ (λ² − 1)/2 per width: C11 at small strain, more and more beyond.
+/// case); it is zero for every rigid motion. A strip of constant width, stretched along warp to λ times its
+/// length, pulls with C11 λ (λ² − 1)/2 per width: C11 at small strain, progressively more beyond.
 ///
 /// All functions take the corners' positions [m].
 
@@ -32,31 +31,31 @@ Vec3 membrane_strain(const RestTriangle& rest, const TriangleCorners& x);
 /// ∂e/∂x_c of each corner: three rows, (ε11, ε22, 2 ε12) [1/m].
 std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const TriangleCorners& x);
 
-/// Smallest and largest factor by which any direction in the triangle is longer than at rest [1].
+/// Smallest and largest stretch over all directions in the triangle: length over rest length [1].
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x);
 
-/// W [J]. With a strain limit `law` answers by another W, s = ∂W/∂e and C = ∂s/∂e; the rest stays as it is.
+/// W [J]. With a strain limit, `law` gives another W, s = ∂W/∂e and C = ∂s/∂e; all else is unchanged.
 double membrane_energy(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
-/// Force on each corner: f_c = −A F S g_c [N]. They sum to zero, and so do their moments.
+/// Force on each corner: f_c = −A F S g_c [N]. Forces and their moments sum to zero.
 TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
-/// Second derivatives of W, split for a step that must not meet negative curvature:
+/// Second derivatives of W, split for solvers that require a positive semidefinite Hessian:
 ///
 ///     ∂²W/∂x_a ∂x_b = A B_aᵀ C B_b + (A g_a·S g_b) I,   B_c = ∂e/∂x_c (3×3)
 ///
-/// The first term is positive semidefinite as it is. The second one is the Laplacian of three scalar springs
-/// without length, of stiffness w_ab = −A g_a·S g_b along the edges.
+/// The first term is always positive semidefinite. The second one is the Laplacian of three scalar
+/// zero-length springs, of stiffness w_ab = −A g_a·S g_b along the edges.
 struct MembraneHessian {
   std::array<std::array<Mat3, 3>, 3> material;  // [a][b] [N/m]
-  std::array<double, 3> edge_weight;  // of the edges opposite to corners 0, 1, 2; may be negative [N/m]
+  std::array<double, 3> edge_weight;            // opposite to corners 0, 1, 2; may be negative [N/m]
 };
 
 MembraneHessian membrane_hessian(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
 
 enum class StressFilter {
   exact,     // the true Hessian: indefinite where the triangle is compressed
-  absolute,  // |w_ab|: positive semidefinite, and steady where the linear system is solved well
+  absolute,  // |w_ab|: positive semidefinite, and stable where the linear system is solved accurately
 };
 
 /// The 3×3 block of corners a and b [N/m].

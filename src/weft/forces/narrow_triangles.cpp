@@ -18,7 +18,7 @@ using kernels::Three;
 constexpr int kGrain = 4096;  // triangles per chunk of work, about
 constexpr int kLanes = kPackLanes;
 
-/// Not positive, if G − tR is not positive definite; `r` are t R11, t R12, t R22.
+/// Score: not positive if G − tR is not positive definite; `r` are t R11, t R12, t R22.
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> score_of(const Three<W>& d1, const Three<W>& d2, const Three<W>& r) {
   const Pack<W> p = dot<W>(d1, d1) - r.x, c = dot<W>(d1, d2) - r.y, q = dot<W>(d2, d2) - r.z;
@@ -33,7 +33,7 @@ struct GridTriangles {
   float *score, *least;
 };
 
-/// The legs of a cell's triangles as in GridElements: along x and z from their right angle, up to the sign.
+/// Legs of a cell's triangles as in GridElements: along x and z from the right angle, up to sign.
 template <int W, bool kAlternates>
 WEFT_ALWAYS_INLINE void score_rows(const GridTriangles& g, int row_begin, int row_end) {
   const std::ptrdiff_t pitch = g.rows.stride(), plane = static_cast<std::ptrdiff_t>(g.rows.size());
@@ -74,7 +74,7 @@ WEFT_MULTIVERSION_PACKS(score_grid, (const GridTriangles& g, int row_begin, int 
 struct MeshTriangles {
   int first;          // index of particle 0
   const int* corner;  // three of each triangle
-  const float* rest;  // likewise
+  const float* rest;  // per triangle
   ConstRows x;
   float *score, *least;
 };
@@ -164,7 +164,7 @@ void NarrowTriangles::find_on_grid(const Vec3Array& x, JobSystem& jobs) {
       const std::size_t top = rows_.row(j) + i, bottom = rows_.size() + top;
       const bool is_main = is_main_diagonal(diagonals_of(topology_->spring_model), i, j);
       const int cell =
-          j * grid.cells_x + i;  // the mesh lists the bottom first where it is cut along the main
+          j * grid.cells_x + i;  // the mesh lists the bottom first where the cut is along the main diagonal
       if (score_[is_main ? bottom : top] <= 0) found_.push_back(2 * cell);
       if (score_[is_main ? top : bottom] <= 0) found_.push_back(2 * cell + 1);
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to forces/: packs of 3-vectors, for the kernels.
+/// Private to forces/: packs of 3-vectors for the kernels.
 
 #include "weft/core/pack.h"
 #include "weft/forces/increments_kernels.h"

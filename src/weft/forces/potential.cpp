@@ -9,7 +9,7 @@
 namespace weft::engine {
 namespace {
 
-/// Particles per chunk of work: enough to outweigh handing a chunk to another thread.
+/// Particles per chunk of work: enough to outweigh the cost of scheduling it.
 constexpr int kGrain = 4096;
 
 int rows_per_chunk(const PaddedRows& rows) { return std::max(1, kGrain / rows.row_length); }
@@ -74,7 +74,7 @@ void IncrementalPotential::fit_grid(const ClothModel& model) {
   parts_.assign(rows_.num_rows, 0.0);
 }
 
-/// Every spring's stiffness to where the kernels want it: in its family, at the end that owns it.
+/// Copies every spring's stiffness to the kernels' layout: by family, at the owner.
 void IncrementalPotential::spread_grid_stiffness(const ClothModel& model) {
   const int columns = rows_.row_length;
   grid_stiffness_.assign(num_families_ * rows_.size() + kPackLanes, 0.0f);

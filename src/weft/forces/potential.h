@@ -1,19 +1,19 @@
 #pragma once
 /// The incremental potential of an implicit step, in floats, for the fast solver:
 ///
-///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring, if damping is
-///     projected) + a fabric's membranes and bending (element_potential.h)
+///     E(x) = ½ |x − y|²_D + Σ ½ k (l − l0)² + Σ ½ c |z_j − z_i|²  (along the spring if damping is projected)
+///            + a fabric's membranes and bending (element_potential.h)
 ///
-/// y is where the particles would go without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with
-/// the velocity v_y that goes with y, and c = b β/h: the dissipation of spring damping at the new velocity
+/// y is the prediction without springs, D = inertia and wind [N/m], z = x − y + (h/β) v_y with the velocity
+/// v_y that belongs to y, and c = b β/h: the dissipation of spring damping at the new velocity
 /// v_y + (β/h)(x − y).
 ///
-/// Its Hessian is kept per spring as t I + w wᵀ with t = k min(1, |1 − l0/l|) and |w|² = k − t: positive
+/// Its Hessian is stored per spring as t I + w wᵀ with t = k min(1, |1 − l0/l|) and |w|² = k − t: positive
 /// semidefinite by construction. The absolute value matters: with the transverse stiffness of compressed
 /// springs clamped at zero, one Newton step overshoots sideways by hundreds of percent of strain.
 ///
-/// On grids springs are stencils; on meshes they come from the NeighbourTable. Sums have one fixed order: the
-/// same bits for any number of threads and any vector width.
+/// Grids use stencils for springs; meshes use the NeighbourTable. Sums have one fixed order: the same bits
+/// for any number of threads and any vector width.
 
 #include <memory>
 #include <vector>
@@ -32,47 +32,48 @@ struct GridPotential;
 struct MeshPotential;
 }  // namespace kernels
 
-/// Where the particles of a cloth are in the arrays of the solver.
+/// Layout of a cloth's particles in the solver's arrays.
 PaddedRows padded_rows_of(const ClothTopology& topology);
 
 class IncrementalPotential {
  public:
-  /// Lays everything out for the cloth, and takes its stiffnesses. `damping_rate` is β/h [1/s].
+  /// Allocates the layout for the cloth, and copies its stiffnesses. `damping_rate` is β/h [1/s].
   void fit(const ClothModel& model, double damping_rate);
 
   const PaddedRows& rows() const { return rows_; }
   bool is_damped() const { return damping_ > 0 || damping_time_ > 0 || elements_.is_damped(); }
 
-  // Set before use; zero where no particle is (rows().size() each).
+  // Set before use; zero in the padding (rows().size() each).
   std::vector<float> weight;  // D [N/m]
   Vec3Array target;           // y [m]
   Vec3Array lag;              // (h/β) v_y; only used with damping [m]
 
-  /// Where the particles are before the step, and what has changed in the step before it: what the damping of
-  /// elements goes by (see ElementPotential). To be called before a step.
+  /// Stores the positions before the step, and the displacement of the previous step, for the damping of
+  /// elements (see ElementPotential). Call before a step.
   void remember(const Vec3Array& x, const Vec3Array& displacement, double memory, JobSystem& jobs);
 
-  /// E(y + e) [J]. Offsets from y, for they are small: in floats x − y would lose them where steps are small.
+  /// E(y + e) [J]. Offsets e from y, because they are small: in floats x − y would lose digits in small
+  /// steps.
   double energy(const Vec3Array& e, JobSystem& jobs);
 
-  /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, kept for multiply().
+  /// E(y + e) [J], its force −∂E/∂x [N], and its Hessian, stored for multiply().
   double linearise(const Vec3Array& e, JobSystem& jobs, Vec3Array& force);
 
-  /// y + e where energy() or linearise() were last [m].
+  /// y + e at the last energy() or linearise() [m].
   const Vec3Array& positions() const { return x_; }
 
-  /// Whether anything makes cloth stiffer than C or its springs are: a strain limit, stretch curves.
+  /// Whether the cloth can exceed the stiffness of C or its springs: by a strain limit or stretch curves.
   bool stiffens() const { return has_spring_limit() || elements_.stiffens(); }
 
-  /// By how much, at the place of linearise(), for each of the elements' couplings, or each spring where
-  /// springs are the membranes; false: for none [N/m].
+  /// The stiffness added at the last linearise(), for each of the elements' couplings, or each spring where
+  /// springs are the membranes; false: none [N/m].
   bool compute_stiffening(std::vector<double>& added) const;
 
-  /// Whether a stretch is further beyond a strain limit than a solver may leave it, where energy() or
-  /// linearise() were last.
+  /// Whether a stretch at the last energy() or linearise() exceeds the strain limit by more than a solver may
+  /// leave.
   bool is_beyond_limit() const;
 
-  /// q = A p with the Hessian A of linearise(), and p·q. p must be zero where no particle is.
+  /// q = A p with the Hessian A of linearise(), and p·q. p must be zero in the padding.
   double multiply(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
 
  private:
@@ -95,16 +96,16 @@ class IncrementalPotential {
   float stiffness_[6] = {};    // of each family [N/m]
   float rest_length_[6] = {};  // of each family [m]
   std::vector<float>
-      grid_stiffness_;  // of each spring of a grid, as slope_ has them; empty: its family's [N/m]
+      grid_stiffness_;  // of each spring of a grid, in slope_'s order; empty: its family's [N/m]
   std::vector<float> mesh_stiffness_;  // of each entry of the table [N/m]
   float damping_ = 0;                  // c [N/m]
-  float damping_time_ = 0;             // c of a spring, over its stiffness, besides [1]
+  float damping_time_ = 0;             // stiffness-proportional damping: c of a spring over its stiffness [1]
   bool is_projected_ = true;
 
   AlignedFloats hessian_;      // t, wx, wy, wz of each spring
   AlignedFloats slope_;        // k (1 − l0/l) and damping: the force is slope · (x_j − x_i)
   StrainLimit spring_limit_;   // on a grid
-  std::vector<float> peak_;    // with it: largest strain of each row's springs [1]
+  std::vector<float> peak_;    // with a limit: largest strain of each row's springs [1]
   Vec3Array x_;                // y + e
   Vec3Array damped_;           // z
   std::vector<double> parts_;  // sums of rows or slices

@@ -21,7 +21,7 @@ WEFT_ALWAYS_INLINE Pack<W> spring_exists(const GridPotential& g, int family, std
   return exists;
 }
 
-/// A half where a structural spring is on a border that is soft, else 1.
+/// ½ for structural springs on a soft border, else 1.
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> border_share(const GridPotential& g, int family, std::ptrdiff_t i, int j) {
   if (!g.has_soft_border || family > 1) return broadcast<W>(1);

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to forces/: what potential.cpp hands to the kernels of grids and meshes.
+/// Private to forces/: views that potential.cpp passes to the grid and mesh kernels.
 
 #include "weft/core/padded_rows.h"
 #include "weft/forces/increments_kernels.h"
@@ -19,19 +19,19 @@ struct FamilyOffset {
 };
 inline constexpr FamilyOffset kFamilyOffsets[6] = {{0, 1}, {1, 0}, {1, 1}, {0, 2}, {2, 0}, {1, -1}};
 
-/// Everything that the kernels of a grid read and write.
+/// Data that the grid kernels read and write.
 struct GridPotential {
   PaddedRows rows;
   int num_families = 5;                  // 5, 6 with both diagonals, 0 without springs
-  bool alternates = false;               // diagonals start only where row + column is even
+  bool alternates = false;               // diagonals start only at even row + column
   const float* stiffness = nullptr;      // of each family
-  const float* own_stiffness = nullptr;  // of each spring, as slope_row has them; null: its family's
+  const float* own_stiffness = nullptr;  // of each spring, in slope_row's order; null: its family's
   const float* rest_length = nullptr;    // of each family
-  bool has_soft_border = false;          // structural springs on it have half their stiffness
+  bool has_soft_border = false;          // structural springs on the border have half stiffness
   LimitNumbers limit;                    // of structural and shear springs
   float* peak = nullptr;                 // with a limit: largest strain of each row's springs [1]
   float damping = 0;
-  float damping_time = 0;  // damping that every spring has more, over its stiffness
+  float damping_time = 0;  // additional damping of every spring, over its stiffness
   bool is_projected = true;
   const float* weight = nullptr;
   ConstRows x{}, offset{}, damped{};
@@ -55,7 +55,7 @@ struct GridPotential {
 /// sum = a + b.
 void add(const float* a, const float* b, float* sum, int begin, int end);
 
-/// Energies of the rows, springs counted where they start. With `store`, Hessian and slopes as well.
+/// Energies of the rows; each spring counts at its owner. With `store`, Hessian and slopes as well.
 void grid_springs(const GridPotential& g, bool store, int row_begin, int row_end, double* energy);
 
 /// Forces of the rows, from the slopes.
@@ -78,7 +78,7 @@ struct MeshPotential {
   Rows force{};
 };
 
-/// Energies of the slices, half of every spring's at each end. With `store`, Hessian and forces as well.
+/// Energies of the slices; each end counts half of every spring. With `store`, Hessian and forces as well.
 void mesh_springs(const MeshPotential& m, bool store, int slice_begin, int slice_end, double* energy);
 
 void mesh_multiply(const MeshPotential& m, ConstRows p, Rows q, int slice_begin, int slice_end, double* dot);

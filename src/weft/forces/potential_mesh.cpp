@@ -1,5 +1,5 @@
 /// The incremental potential on any mesh: each particle gathers over its row of the NeighbourTable, sixteen
-/// particles side by side. Every spring is computed at both of its ends.
+/// particles in parallel. Every spring is computed twice, once per end.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ constexpr float kMinLengthSq = 1e-30f;
 
 static_assert(kLanes == kPackLanes);
 
-/// The springs of W particles, which begin at lane `lane` of a slice.
+/// Springs of W particles, from lane `lane` of a slice on.
 template <int W, bool kStore, bool kDamped>
 WEFT_ALWAYS_INLINE void springs_of_pack(const MeshPotential& m, int slice, int lane, int part,
                                         LaneSums<W>& energy) {

@@ -4,7 +4,7 @@
 ///      i o----------/\/\/\----------o j        d = x_j − x_i,  l = |d|,  d̂ = d/l
 ///        --->  f_i          f_j <---           f_j = −f_i
 ///
-/// All functions take d [m], so that they do not depend on where the cloth is.
+/// All functions take d [m], so that they do not depend on the cloth's position.
 
 #include <algorithm>
 
@@ -18,15 +18,15 @@ inline double spring_energy(double k, double rest_length, const Vec3& d) {
   return 0.5 * k * extension * extension;
 }
 
-/// Force on i: k (l − l0) d̂ [N]; zero where the ends coincide, for want of a direction.
+/// Force on i: k (l − l0) d̂ [N]; zero for coincident ends, where the direction is undefined.
 inline Vec3 spring_force(double k, double rest_length, const Vec3& d) {
   const double length = d.norm();
   if (length == 0) return Vec3::Zero();
   return (k * (length - rest_length) / length) * d;
 }
 
-/// ∂f_i/∂x_j = −∂f_i/∂x_i = k [d̂d̂ᵀ + (1 − l0/l)(I − d̂d̂ᵀ)] [N/m]. Indefinite where the spring is compressed;
-/// k I where the ends coincide.
+/// ∂f_i/∂x_j = −∂f_i/∂x_i = k [d̂d̂ᵀ + (1 − l0/l)(I − d̂d̂ᵀ)] [N/m]. Indefinite for a compressed spring; k I
+/// for coincident ends.
 inline Mat3 spring_jacobian(double k, double rest_length, const Vec3& d) {
   const double length = d.norm();
   if (length == 0) return k * Mat3::Identity();
@@ -35,8 +35,8 @@ inline Mat3 spring_jacobian(double k, double rest_length, const Vec3& d) {
   return (k - transverse) * u * u.transpose() + transverse * Mat3::Identity();
 }
 
-/// The same with the transverse stiffness clamped at zero: positive semidefinite. Compressed springs then
-/// give way sideways, so that a step made with it must be guarded by a line search.
+/// SPD projection: the same with the transverse stiffness clamped at zero. Compressed springs then have no
+/// lateral stiffness, so that a line search must guard the step.
 inline Mat3 spring_jacobian_clamped(double k, double rest_length, const Vec3& d) {
   const double length = d.norm();
   if (length == 0) return k * Mat3::Identity();

@@ -1,5 +1,5 @@
 #pragma once
-/// Wind (the paper's Eq. 4), per area, so that the mesh does not matter; and the air's drag and lift.
+/// Wind (the paper's Eq. 4), per area and thus independent of the mesh; aerodynamic drag and lift.
 
 #include <span>
 
@@ -11,8 +11,8 @@ namespace weft::engine {
 struct Wind {
   Vec3 velocity = Vec3::Zero();  // of the air [m/s]
   double drag = 0;               // c_w, force per area and relative velocity, >= 0 [N·s/m³]
-  Air air = {};      // by triangles; `newton` and `implicit_euler` know it
-  Gusts gusts = {};  // besides `velocity`; only `air` feels them
+  Air air = {};                  // per triangle; supported by `newton` and `implicit_euler`
+  Gusts gusts = {};              // added to `velocity`; only `air` uses them
 };
 
 struct WindKey {
@@ -23,7 +23,7 @@ struct WindKey {
 /// The velocity at a time: linear between keys, constant outside. At least one key.
 Vec3 wind_velocity(std::span<const WindKey> keys, double time);
 
-/// c_w A (v_wind − v) [N] on a particle that stands for the area A [m²]. Still air brakes too.
+/// c_w A (v_wind − v) [N] on a particle of area A [m²]. Still air brakes too.
 inline Vec3 wind_force(const Wind& wind, double area, const Vec3& velocity) {
   return wind.drag * area * (wind.velocity - velocity);
 }

@@ -13,7 +13,7 @@ constexpr int kMany = -2;
 /// Side k of triangle t is number 3 t + k and goes from its corner k to its corner k + 1.
 struct Sides {
   const std::vector<Triangle>& triangles;
-  std::vector<int> mate;  // the same edge in the only other triangle, kNone on a border, kMany of several
+  std::vector<int> mate;  // matching side in the only other triangle, kNone on a border, kMany for several
 
   int from(int side) const { return triangles[side / 3][side % 3]; }
   int to(int side) const { return triangles[side / 3][(side + 1) % 3]; }
@@ -23,7 +23,7 @@ struct Sides {
     return side - side % 3 + (side % 3 + (to(side) == vertex ? 1 : 2)) % 3;
   }
 
-  /// From a border side around the vertex to the next one, or kNone.
+  /// The next border side around the vertex from a border side, or kNone.
   int next_around(int side, int vertex) const {
     int s = other_at(side, vertex);
     while (mate[s] >= 0) s = other_at(mate[s], vertex);
@@ -46,7 +46,7 @@ Sides build_sides(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-/// For each vertex the lowest one that triangles connect it with.
+/// The lowest vertex of each vertex's connected component.
 std::vector<int> find_pieces(const TriangleMesh& mesh) {
   std::vector<int> piece(mesh.positions.size());
   std::iota(piece.begin(), piece.end(), 0);
@@ -98,7 +98,7 @@ struct BorderBuilder {
     borders.nodes.push_back({vertex, edge, 0, n - 1, n + 1, mesh.positions[vertex]});
   }
 
-  /// The end of an open border against its direction; of a closed one the side and vertex themselves.
+  /// Start of an open border, against its direction; of a closed one the given side and vertex.
   std::pair<int, int> find_start(int side, int from) const {
     const int first = side;
     while (true) {

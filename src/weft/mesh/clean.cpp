@@ -13,17 +13,16 @@
 namespace weft::engine {
 namespace {
 
-/// A triangle thinner than this, as area over longest edge squared, counts as having no area [1].
+/// Minimum thinness, area over longest edge squared, of a nondegenerate triangle [1].
 constexpr double kMinThinness = 1e-10;
 
-/// Borders of different pieces that run within this distance of each other look like an open seam [m].
+/// Distance within which borders of different pieces count as an open seam [m].
 constexpr double kMaxOpenSeam = 0.005;
 
 std::string number(long long n) { return std::to_string(n); }
 
-/// For each vertex the lowest-numbered vertex that it is sewn to: closer than `distance`, directly or through
-/// others. Found by a sweep along a direction that real meshes are not aligned with, so that few vertices
-/// tie.
+/// The lowest-numbered vertex that each vertex merges with: closer than `distance`, directly or through
+/// others. Found by a sweep in a direction to which real meshes are not aligned, so that few vertices tie.
 std::vector<int> find_twins(const std::vector<Vec3>& positions, double distance) {
   const Vec3 direction = Vec3(0.6180, 0.5377, 0.5735).normalized();
   const int n = static_cast<int>(positions.size());
@@ -65,7 +64,7 @@ bool has_area(const TriangleMesh& mesh, int t) {
   return triangle_area(mesh, t) > kMinThinness * longest_sq;
 }
 
-/// Keeps the triangles for which keep(t); returns how many were dropped and the first of them.
+/// Keeps the triangles with keep(t); returns the number of dropped ones and the first of them.
 template <class Keep>
 std::pair<int, int> keep_triangles(CleanMesh& clean, const Keep& keep) {
   TriangleMesh& mesh = clean.mesh;
@@ -116,7 +115,7 @@ void remove_slivers(CleanMesh& clean, double short_edge) {
   static_cast<DerivedMesh&>(clean) = compose(clean, std::move(without));
 }
 
-/// A distance rounded up to one digit that is not 0 [m].
+/// Rounds a distance up to one significant digit [m].
 double round_up(double distance) {
   double unit = 1e-4;
   while (distance > 10 * unit) unit *= 10;
@@ -172,7 +171,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     }
   }
 
-  // Drop triangles that are none.
+  // Drop degenerate triangles.
   const auto [flat, first_flat] = keep_triangles(result, [&](int t) { return has_area(mesh, t); });
   if (flat > 0) {
     warnings.push_back(number(flat) + " triangles without area were dropped (the first is triangle " +
@@ -189,7 +188,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   }
   if (mesh.triangles.empty()) throw InputError("none of the mesh's triangles has an area");
 
-  // Drop vertices that no triangle uses, and close the gaps.
+  // Drop unused vertices, and compact the indices.
   std::vector<int> new_index(source.positions.size(), -1);
   for (const Triangle& tri : mesh.triangles) {
     for (const int v : tri) new_index[v] = 0;

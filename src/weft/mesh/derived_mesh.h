@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh made of another one, and where its parts come from.
+/// A mesh derived from another one, with the origin of its parts.
 
 #include <vector>
 
@@ -9,12 +9,12 @@ namespace weft::engine {
 
 struct DerivedMesh {
   TriangleMesh mesh;
-  std::vector<int> vertex_of_source;  // (vertices of the source) index in `mesh`, -1 where it has none
-  std::vector<int> source_triangle;   // (triangles of `mesh`) which of the source's each is a part of
-  std::vector<CornerWeights> corner_weights;  // (triangles of `mesh`) where in that one its corners lie
+  std::vector<int> vertex_of_source;          // (source vertices) index in `mesh`, -1: none
+  std::vector<int> source_triangle;           // (triangles of `mesh`) source triangle of each
+  std::vector<CornerWeights> corner_weights;  // (triangles of `mesh`) positions of its corners in that one
 };
 
-/// `second`, made of first.mesh, as made of the first's source.
+/// Composition: `second`, derived from first.mesh, as derived from the first's source.
 DerivedMesh compose(const DerivedMesh& first, DerivedMesh second);
 
 }  // namespace weft::engine

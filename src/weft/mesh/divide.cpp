@@ -12,7 +12,7 @@ struct Corner {
   Vec3 weights;  // in the source triangle
 };
 
-using Side = std::vector<Corner>;  // the points inside a side, in its direction
+using Side = std::vector<Corner>;  // points inside a side, in its direction
 
 /// Side k goes from corner k to corner k + 1.
 struct Part {
@@ -20,7 +20,7 @@ struct Part {
   std::array<Side, 3> sides;
 };
 
-/// Two parts, cut from the middle point of side k to the corner across.
+/// Splits a part in two, from the middle point of side k to the opposite corner.
 std::pair<Part, Part> cut(const Part& part, int k) {
   const Side& side = part.sides[k];
   const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
@@ -44,7 +44,7 @@ void add_parts(const Part& part, int source, DividedTriangles& result) {
   result.weights.push_back({a.weights, b.weights, c.weights});
 }
 
-/// The points (sorted by edge and t, a < b) inside the side, from its first corner to its second.
+/// Points (sorted by edge and t, a < b) inside the side, from its first corner to its second.
 Side find_side(const std::vector<EdgePoint>& points, const Corner& from, const Corner& to) {
   const auto [a, b] = std::minmax(from.vertex, to.vertex);
   const auto is_before = [](const EdgePoint& p, const std::pair<int, int>& edge) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A triangle at rest, laid flat in the frame of the cloth: axis 1 along warp, axis 2 along weft.
+/// A triangle's flat rest shape in the frame of the cloth: axis 1 along warp, axis 2 along weft.
 
 #include <array>
 
@@ -9,8 +9,8 @@ namespace weft::engine {
 
 using Vec2 = Eigen::Vector2d;
 
-/// What a linear triangle element needs to know of its rest shape. With X its corners in the plane, corner
-/// c's shape function rises from 0 on the opposite edge to 1 at c, and `gradient[c]` is its slope:
+/// Rest data of a linear triangle element. With X its corners in the plane, corner c's shape function rises
+/// from 0 on the opposite edge to 1 at c, and `gradient[c]` is its gradient:
 ///
 ///          2                 Any field that is linear over the triangle has the gradient
 ///         / \                Σ_c value_c gradient[c]. The three gradients sum to zero.
@@ -21,11 +21,10 @@ struct RestTriangle {
   std::array<Vec2, 3> gradient;  // [1/m]
 };
 
-/// From corners in the plane, in either sense of rotation [m]. The triangle must have an area.
+/// From corners in the plane, in either orientation [m]. The triangle's area must not be zero.
 RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2);
 
-/// Triangle t of a mesh, with axis 1 along its first edge instead of warp: for what is the same in all
-/// directions.
+/// Triangle t of a mesh, with axis 1 along its first edge instead of warp: for isotropic quantities.
 RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t);
 
 }  // namespace weft::engine

@@ -43,7 +43,7 @@ TriangleMesh build_disc_mesh(double radius, int num_rings) {
       const auto [s, c] = sin_cos_deg(60.0 * k / ring);
       mesh.positions.push_back(radius * ring / num_rings * Vec3(c, 0, -s));
     }
-    // Each sixth of a ring has `ring` edges outside and one less inside.
+    // Each sixth of a ring has `ring` outer edges and one fewer inside.
     for (int sixth = 0; sixth < 6; ++sixth) {
       for (int k = 0; k < ring; ++k) {
         const int outer = sixth * ring + k, inner = sixth * (ring - 1) + k;

@@ -11,15 +11,15 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kRounding = 1 + 1e-9;  // of distances that are exactly the one allowed [1]
-constexpr double kMinAligned = 0.5;     // cosine of the angle between borders that run together [1]
+constexpr double kRounding = 1 + 1e-9;  // tolerance for distances of exactly the limit [1]
+constexpr double kMinAligned = 0.5;     // cosine of the angle between parallel borders [1]
 constexpr double kMaxFold = 0.9;        // cosine of the angle between pieces, above: layers (25°) [1]
-constexpr double kReach = 1.5;          // largest distance of two points that meet halfway, in distances [1]
-constexpr double kSnap = 1.0 / 3;       // largest part of an edge not worth dividing it [1]
-constexpr double kMinPace = 0.25;       // of one border's steps against the other's [1]
-constexpr double kMaxAstray = 3;        // how far borders may run apart in between, in distances [1]
-constexpr double kMinLength = 2;        // of a seam, in distances [1]
-constexpr double kMinSlenderness = 10;  // way along a border over the distance across [1]
+constexpr double kReach = 1.5;     // maximum distance of points that meet halfway, in sewing distances [1]
+constexpr double kSnap = 1.0 / 3;  // shares of an edge up to this are not worth dividing it [1]
+constexpr double kMinPace = 0.25;  // minimum speed of one border relative to the other [1]
+constexpr double kMaxAstray = 3;   // maximum separation of borders in between, in sewing distances [1]
+constexpr double kMinLength = 2;   // of a seam, in sewing distances [1]
+constexpr double kMinSlenderness = 10;  // distance along a border over the distance across [1]
 constexpr int kMaxRounds = 50;
 
 std::pair<int, int> sorted(int a, int b) { return std::minmax({a, b}); }
@@ -99,7 +99,7 @@ bool SeamFinder::may_sew(int edge_a, int edge_b) const {
   return a.piece != b.piece || may_sew_to_itself(edge_a, edge_b);
 }
 
-/// Not across the cloth between them, as in a narrow ribbon, and not around a corner of the border.
+/// Excludes sewing across the cloth, as in a narrow ribbon, and around a corner of the border.
 bool SeamFinder::may_sew_to_itself(int edge_a, int edge_b) const {
   const auto& nodes = borders_.nodes;
   const BorderEdge &a = borders_.edges[nodes[edge_a].edge], &b = borders_.edges[nodes[edge_b].edge];
@@ -119,14 +119,14 @@ Vec3 SeamFinder::position(const BorderPlace& place) const {
   return place.t == 0 ? n.position : n.position + place.t * (borders_.nodes[n.next].position - n.position);
 }
 
-/// The part of an edge that comes next, as the node at which it begins; -1 at the end of an open border.
+/// The next part of an edge, as its start node; -1 at the end of an open border.
 int SeamFinder::edge_ahead(const BorderPlace& place, int direction) const {
   if (place.t > 0) return place.node;
   if (direction < 0) return borders_.nodes[place.node].previous;
   return borders_.nodes[place.node].edge < 0 ? -1 : place.node;
 }
 
-/// The next node, or the seam's start where that comes first.
+/// The next node, or the seam's start if that comes first.
 BorderPlace SeamFinder::next_place(const BorderPlace& place, int direction, const BorderPlace& start) const {
   const int edge = edge_ahead(place, direction);
   const bool is_start_ahead = start.t > 0 && start.node == edge &&
@@ -135,14 +135,14 @@ BorderPlace SeamFinder::next_place(const BorderPlace& place, int direction, cons
   return {direction > 0 ? borders_.nodes[edge].next : edge, 0};
 }
 
-/// On the way to the next node.
+/// Interpolates towards the next node.
 BorderPlace SeamFinder::between(const BorderPlace& place, int direction, double share) const {
   const double to = direction > 0 ? 1 : 0;
   const double from = direction < 0 && place.t == 0 ? 1 : place.t;
   return {edge_ahead(place, direction), from + share * (to - from)};
 }
 
-/// Of the mesh, at the place.
+/// Shortest edge of the mesh at the place.
 double SeamFinder::shortest_edge_at(const BorderPlace& place) const {
   const BorderNode& n = borders_.nodes[place.node];
   const bool is_vertex = place.t == 0 && n.t == 0;
@@ -153,7 +153,7 @@ double SeamFinder::shortest_edge_at(const BorderPlace& place) const {
   return length;
 }
 
-/// The distance of p from the border near a place of it.
+/// Distance of p from the border near one of its places.
 double SeamFinder::find_gap(const Vec3& p, const BorderPlace& place) const {
   double nearest = (p - position(place)).norm();
   for (const int direction : {1, -1}) {
@@ -186,7 +186,7 @@ bool SeamFinder::find_step(const Stitch& start, const Stitch& at, int direction_
   }
   const Vec3 from_a = position(at.a), from_b = position(at.b), to_a = position(a), to_b = position(b);
   const double way_a = (to_a - from_a).norm(), way_b = (to_b - from_b).norm();
-  double share_a = point_segment_distance(to_b, from_a, to_a).t;  // of b on the way to a
+  double share_a = point_segment_distance(to_b, from_a, to_a).t;  // of b on the segment to a
   double share_b = point_segment_distance(to_a, from_b, to_b).t;
   const bool must_divide_a = a == start.a, must_divide_b = b == start.b;
   const double snap = kSnap * std::min(shortest_edge_at(a), shortest_edge_at(b));
@@ -198,7 +198,7 @@ bool SeamFinder::find_step(const Stitch& start, const Stitch& at, int direction_
   }
   if (must_divide_a && must_divide_b) return false;
 
-  // The node that is passed first divides the other border: the pair that is nearer.
+  // The node passed first divides the other border: the nearer pair.
   const auto keep_pace = [](double share, double way, double other_way) {
     return share == 1 ? 0.75 : std::max(share, std::min(0.5, kMinPace * other_way / way));
   };
@@ -216,7 +216,7 @@ bool SeamFinder::may_go_on(int edge_a, int edge_b) const {
   return edge_a >= 0 && edge_b >= 0 && edge_a != edge_b && !is_sewn_[edge_a] && !is_sewn_[edge_b];
 }
 
-/// As far as the borders stay near each other; without the end where they no longer run the same way.
+/// Follows both borders while they stay near each other; trims the end where they are no longer parallel.
 SeamFinder::Run SeamFinder::run_along(const Stitch& start, int direction_a, int direction_b) const {
   Run run;
   SeamMeasures all;
@@ -265,7 +265,7 @@ Stitch SeamFinder::make_start(const Seed& seed) const {
   return {a, {seed.other_edge, t}};
 }
 
-/// Both ways from the seed.
+/// Runs both ways from the seed.
 Seam SeamFinder::find_seam(const Seed& seed) const {
   const Stitch start = make_start(seed);
   const BorderEdge &a = borders_.edges[borders_.nodes[seed.edge].edge],
@@ -297,7 +297,7 @@ void SeamFinder::try_seam(const Seed& seed) {
 
 // ---- Sewing
 
-/// Divides edges at the places that are not nodes; the places become the new nodes.
+/// Divides edges at places that are not nodes, and makes them nodes.
 void SeamFinder::divide_at(std::vector<BorderPlace*> places) {
   std::erase_if(places, [](const BorderPlace* p) { return p->t == 0; });
   std::sort(places.begin(), places.end(), [](const BorderPlace* l, const BorderPlace* r) {
@@ -342,7 +342,7 @@ void SeamFinder::sew(Seam& seam) {
   seams_.push_back(std::move(seam));
 }
 
-/// False where it would move a point too far or join two corners of a triangle.
+/// False if it would move a point too far or join two corners of a triangle.
 bool SeamFinder::unite(int vertex_a, int vertex_b) {
   const auto [low, high] = sorted(group_[vertex_a], group_[vertex_b]);
   if (low == high) return true;
@@ -368,7 +368,7 @@ bool SeamFinder::may_unite(const std::vector<int>& group_a, const std::vector<in
   return true;
 }
 
-/// Two neighbours on one edge may still become one where that edge was divided: it is only divided once less.
+/// Two neighbours on a divided edge may still merge: the edge then has one division fewer.
 bool SeamFinder::share_triangle(int a, int b) const {
   const BorderNode &node_a = borders_.nodes[node_of_vertex_[a]], &node_b = borders_.nodes[node_of_vertex_[b]];
   const bool are_neighbours = node_a.next == node_of_vertex_[b] || node_b.next == node_of_vertex_[a];

@@ -1,15 +1,14 @@
 #pragma once
-/// Private to mesh/: which stretches of borders are to be sewn to which, and point by point how.
+/// Private to mesh/: seams between stretches of borders, and their pairs of points.
 ///
 /// A seam is found like a zip. It starts where two borders are nearest and runs both ways along them:
 ///
-///      a0-----a1----*-----a2          at a0|b0: a1 lies beside the edge b0–b1, which is divided there (*);
-///       |      |    |     |           then b1 lies beside a1–a2, which is divided; a2 and b2 lie within a
-///       third
-///      b0------*---b1-----b2          of the shortest edge there: they become one without dividing anything
+///      a0-----a1----*-----a2          at a0|b0: a1 is next to the edge b0–b1, which is divided there (*);
+///       |      |    |     |           then b1 is next to a1–a2, which is divided; a2 and b2 are within
+///      b0------*---b1-----b2          ⅓ of the shortest edge there: they merge without a division
 ///
-/// Both ends only go forward, and each at least a quarter as fast as the other: the order of the points is
-/// never mixed up, however short edges are against the distance and whichever border has more of them.
+/// Both ends only move forward, each at least a quarter as fast as the other: the order of the points is
+/// preserved, for any ratio of edge length to distance and whichever border has more edges.
 
 #include <algorithm>
 #include <set>
@@ -23,11 +22,11 @@ namespace weft::engine {
 /// A point of a border: on the part of an edge from a node to the next.
 struct BorderPlace {
   int node = 0;
-  double t = 0;  // share of that part, in [0, 1); 0 is the node itself [1]
+  double t = 0;  // share of that part, in [0, 1); 0 is the node [1]
   bool operator==(const BorderPlace&) const = default;
 };
 
-/// Two points that become one.
+/// Two points to merge.
 struct Stitch {
   BorderPlace a, b;
   bool operator==(const Stitch&) const = default;
@@ -36,7 +35,7 @@ struct Stitch {
 struct SeamMeasures {
   double length = 0;  // [m]
   double gap = 0;     // largest distance of a point from the other border [m]
-  double fold = 0;    // ∫ cosine of the angle between the pieces: -1 flat, 1 one on the other [m]
+  double fold = 0;    // ∫ cosine of the angle between the pieces: -1 flat, 1 folded [m]
 
   void add(const SeamMeasures& other) {
     length += other.length;
@@ -47,25 +46,24 @@ struct SeamMeasures {
 
 struct Seam {
   std::vector<Stitch> stitches;  // from one end to the other
-  int direction_b = 1;           // a goes along its border; b does (1) or runs against its own (-1)
-  bool is_closed = false;        // the last stitch is followed by the first
+  int direction_b = 1;           // a follows its border; b follows (1) or opposes its own (-1)
+  bool is_closed = false;        // the first stitch follows the last
   int num_divided = 0;           // points at which edges were divided for it
   SeamMeasures measures = {};
 };
 
-/// What has been sewn so far.
+/// State of the sewing.
 class SeamFinder {
  public:
   SeamFinder(const TriangleMesh& mesh, double distance);
 
-  /// Finds and sews seams until there are none left; deterministic. Each stretch of border is sewn once, to
-  /// the nearest other one.
+  /// Finds and sews all seams; deterministic. Each stretch of border is sewn once, to the nearest other one.
   void sew_all();
 
   const Borders& borders() const { return borders_; }
   const std::vector<Seam>& seams() const { return seams_; }
 
-  /// For each vertex of the mesh and of divided edges the lowest one that it is sewn to.
+  /// For each vertex, including those of divided edges, the lowest one that it is sewn to.
   const std::vector<int>& groups() const { return group_; }
   Vec3 mean_position(const std::vector<int>& vertices) const;
   const std::vector<int>& members(int group) const { return members_[group]; }
@@ -78,11 +76,11 @@ class SeamFinder {
     auto operator<=>(const Seed&) const = default;
   };
 
-  /// The step from a stitch to the next, and what it says about the seam.
+  /// Step from one stitch to the next, with its measures of the seam.
   struct Step {
     Stitch to;
     double gap = 0;       // [m]
-    bool closes = false;  // nothing comes after it
+    bool closes = false;  // the seam ends there
   };
 
   struct Run {
@@ -119,11 +117,11 @@ class SeamFinder {
 
   const double distance_;
   Borders borders_;
-  std::vector<char> is_sewn_;                // (nodes) the part of an edge from the node to the next
+  std::vector<char> is_sewn_;                // (nodes) whether the part from the node to the next is sewn
   std::vector<int> group_;                   // (vertices)
-  std::vector<std::vector<int>> members_;    // (vertices) of the group, at its lowest vertex
-  std::vector<int> node_of_vertex_;          // (vertices) of borders; -1 of others
-  std::vector<std::vector<int>> triangles_;  // (vertices) at a border: the triangles around it
+  std::vector<std::vector<int>> members_;    // (vertices) members of the group, at its lowest vertex
+  std::vector<int> node_of_vertex_;          // (vertices) on borders; -1 elsewhere
+  std::vector<std::vector<int>> triangles_;  // (vertices) at a border: its triangles
   std::set<std::pair<int, int>> tried_;      // pairs of BorderEdges, the lower one first
   std::vector<Seam> seams_;
 };

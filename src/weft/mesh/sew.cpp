@@ -9,10 +9,10 @@
 namespace weft::engine {
 namespace {
 
-/// The mesh in the making: divided, its vertices not yet joined.
+/// Intermediate mesh: divided, its vertices not yet joined.
 struct Pieces {
   DividedTriangles divided;
-  std::vector<int> group;      // (vertices) the lowest vertex that each is joined to
+  std::vector<int> group;      // (vertices) lowest vertex of each vertex's group
   std::vector<Vec3> position;  // (vertices) of the group, at its lowest vertex [m]
 };
 
@@ -36,7 +36,7 @@ Triangle joined(const Triangle& t, const std::vector<int>& group) {
   return {group[t[0]], group[t[1]], group[t[2]]};
 }
 
-/// Triangles between points of an edge that have become one.
+/// Drops triangles between merged points of an edge.
 void drop_collapsed(Pieces& pieces) {
   DividedTriangles& d = pieces.divided;
   std::size_t kept = 0;
@@ -52,8 +52,8 @@ void drop_collapsed(Pieces& pieces) {
   d.weights.resize(kept);
 }
 
-/// Edges inside different pieces that have come to lie between the same two vertices: all but one of them
-/// are divided, so that each keeps its own two triangles.
+/// Edges inside different pieces that now connect the same two vertices: all but one of them are divided, so
+/// that each keeps its own two triangles.
 std::vector<EdgePoint> find_doubled_edges(const Pieces& pieces) {
   const std::vector<int>& group = pieces.group;
   std::vector<Edge> edges = build_edges({{}, pieces.divided.triangles});
@@ -85,7 +85,7 @@ void divide_doubled_edges(Pieces& pieces) {
   }
 }
 
-/// Joins the vertices and closes the gaps between their indices.
+/// Joins the vertices and compacts their indices.
 SewnMesh join(Pieces& pieces, int num_source) {
   std::vector<int> index(pieces.group.size(), -1);
   for (const Triangle& t : pieces.divided.triangles) {

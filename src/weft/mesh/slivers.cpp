@@ -9,14 +9,14 @@ namespace weft::engine {
 namespace {
 
 constexpr int kMaxPasses = 20;
-constexpr double kNeedle = 2.5;       // times flatness: edges shorter than that are collapsed [1]
-constexpr double kShort = 0.15;       // share of the longest edge around that a short one is below [1]
-constexpr double kLeastCosine = 0.2;  // between a triangle's normals before and after [1]
+constexpr double kNeedle = 2.5;       // times flatness: shorter edges are collapsed [1]
+constexpr double kShort = 0.15;       // maximum length of a short edge, as a share of the longest around [1]
+constexpr double kLeastCosine = 0.2;  // minimum between a triangle's normals before and after [1]
 
-/// A flat triangle, its corners as places in it: a–b is its longest edge.
+/// A flat triangle with longest edge a–b.
 struct Sliver {
   int triangle = 0, a = 0, b = 0, apex = 0;
-  double along = 0;  // the apex's place on the longest edge, 0 at a [1]
+  double along = 0;  // position of the apex on the longest edge, 0 at a [1]
   int twin = -1;     // a or b if the apex is next to it, else -1
 };
 
@@ -53,7 +53,7 @@ Triangle with(Triangle t, int old_vertex, int new_vertex) {
   return t;
 }
 
-/// Slivers removed one after the other, as long as they have no neighbour in common.
+/// One pass: removes slivers that share no neighbours, one by one.
 class Pass {
  public:
   Pass(const TriangleMesh& mesh, const SliverLimits& limits)
@@ -100,7 +100,7 @@ class Pass {
     return is_touched_[s.a] || is_touched_[s.b] || is_touched_[s.apex];
   }
 
-  /// With all its neighbours.
+  /// Marks a vertex and all its neighbours.
   void touch(int vertex) {
     for (const int t : around_[vertex]) {
       for (const int v : mesh_.triangles[t]) is_touched_[v] = 1;
@@ -139,7 +139,7 @@ class Pass {
 
   double length(int a, int b) const { return (mesh_.positions[b] - mesh_.positions[a]).norm(); }
 
-  /// Of the triangles at a vertex.
+  /// Longest edge of the triangles at a vertex.
   double longest_edge_at(int vertex) const {
     double longest = 0;
     for (const int t : around_[vertex]) {
@@ -168,12 +168,12 @@ class Pass {
   SliverLimits limits_;
   std::vector<std::vector<int>> around_;  // triangles by vertex
   std::vector<char> is_touched_, is_dropped_;
-  std::vector<int> stands_for_;  // (vertices) itself, or what it was collapsed into
+  std::vector<int> stands_for_;  // (vertices) itself, or its vertex after collapses
   std::vector<Part> parts_;
   int num_collapsed_ = 0, num_divided_ = 0;
 };
 
-/// The shortest that can be.
+/// Collapses the shortest possible edge.
 bool Pass::collapse_short_edge(int triangle) {
   const auto& [a, b, c] = mesh_.triangles[triangle];
   if (is_touched_[a] || is_touched_[b] || is_touched_[c]) return false;
@@ -183,7 +183,7 @@ bool Pass::collapse_short_edge(int triangle) {
                              [&](const auto& e) { return is_short(e[0], e[1]) && collapse(e[0], e[1]); });
 }
 
-/// A tip that only one triangle has. Not where what is behind it is a sliver too: a ribbon would be eaten up.
+/// Drops a tip with only one triangle. Not if its neighbour is a sliver too: that would consume a ribbon.
 bool Pass::drop_ear(int tip, int twin) {
   const int ear = around_[tip][0];
   const auto& [a, b, c] = mesh_.triangles[ear];
@@ -198,7 +198,7 @@ bool Pass::drop_ear(int tip, int twin) {
   return false;
 }
 
-/// By the link condition: what both ends are joined to must be the corners opposite to the edge.
+/// Link condition: the common neighbours of both ends must be the corners opposite to the edge.
 bool Pass::collapse(int a, int b) {
   if (around_[a].size() == 1) return drop_ear(a, b);
   if (around_[b].size() == 1) return drop_ear(b, a);
@@ -221,7 +221,7 @@ bool Pass::collapse(int a, int b) {
   return true;
 }
 
-/// Drops it, and divides what else is at its longest edge at the apex.
+/// Drops the sliver, and divides the other triangles of its longest edge at the apex.
 bool Pass::divide(const Sliver& s) {
   std::vector<Part> parts;
   for (const int t : triangles_at(s.a, s.b)) {

@@ -7,9 +7,9 @@
 namespace weft::engine {
 namespace {
 
-/// Seen from above, whether p lies to the left of the line from vertex a to vertex b. Of an edge's two
-/// triangles one asks for a–b and the other for b–a: they get opposite answers. A point on the line is moved
-/// by (ε, ε²) along x and z, so that one right below a vertex or an edge still belongs to one triangle.
+/// Seen from above, whether p is to the left of the line from vertex a to vertex b. Of an edge's two
+/// triangles one tests a–b and the other b–a: the answers are opposite. A point on the line is displaced by
+/// (ε, ε²) along x and z, so that one right below a vertex or an edge still belongs to one triangle.
 bool is_left_of(const std::vector<Vec3>& x, int a, int b, const Vec3& p) {
   if (a > b) return !is_left_of(x, b, a, p);
   const Vec3 along = x[b] - x[a], to_p = p - x[a];
@@ -18,8 +18,7 @@ bool is_left_of(const std::vector<Vec3>& x, int a, int b, const Vec3& p) {
   return along.z() != 0 ? along.z() > 0 : along.x() < 0;
 }
 
-/// 1 if the ray from p upwards leaves through the triangle's front, -1 if it enters through it, 0 if it
-/// misses.
+/// 1 if the ray from p upwards leaves through the triangle's front, -1 if it enters through it, 0 for a miss.
 int cross_upwards(const std::vector<Vec3>& x, const Triangle& tri, const Vec3& p) {
   const auto& [a, b, c] = tri;
   const Vec3 low = x[a].cwiseMin(x[b]).cwiseMin(x[c]), high = x[a].cwiseMax(x[b]).cwiseMax(x[c]);
@@ -34,7 +33,7 @@ int cross_upwards(const std::vector<Vec3>& x, const Triangle& tri, const Vec3& p
   return 0;
 }
 
-/// Triangles that vertices join, shell by shell; shells in the order of their first triangles.
+/// Connected components by vertices: shells in the order of their first triangles.
 std::vector<std::vector<int>> find_shells(const TriangleMesh& mesh) {
   std::vector<int> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -64,7 +63,7 @@ TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles
   return part;
 }
 
-/// Whether a shell is inside the others with nearly all of its vertices.
+/// Whether nearly all vertices of a shell are inside the others.
 bool is_hollow(const TriangleMesh& mesh, const std::vector<int>& shell) {
   constexpr double kNearlyAll = 0.99;
   std::vector<char> is_own(mesh.triangles.size(), 0);
@@ -83,7 +82,7 @@ bool is_hollow(const TriangleMesh& mesh, const std::vector<int>& shell) {
 }  // namespace
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
-  // Edges by the way that triangles run along them.
+  // Edges by their direction in each triangle.
   std::vector<std::pair<int, int>> directed;
   directed.reserve(3 * mesh.triangles.size());
   for (const Triangle& tri : mesh.triangles) {
@@ -107,7 +106,7 @@ SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
 
 double compute_signed_volume(const TriangleMesh& mesh) {
   if (mesh.positions.empty()) return 0;
-  const Vec3 near = mesh.positions[0];  // exact for any; a near one keeps the terms small
+  const Vec3 near = mesh.positions[0];  // correct for any point; a near one keeps the terms small
   double volume = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto& x = mesh.positions;
@@ -129,7 +128,7 @@ Shells turn_shells_outwards(TriangleMesh& mesh) {
 }
 
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
-  // Points in order of x: of each triangle only those in its range of x are asked.
+  // Points sorted by x: each triangle tests only those in its range of x.
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int l, int r) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Triangle meshes as surfaces of solids: whether they close, which way they face, what is inside.
+/// Triangle meshes as surfaces of solids: closedness, orientation, inside test.
 
 #include <span>
 #include <vector>
@@ -8,45 +8,45 @@
 
 namespace weft::engine {
 
-/// How the triangles meet at their edges; every edge of a good solid joins two that run along it in opposite
-/// directions.
+/// Edge statistics of a surface; every edge of a valid solid joins two triangles that run along it in
+/// opposite directions.
 struct SurfaceEdges {
   int border = 0;        // edges of one triangle
   int non_manifold = 0;  // of more than two
-  int twisted = 0;       // of two that run along it in the same direction: one of them faces the wrong way
-  int unbalanced = 0;    // more triangles run along it in one direction than in the other: all but the good
-                         // ones, and those at which several good solids meet
+  int twisted = 0;       // of two that run along it in the same direction: one faces the wrong way
+  /// More triangles run along it in one direction than in the other: all but valid edges, and those at which
+  /// several valid solids meet.
+  int unbalanced = 0;
 };
 
 SurfaceEdges count_surface_edges(const TriangleMesh& mesh);
 
-/// True if every edge is balanced: the surface divides space into inside and outside, and all of it faces
-/// outwards, or all of it inwards.
+/// True if every edge is balanced: the surface divides space into inside and outside, and faces consistently
+/// outwards or inwards.
 inline bool is_closed(const SurfaceEdges& edges) { return edges.unbalanced == 0; }
 
-/// The volume inside a closed mesh that faces outwards, negative if it faces inwards [m³]:
+/// Volume of a closed mesh that faces outwards, negative if it faces inwards [m³]:
 ///
-///     V = Σ a·(b × c)/6   over the triangles a b c; a hollow's volume is taken off, overlap counts twice
+///     V = Σ a·(b × c)/6   over the triangles a b c; hollows are subtracted, overlaps count twice
 ///
-/// Of an open mesh the number depends on where it lies and means nothing.
+/// For an open mesh the number depends on its position and is meaningless.
 double compute_signed_volume(const TriangleMesh& mesh);
 
-/// Of a closed mesh's shells, its parts that no vertex joins.
+/// Shells of a closed mesh: its components connected by vertices.
 struct Shells {
   int count = 0;
-  int turned = 0;  // that faced inwards
+  int turned = 0;  // those that faced inwards
 };
 
-/// Turns the shells that face inwards right side out, but for hollows: those that are inside other shells
-/// altogether.
+/// Flips shells that face inwards, except hollows: shells completely inside other shells.
 Shells turn_shells_outwards(TriangleMesh& mesh);
 
-/// How often a closed mesh winds around each point (num_points): 1 inside where it faces outwards, -1 where
-/// it faces inwards, 0 outside and in hollows, 2 where two parts overlap. Found by the triangles above the
-/// point; an edge that two of them share is counted for exactly one. Points on the surface may go either way.
+/// Winding number of a closed mesh around each point (num_points): 1 inside where it faces outwards, -1 where
+/// it faces inwards, 0 outside and in hollows, 2 where two parts overlap. Found from the triangles above the
+/// point; a shared edge counts for exactly one triangle. Results for points on the surface are arbitrary.
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points);
 
-/// The same of one point; `triangles` are those of the mesh, `positions` may hold more than its vertices.
+/// Winding number of one point; `triangles` are the mesh's, `positions` may contain more than its vertices.
 int compute_winding_number(std::span<const Triangle> triangles, const std::vector<Vec3>& positions,
                            const Vec3& point);
 

@@ -51,7 +51,7 @@ std::vector<double> compute_vertex_areas(const TriangleMesh& mesh) {
 }
 
 std::vector<Edge> build_edges(const TriangleMesh& mesh) {
-  // One half edge per side of a triangle; equal edges meet by sorting. The triangle's number breaks ties.
+  // One half edge per side of a triangle, matched by sorting. The triangle's number breaks ties.
   struct HalfEdge {
     int a, b, opposite, triangle;
   };
@@ -108,8 +108,7 @@ TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings) {
 }
 
 TriangleMesh make_capsule_mesh(const Vec3& a, const Vec3& b, double radius, int rings) {
-  // A sphere with an even number of rings, so that one lies on the equator, which is cut there and pulled
-  // apart.
+  // A sphere with an even number of rings, cut and pulled apart at its equatorial ring.
   const int half = std::max(rings / 2, 1), segments = 4 * half;
   const Vec3 axis = b - a;
   const Mat3 rotation = axis.norm() > 0

@@ -1,5 +1,5 @@
 #pragma once
-/// A triangle mesh: shapes and indices, no physics.
+/// A triangle mesh: positions and indices, no physics.
 
 #include <array>
 #include <vector>
@@ -9,16 +9,16 @@
 
 namespace weft::engine {
 
-/// Texture coordinates of a triangle's corners: across a seam the same vertex has several.
+/// Texture coordinates of a triangle's corners: a vertex on a texture seam has several.
 using CornerUv = std::array<Eigen::Vector2d, 3>;
 
-/// Where the corners of a part of a triangle lie in it: barycentric coordinates by corner, each summing to 1.
+/// Corners of a part of a triangle, in it: barycentric coordinates by corner, each summing to 1.
 using CornerWeights = std::array<Vec3, 3>;
 
-/// A triangle's corners in itself.
+/// Identity: a triangle's corners in itself.
 inline CornerWeights make_whole_weights() { return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}; }
 
-/// Texture coordinates of a part of a triangle; corners without any (not a number) spoil no others.
+/// Texture coordinates of a part of a triangle; corners without any (NaN) do not affect others.
 CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights);
 
 struct TriangleMesh {
@@ -57,11 +57,11 @@ std::vector<Edge> build_edges(const TriangleMesh& mesh);
 /// A sphere of about `rings` rings of triangles, for display.
 TriangleMesh make_sphere_mesh(const Vec3& center, double radius, int rings);
 
-/// The capsule around the segment a–b, outward, for display: its halves of a sphere have about `rings` rings
+/// The capsule around the segment a–b, outward, for display: its two hemispheres have about `rings` rings
 /// together.
 TriangleMesh make_capsule_mesh(const Vec3& a, const Vec3& b, double radius, int rings);
 
-/// A box turned by `rotation` around its centre, outward, for display: each face has corners of its own, so
+/// A box rotated by `rotation` around its centre, outward, for display: each face has its own corners, so
 /// that edges are drawn sharp.
 TriangleMesh make_box_mesh(const Vec3& center, const Vec3& half_size, const Mat3& rotation);
 

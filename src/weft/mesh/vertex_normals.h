@@ -1,5 +1,5 @@
 #pragma once
-/// Normals to draw meshes with.
+/// Vertex normals for rendering.
 
 #include <span>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace weft::engine {
 
-/// Unit normals of the vertices (num_vertices x 3), by area: the sum of the cross products of the triangles
-/// around. Up where that is too short to have a direction. `positions` are (num_vertices x 3) [m].
+/// Area-weighted unit normals of the vertices (num_vertices x 3): sums of the cross products of the triangles
+/// around. Up if the sum is too short. `positions` are (num_vertices x 3) [m].
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions);
 

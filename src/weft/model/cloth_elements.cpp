@@ -23,7 +23,7 @@ std::vector<Coupling> find_couplings(const ClothElements& elements) {
   return couplings;
 }
 
-/// By the area of all triangles and the mean length of a right-angled one's legs.
+/// From the area of all triangles and the mean leg length of equivalent right-angled ones.
 StrainLimit find_limit(const std::vector<MembraneElement>& membranes, const Fabric& fabric) {
   double area = 0;
   for (const MembraneElement& m : membranes) area += m.rest.area;
@@ -59,7 +59,7 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
 std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
                                                                  const Fabric& fabric) {
   ClothElements elements;
-  // Per unit of length, a tension per width is one edge's force.
+  // Per unit of length, so that a tension per width is the force of one edge.
   elements.spring_limit = make_strain_limit(fabric, grid.size_x * grid.size_z, 1);
   elements.bending = build_grid_bending(grid, warp, fabric);
   elements.damping = fabric.damping;

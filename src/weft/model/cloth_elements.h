@@ -1,5 +1,5 @@
 #pragma once
-/// A fabric on a cloth's triangles: what stretches, shears and bends where there are no springs.
+/// Elements of a fabric on a cloth's triangles: membranes and bending in place of springs.
 
 #include <memory>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace weft::engine {
 
-/// An entry of a matrix that is the same for x, y and z: ½ stiffness |x_j − x_i|².
+/// An entry of a matrix that is equal for x, y and z: ½ stiffness |x_j − x_i|².
 struct Coupling {
   int i = 0, j = 0;      // particles, i < j
   double stiffness = 0;  // > 0 [N/m]
@@ -19,15 +19,15 @@ struct Coupling {
 struct ClothElements {
   Mat3 stiffness = Mat3::Zero();  // of every membrane [N/m]
   StrainLimit limit;              // of every membrane
-  StrainLimit spring_limit;       // of structural and shear springs, where they are the membranes
-  std::vector<StretchKink> stretch_warp, stretch_weft;  // likewise
+  StrainLimit spring_limit;       // of structural and shear springs that replace membranes
+  std::vector<StretchKink> stretch_warp, stretch_weft;  // of every membrane
   std::vector<MembraneElement> membranes;               // one per triangle
-  BendingRows bending;                                  // curvature stencils; none if there are hinges
-  std::vector<HingeElement> hinges;                     // flat at rest; none if there are stencils
+  BendingRows bending;                                  // curvature stencils; empty with hinges
+  std::vector<HingeElement> hinges;                     // flat at rest; empty with stencils
   double damping = 0;                                   // time constant τ of all of them [s]
-  std::optional<GridWarp> grid_warp;  // set: the triangles are a grid's, with warp along one of its axes
-  /// The membranes' Hessian at rest, roughly, as the paper's constant matrix (Eq. 11) is for springs: the
-  /// positive cotangent weights times (C11 + C22)/2, by ascending i and j.
+  std::optional<GridWarp> grid_warp;  // set: triangles of a grid, with warp along one of its axes
+  /// Approximation of the membranes' Hessian at rest, the counterpart of the paper's constant spring matrix
+  /// (Eq. 11): the positive cotangent weights times (C11 + C22)/2, by ascending i and j.
   std::vector<Coupling> couplings;
 
   MembraneLaw law() const { return {stiffness, limit, stretch_warp, stretch_weft}; }
@@ -36,19 +36,19 @@ struct ClothElements {
 
 enum class BendingModel {
   stencils,  // the same rigidity in every direction, a constant Hessian
-  hinges,    // angles between triangles, as most engines have it; stiffer along the mesh's diagonals
+  hinges,    // angles between triangles, as in most engines; stiffer along the mesh's diagonals
 };
 
-/// Of a grid and its mesh. The stencils are those of the grid, whatever way its cells are cut.
+/// Elements of a grid and its mesh. The stencils are the grid's, independent of its cells' diagonals.
 std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 
-/// The grid's bending alone, beside springs that stand for the membranes, and their strain limit.
+/// A grid's bending only, for springs that replace membranes, and their strain limit.
 std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& grid, GridWarp warp,
                                                                  const Fabric& fabric);
 
-/// A mesh's bending alone, likewise. There is no strain limit.
+/// A mesh's bending only, likewise. There is no strain limit.
 std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleMesh& mesh,
                                                                  const WarpField& warp, const Fabric& fabric);
 

@@ -1,8 +1,8 @@
 #pragma once
-/// A cloth's constants: what it is made of and how it hangs together. What moves is ClothState.
+/// A cloth's constants: material and topology. Its variables are in ClothState.
 ///
 /// Topology never changes. Material numbers (mass, stiffness, damping) may be replaced between any two steps:
-/// that makes a new ClothModel on the same ClothTopology, and nothing but numbers is computed again.
+/// that creates a new ClothModel on the same ClothTopology, and recomputes only numbers.
 
 #include <cstdint>
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace weft::engine {
 
-/// The numbers of a cloth made of springs.
+/// Material of a cloth made of springs.
 struct ClothMaterial {
   double density = 0.2;      // mass per area, > 0 [kg/m²]
   double structural = 2000;  // stiffness of structural springs, >= 0 [N/m]
@@ -25,16 +25,16 @@ struct ClothMaterial {
   double bend = 20;          // of bending springs, >= 0 [N/m]
   double damping = 0;        // of every spring, >= 0 [N·s/m]
   DampingKind damping_kind = DampingKind::projected;
-  double thickness = 1e-3;  // cloth keeps half of it from colliders, all of it from itself, >= 0 [m]
-  double friction = 0.3;    // Coulomb's coefficient of cloth on cloth, >= 0 [1]
+  double thickness = 1e-3;  // distance between layers; half of it to colliders, >= 0 [m]
+  double friction = 0.3;    // Coulomb coefficient of cloth on cloth, >= 0 [1]
 
-  // Of springs that stand for a fabric (see make_grid_springs, make_mesh_springs); integrators that move
-  // elements know them.
+  // Springs that represent a fabric (see make_grid_springs, make_mesh_springs); supported by the integrators
+  // that support elements.
   std::optional<double> structural_z;  // of a grid's structural springs along the second axis; those on the
                                        // border, of both axes, then have half their stiffness [N/m]
-  double damping_time = 0;             // τ: every spring of stiffness k has τ k more damping, >= 0 [s]
+  double damping_time = 0;             // τ: additional damping τ k of every spring of stiffness k, >= 0 [s]
 
-  /// Of each spring of the topology, in its order: what the stiffness above is multiplied by, >= 0; empty: 1.
+  /// Multiplier of each spring's stiffness, in the topology's order, >= 0; empty: 1.
   std::vector<double> spring_factors;
 };
 
@@ -49,20 +49,19 @@ struct ClothTopology {
   int num_particles() const { return mesh.num_vertices(); }
 };
 
-/// Throws InputError for a grid that cannot be.
+/// Throws InputError for an invalid grid.
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model);
 
-/// The mesh must be clean (see clean_mesh). Its positions are the rest shape. Throws InputError for a mesh
-/// that cannot be.
+/// The mesh must be clean (see clean_mesh). Its positions are the rest shape. Throws InputError for an
+/// invalid mesh.
 std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh);
 
 struct ClothModel {
-  std::uint64_t id =
-      0;  // no two models of a process share it: what is computed from a model can be kept by id
+  std::uint64_t id = 0;  // unique in the process: a cache key for data computed from a model
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
-  /// A fabric's membranes and bending, or bending alone where springs stand for the membranes; null: none.
-  /// `newton`, `implicit_euler` and `xpbd` know them.
+  /// A fabric's membranes and bending, or only bending where springs replace membranes; null: none. Supported
+  /// by `newton`, `implicit_euler` and `xpbd`.
   std::shared_ptr<const ClothElements> elements;
   std::vector<double> mass;            // (num_particles) [kg]
   std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]
@@ -73,13 +72,13 @@ struct ClothModel {
 
   int num_particles() const { return topology->num_particles(); }
 
-  /// Whether all springs of a direction are equal: those of a grid without factors.
+  /// Whether all springs of a direction are equal: on a grid without factors.
   bool has_equal_springs() const { return topology->grid && material.spring_factors.empty(); }
 
-  /// The springs around each particle; empty where all of a direction are equal.
+  /// Springs around each particle; empty if all of a direction are equal.
   const NeighbourTable& table() const { return topology->grid ? own_table : topology->table; }
 
-  /// Stiffness of the springs of a kind, before factors [N/m].
+  /// Stiffness by spring kind, before factors [N/m].
   double stiffness(SpringKind kind) const {
     switch (kind) {
       case SpringKind::structural:
@@ -98,13 +97,13 @@ struct ClothModel {
   }
 };
 
-/// Throws InputError if there are spring factors, but not as many as springs, or one is negative or not
-/// finite.
+/// Throws InputError for a number of spring factors other than that of springs, or a factor that is negative
+/// or not finite.
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
                                                     const ClothMaterial& material,
                                                     std::shared_ptr<const ClothElements> elements = nullptr);
 
-/// The same cloth with `added` (num_particles) on its particles' masses [kg].
+/// The same cloth with masses increased by `added` (num_particles) [kg].
 std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
                                                       const std::vector<double>& added);
 

@@ -6,16 +6,15 @@ namespace weft::engine {
 namespace {
 
 /// The origin lies on a lattice of this pitch [m]. Steps of a power of two make the subtraction exact for
-/// every offset that shrinks; only offsets that grow (parts of the cloth nearer the old origin) are rounded
-/// again.
+/// every shrinking offset; only growing offsets (cloth parts nearer the old origin) are rounded again.
 constexpr double kOriginPitch = 0.25;
 
-/// How far the cloth's middle may be from the origin before the origin follows [m].
+/// Maximum distance of the cloth's centre from the origin before the origin moves [m].
 constexpr double kMaxDrift = 2.0;
 
 Vec3 round_to_lattice(const Vec3& p) { return (p / kOriginPitch).array().round().matrix() * kOriginPitch; }
 
-/// Middle of the bounding box of the offsets.
+/// Centre of the bounding box of the offsets.
 Vec3 middle(const Vec3Array& x) {
   Vec3 low = x.get(0), high = x.get(0);
   for (std::size_t i = 1; i < x.size(); ++i) {

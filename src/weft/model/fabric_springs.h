@@ -1,5 +1,5 @@
 #pragma once
-/// Springs that stand for a fabric's membrane, as a cloth's material.
+/// Springs that replace a fabric's membrane, as a cloth's material.
 
 #include "weft/fabric/grid_springs.h"
 #include "weft/fabric/mesh_springs.h"
@@ -7,10 +7,10 @@
 
 namespace weft::engine {
 
-/// The members of `material` that these springs and the fabric's damping determine; the others stay.
+/// Sets the members of `material` that these springs and the fabric's damping determine; the others stay.
 void set_fabric_springs(const GridSprings& springs, const Fabric& fabric, ClothMaterial& material);
 
-/// … for a cloth of this topology, which build_mesh_topology() has made of the springs' mesh.
+/// For a cloth of this topology, built by build_mesh_topology() from the springs' mesh.
 void set_fabric_springs(const MeshSprings& springs, const ClothTopology& topology, const Fabric& fabric,
                         ClothMaterial& material);
 

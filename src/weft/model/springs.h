@@ -1,5 +1,5 @@
 #pragma once
-/// Which particles a spring joins: the paper's models on grids, and their counterpart on triangle meshes.
+/// Springs between particles: the paper's models on grids, and their counterpart on triangle meshes.
 ///
 ///   basic (Provot)        simplified (the paper)     alternating
 ///   o---o---o             o---o---o                  o---o---o
@@ -9,8 +9,8 @@
 ///   o---o---o             o---o---o                  o---o---o
 ///
 /// plus, in all three, bending springs to the particles two away along rows and columns. A triangulated
-/// mesh's edges are exactly "structural + one shear", so on meshes every edge is a structural spring and a
-/// bending spring joins the two vertices opposite to each inner edge; the model then makes no difference.
+/// mesh's edges are exactly "structural + one shear". On meshes, therefore, every edge is a structural spring
+/// and a bending spring joins the two vertices opposite to each inner edge; the model makes no difference.
 
 #include <string_view>
 #include <vector>
@@ -30,7 +30,7 @@ struct Spring {
   double rest_length = 0;  // [m]
 };
 
-/// The triangles' diagonals that go with a model (`basic` has both springs; its triangles alternate).
+/// Triangle diagonals of a model (`basic` has both springs; its triangles alternate).
 GridDiagonals diagonals_of(SpringModel model);
 
 std::vector<Spring> build_grid_springs(const Grid& grid, SpringModel model);

@@ -8,8 +8,8 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kMaxElevation = 89;  // straight down has no up [degrees]
-constexpr double kMargin = 1.06;      // of the picture around what it frames [1]
+constexpr double kMaxElevation = 89;  // looking straight down, up is undefined [degrees]
+constexpr double kMargin = 1.06;      // margin of the picture around the framed points [1]
 
 double half_height(double fov_deg) {
   const SinCos half = sin_cos_deg(fov_deg / 2);
@@ -80,8 +80,8 @@ Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double 
   Camera camera = like;
   if (points.empty()) return camera;
   const double half_y = half_height(like.fov_deg) / kMargin, half_x = half_y * aspect;
-  // In the camera's axes each point bounds four planes of the pyramid: the eye lies where opposite bounds
-  // meet.
+  // In the camera's axes each point bounds four planes of the view pyramid: the eye is at the intersection of
+  // opposite bounds.
   camera.target = Vec3::Zero();
   camera.distance = 0;
   double left = -1e30, right = -1e30, below = -1e30, above = -1e30;
@@ -93,7 +93,7 @@ Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double 
     below = std::max(below, -v.y() / half_y - v.z());
   }
   const double x = half_x * (right - left) / 2, y = half_y * (above - below) / 2;
-  const double back = std::max(right + left, above + below) / 2;  // how far the eye is before the origin
+  const double back = std::max(right + left, above + below) / 2;  // distance of the eye from the origin
   double depth = 0;
   for (const Vec3& p : points) depth += in_view(camera, p).z() / static_cast<double>(points.size());
   camera.distance = std::max(back + depth, 1e-3);

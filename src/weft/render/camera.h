@@ -1,5 +1,5 @@
 #pragma once
-/// Where a picture is taken from.
+/// Camera of a picture.
 
 #include <vector>
 
@@ -20,10 +20,10 @@ struct Ray {
   Vec3 origin, direction;  // unit direction [m, 1]
 };
 
-/// A perspective camera that looks at a point; Y is up.
+/// A perspective camera aimed at a point; Y is up.
 ///
-///     eye o - - - - - > target        azimuth turns the eye about the vertical through the target,
-///                                     elevation lifts it
+///     eye o - - - - - > target        azimuth rotates the eye about the vertical through the target,
+///                                     elevation raises it
 struct Camera {
   Vec3 target = Vec3::Zero();  // [m]
   double distance = 3;         // from eye to target, > 0 [m]
@@ -36,22 +36,22 @@ struct Camera {
   Vec3 right() const;    // unit
   Vec3 up() const;       // of the picture, unit
 
-  /// World to camera; the camera looks along −z.
+  /// World to camera; the viewing direction is −z.
   Mat4 view() const;
 
-  /// Camera to clip space, as OpenGL has it. Depths near to far [m] become −1 to 1.
+  /// Camera to clip space, by OpenGL's convention. Depths near to far [m] become −1 to 1.
   static Mat4 projection(double fov_deg, double aspect, double near, double far);
 
-  /// The ray through a pixel's place; (0, 0) is the upper left corner of the picture [pixels].
+  /// Ray through a position in pixels; (0, 0) is the upper left corner of the picture.
   Ray ray(double x, double y, PictureSize size) const;
 
-  /// What the mouse does. Angles in degrees; `pan` moves the target by shares of the picture's height.
+  /// Mouse control. Angles in degrees; `pan` moves the target by shares of the picture's height.
   void orbit(double azimuth_deg, double elevation_deg);
   void pan(double right_share, double up_share);
   void zoom(double factor);  // > 1: away
 };
 
-/// The camera turned as `like`, at the smallest distance from which all points are in the picture, with a
+/// A camera oriented as `like`, at the smallest distance at which all points are in the picture, with a
 /// margin.
 Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double aspect);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The seam between what is drawn and what draws it: OpenGL, or a mock that checks every call.
+/// Graphics device interface: OpenGL, or a mock that checks every call.
 
 #include <cstdint>
 #include <memory>
@@ -16,22 +16,22 @@
 
 namespace weft::engine {
 
-/// This machine cannot draw: what is missing, and what to do.
+/// No graphics on this machine: the missing part, and a remedy.
 class GraphicsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Programs of the graphics card; their sources are in shaders.h.
+/// GPU programs; their sources are in shaders.h.
 enum class Program { depth, occlusion, blur, sky, fabric, solid, ground, line, dot };
 
-/// A picture in the device's memory that passes draw to and read from.
+/// A render target in the device's memory, to draw to and read from.
 struct TargetDesc {
   enum class Format { depth, gray, color };
 
   Format format = Format::color;
   int width = 0, height = 0;  // > 0 [pixels]
-  int samples = 1;            // per pixel; more than one cannot be read by programs
+  int samples = 1;            // per pixel; programs can read only single-sample targets
 
   bool operator==(const TargetDesc&) const = default;
 };
@@ -44,7 +44,7 @@ struct GeometryId {
   int index = -1;
 };
 
-/// A target as a texture, read as it is or compared with a depth (for shadows).
+/// A target as a texture, sampled directly or by depth comparison (for shadows).
 struct Texture {
   TargetId target;
   bool compares = false;
@@ -57,20 +57,20 @@ struct Uniform {
   UniformValue value;
 };
 
-/// A vertex as programs see it: position, normal, fabric coordinates.
+/// Vertex layout of the programs: position, normal, fabric coordinates.
 constexpr int kFloatsPerVertex = 8;
 
-/// Nothing but a triangle that covers the target.
+/// Only a triangle that covers the target.
 struct WholeTarget {};
 
-/// Four corners for each line (two ends) or dot (one place), three floats a place.
+/// Four corners for each line (two ends) or dot (one position), three floats per position.
 struct Instances {
   std::span<const float> places;
 };
 
 struct DrawCall {
   Program program = Program::depth;
-  std::vector<Uniform> uniforms;  // all that the program has, in any order
+  std::vector<Uniform> uniforms;  // all uniforms of the program, in any order
   std::variant<WholeTarget, GeometryId, Instances> what;
 };
 
@@ -84,32 +84,32 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  /// The same description asked for again with the same `name` gives the same target.
+  /// Repeated calls with the same description and `name` return the same target.
   virtual TargetId target(std::string_view name, const TargetDesc& desc) = 0;
 
   /// Vertices (n x kFloatsPerVertex) and triangles; valid until forget_geometry().
   virtual GeometryId upload(std::span<const float> vertices, std::span<const Triangle> triangles) = 0;
   virtual void forget_geometry() = 0;
 
-  /// From now on draws to `target`, which is emptied first: farthest depth, transparent black.
+  /// Starts drawing to `target`, cleared to the farthest depth and transparent black.
   virtual void begin_pass(TargetId target) = 0;
   virtual void draw(const DrawCall& call) = 0;
 
   /// Averages the samples of `from` into `to`, of the same size.
   virtual void resolve(TargetId from, TargetId to) = 0;
 
-  /// What is in a colour target of one sample.
+  /// Contents of a colour target of one sample.
   virtual Image read(TargetId target) = 0;
 
-  /// Copies a colour target to a part of the window, larger or smaller, where there is a window.
+  /// Copies a colour target to a part of the window, scaled, if there is a window.
   virtual void show(TargetId target, const WindowPart& part) = 0;
 };
 
-/// OpenGL 3.3 or later in the context that is current on this thread, and stays so. Throws GraphicsError.
+/// OpenGL 3.3 or later in the context that is current on this thread, and must stay so. Throws GraphicsError.
 std::unique_ptr<Device> make_gl_device();
 
-/// OpenGL without a display, through EGL; its own context is made current on this thread. Throws
-/// GraphicsError where there is no EGL or no OpenGL 3.3.
+/// Offscreen OpenGL through EGL; makes its own context current on this thread. Throws GraphicsError without
+/// EGL or OpenGL 3.3.
 std::unique_ptr<Device> make_offscreen_device();
 
 }  // namespace weft::engine

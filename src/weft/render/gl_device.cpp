@@ -203,7 +203,7 @@ class GlDevice : public Device {
     GLsizei num_indices = 0;
   };
 
-  /// Drivers compile when a program is first used.
+  /// Lazy linking: drivers compile a program at its first use.
   GLuint linked(Program program) {
     GLuint& known = programs_[static_cast<std::size_t>(program)];
     if (known == 0) known = link(shader_source(program));
@@ -233,7 +233,7 @@ class GlDevice : public Device {
     return buffer;
   }
 
-  /// One sample: a texture that programs can read. Several: buffers to draw to, with depth.
+  /// One sample: a texture that programs can read. Several: renderbuffers with depth.
   static Target make(const TargetDesc& desc) {
     Target target{.desc = desc};
     glGenFramebuffers(1, &target.framebuffer);
@@ -290,7 +290,7 @@ class GlDevice : public Device {
     }
   }
 
-  /// Each instance has `places_each` attributes of three floats, and is drawn as a strip of two triangles.
+  /// Each instance has `places_each` attributes of three floats, drawn as a strip of two triangles.
   void draw_instances(const Instances& instances, int places_each) {
     glBindVertexArray(instances_);
     glBindBuffer(GL_ARRAY_BUFFER, places_);
@@ -311,7 +311,7 @@ class GlDevice : public Device {
                           static_cast<GLsizei>(instances.places.size()) / (3 * places_each));
   }
 
-  /// Samples with nothing in them have left colour times coverage.
+  /// Resolving with empty samples has multiplied colour by coverage.
   static void undo_premultiplication(Image& image) {
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
       const int alpha = image.rgba[i + 3];

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures in memory, and as files.
+/// Images in memory and as files.
 
 #include <cstdint>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace weft::engine {
 
-/// Rows from the top, four bytes a pixel: sRGB red, green, blue, and alpha (not premultiplied).
+/// Rows from the top, four bytes per pixel: sRGB red, green, blue, and alpha (not premultiplied).
 struct Image {
   int width = 0, height = 0;       // [pixels]
   std::vector<std::uint8_t> rgba;  // (height x width x 4)
@@ -21,16 +21,16 @@ struct Image {
   std::uint8_t* pixel(int x, int y) { return rgba.data() + 4 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-/// Pictures of one size side by side in rows of `columns` (>= 1), `gap` pixels of white apart.
+/// Contact sheet: images of one size in rows of `columns` (>= 1), separated by `gap` white pixels.
 Image make_contact_sheet(const std::vector<Image>& images, int columns, int gap);
 
-/// Whether the file's ending is one that write_image knows: .png, or .jpg, which forgets alpha.
+/// Whether write_image supports the file's extension: .png, or .jpg, which drops alpha.
 bool is_picture(const std::filesystem::path& file);
 
-/// Replaces the file whole. Throws InputError if it cannot be written.
+/// Replaces the file atomically. Throws InputError if it cannot be written.
 void write_image(const std::filesystem::path& file, const Image& image);
 
-/// Throws InputError if the file cannot be read or is no PNG.
+/// Throws InputError if the file cannot be read or is not a PNG.
 Image read_png(const std::filesystem::path& file);
 
 }  // namespace weft::engine

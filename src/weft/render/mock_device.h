@@ -1,5 +1,5 @@
 #pragma once
-/// A device that draws nothing, and checks everything: for tests on machines without OpenGL.
+/// A device that checks all calls and draws nothing: for tests on machines without OpenGL.
 
 #include <string>
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace weft::engine {
 
-/// Throws std::logic_error, saying what is wrong, for calls that OpenGL would refuse or silently get wrong:
-/// uniforms that the program does not have, lacks, or has as another type, numbers that are not finite,
-/// indices out of range, a texture that is being drawn to, targets of unequal sizes.
+/// Throws std::logic_error, with the reason, for calls that OpenGL would reject or silently mishandle:
+/// uniforms that are unknown to the program, missing, or of another type, non-finite numbers, indices out of
+/// range, a texture that is also the render target, targets of unequal sizes.
 class MockDevice : public Device {
  public:
-  /// What was asked for, in order: "pass shadow", "draw depth", "resolve colour picture", "read picture".
+  /// Calls in order: "pass shadow", "draw depth", "resolve colour picture", "read picture".
   const std::vector<std::string>& log() const { return log_; }
 
   /// Triangles, lines and dots drawn since the last pass began [1].
@@ -38,8 +38,8 @@ class MockDevice : public Device {
   void check_uniforms(const DrawCall& call) const;
 
   std::vector<Target> targets_;
-  std::vector<int> geometries_;  // triangles of each
-  int pass_ = -1;                // target that is drawn to
+  std::vector<int> geometries_;  // number of triangles of each
+  int pass_ = -1;                // current render target
   int num_drawn_ = 0;
   std::vector<std::string> log_;
 };

@@ -35,7 +35,7 @@ class EglContext {
   void make_current() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_); }
 
  private:
-  /// Mesa's surfaceless platform needs no display server; else whatever EGL takes for its default.
+  /// Mesa's surfaceless platform, which needs no display server; else EGL's default.
   static EGLDisplay find_display() {
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
       const EGLDisplay display =
@@ -70,7 +70,7 @@ class EglContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// The OpenGL device, and the context that it draws in.
+/// The OpenGL device with its context.
 class OffscreenDevice : public Device {
  public:
   TargetId target(std::string_view name, const TargetDesc& desc) override { return gl().target(name, desc); }
@@ -85,7 +85,7 @@ class OffscreenDevice : public Device {
   void show(TargetId, const WindowPart&) override {}  // no window
 
  private:
-  /// Several devices of one thread take turns.
+  /// Makes its context current: several devices may share a thread.
   Device& gl() {
     context_.make_current();
     return *device_;

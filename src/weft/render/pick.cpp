@@ -8,7 +8,7 @@
 namespace weft::engine {
 namespace {
 
-/// Where a ray meets a triangle (Möller and Trumbore 1997).
+/// Intersection of a ray with a triangle (Möller and Trumbore 1997).
 struct Meeting {
   double t;
   Vec3 weights;

@@ -1,5 +1,5 @@
 #pragma once
-/// What is under the mouse.
+/// Picking: meshes under the mouse.
 
 #include <optional>
 #include <span>
@@ -12,11 +12,11 @@ namespace weft::engine {
 struct Hit {
   int mesh = 0, triangle = 0;   // indices
   Vec3 weights = Vec3::Zero();  // of the triangle's corners, sum 1 [1]
-  Vec3 point = Vec3::Zero();    // where the ray meets it [m]
+  Vec3 point = Vec3::Zero();    // intersection with the ray [m]
   double distance = 0;          // from the ray's origin [m]
 };
 
-/// The first triangle that the ray meets, from either side; of equally near ones the first.
+/// The nearest triangle on the ray, from either side; ties go to the first.
 std::optional<Hit> find_first_hit(std::span<const DrawnMesh> meshes, const Ray& ray);
 
 }  // namespace weft::engine

@@ -1,5 +1,5 @@
 #pragma once
-/// What is drawn: lists of meshes, lines and dots, seen by a camera. Knows no physics.
+/// Scene to draw: lists of meshes, lines and dots, with a camera. Independent of physics.
 
 #include <array>
 #include <optional>
@@ -17,10 +17,10 @@ struct Look {
 
   Kind kind = Kind::solid;
   Color color = {0.6, 0.6, 0.6};
-  double check_size = 0;  // of the checks woven into fabric, in fabric coordinates; 0: none [m]
+  double check_size = 0;  // of the fabric's checks, in fabric coordinates; 0: none [m]
 };
 
-/// A triangle mesh, with a normal per vertex that is made from the triangles around it.
+/// A triangle mesh; vertex normals are computed from its triangles.
 struct DrawnMesh {
   std::vector<Triangle> triangles;
   std::vector<float> positions;           // (num_vertices x 3) [m]
@@ -28,14 +28,14 @@ struct DrawnMesh {
   Look look;
 };
 
-/// Straight lines, flat in colour, before or behind meshes as they lie.
+/// Straight lines of uniform colour, with depth test against meshes.
 struct DrawnLines {
   std::vector<Vec3> ends;  // (2 x num_lines) [m]
   Color color = {0.1, 0.1, 0.1};
   double width = 1.5;  // [pixels]
 };
 
-/// Small balls of a size that does not depend on the distance.
+/// Small balls of constant size on screen.
 struct DrawnDots {
   std::vector<Vec3> positions;  // [m]
   Color color = {0.1, 0.1, 0.1};
@@ -47,7 +47,7 @@ struct Light {
   Color sun = {2.45, 2.3, 2.05};
   Color sky = {0.76, 0.80, 0.87};     // from above
   Color ground = {0.74, 0.70, 0.65};  // from below
-  double exposure = 0.40;             // what light is multiplied by before it meets the film [1]
+  double exposure = 0.40;             // exposure: multiplier of the light before tone mapping [1]
 };
 
 struct Picture {
@@ -56,8 +56,8 @@ struct Picture {
   std::vector<DrawnMesh> meshes;
   std::vector<DrawnLines> lines;
   std::vector<DrawnDots> dots;
-  std::optional<double> ground;  // height of the ground that catches shadows; empty: none [m]
-  bool transparent = false;      // no sky and no ground: alpha tells where something is
+  std::optional<double> ground;  // height of the ground that receives shadows; empty: none [m]
+  bool transparent = false;      // no sky and no ground; alpha is coverage
 };
 
 }  // namespace weft::engine

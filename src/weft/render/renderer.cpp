@@ -12,8 +12,8 @@ using Vector2f = Eigen::Vector2f;
 using Vector3f = Eigen::Vector3f;
 using Matrix4f = Eigen::Matrix4f;
 
-constexpr double kGroundSide = 60;        // of the square that is drawn as ground [m]
-constexpr double kOcclusionShare = 0.09;  // its reach, as a share of the scene's radius [1]
+constexpr double kGroundSide = 60;        // side of the ground square [m]
+constexpr double kOcclusionShare = 0.09;  // radius, as a share of the scene's radius [1]
 const Vector3f kHorizon(0.93f, 0.94f, 0.945f), kZenith(0.66f, 0.76f, 0.87f);  // sRGB
 const Color kGroundColor = {0.66, 0.65, 0.63};
 
@@ -34,7 +34,7 @@ std::vector<float> to_places(const std::vector<Vec3>& points) {
   return places;
 }
 
-/// The sphere around all that is drawn, without the ground.
+/// Bounding sphere of the scene without the ground.
 struct Extent {
   Vec3 center = Vec3::Zero();
   double radius = 1;
@@ -56,7 +56,7 @@ Extent find_extent(const Picture& picture) {
 /// The sun's view of the scene: world to clip space.
 struct SunView {
   Mat4 to_clip;
-  double width;  // of the view, and its depth [m]
+  double width;  // of the view, equal to its depth [m]
 };
 
 SunView make_sun_view(const Light& light, const Extent& extent) {
@@ -92,7 +92,7 @@ DrawnMesh make_ground(const Vec3& center, double height) {
 
 }  // namespace
 
-/// One picture on its way through the stages.
+/// One picture in the render stages.
 struct Renderer::Stage {
   Device& device;
   const RenderSettings& settings;
@@ -139,7 +139,7 @@ struct Renderer::Stage {
     if (settings.shadow_size > 0) draw_depths(sun.to_clip.cast<float>(), false);
   }
 
-  /// At half the picture's resolution: occlusion is smooth. One pixel of open sky where it is not wanted.
+  /// At half the picture's resolution, because occlusion is smooth. Disabled: one pixel of open sky.
   void draw_occlusion() {
     const int width = settings.occlusion ? (size.width + 1) / 2 : 1,
               height = settings.occlusion ? (size.height + 1) / 2 : 1;

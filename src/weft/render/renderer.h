@@ -1,11 +1,11 @@
 #pragma once
-/// Draws pictures. The stages, and what each reads:
+/// Renderer: draws pictures. The stages, and their inputs:
 ///
 ///     shadow     depth seen from the sun
 ///     depth      depth seen by the camera
-///     occlusion  how much of the sky each place sees, from the camera's depth; then smoothed
-///     colour     sky, surfaces lit through shadow and occlusion, lines, dots; several samples a pixel
-///     resolve    one sample a pixel
+///     occlusion  visible share of the sky at each point, from the camera's depth; then smoothed
+///     colour     sky, surfaces lit through shadow and occlusion, lines, dots; several samples per pixel
+///     resolve    one sample per pixel
 
 #include <memory>
 
@@ -15,7 +15,7 @@
 namespace weft::engine {
 
 struct RenderSettings {
-  int samples = 4;         // per pixel, against steps at edges; 1: none
+  int samples = 4;         // per pixel, for antialiasing; 1: none
   int shadow_size = 2048;  // of the shadow map; 0: no shadows [pixels]
   bool occlusion = true;   // ambient occlusion
 };
@@ -25,7 +25,7 @@ class Renderer {
   explicit Renderer(std::unique_ptr<Device> device, const RenderSettings& settings = {});
   ~Renderer();
 
-  /// Draws the picture and reads it back.
+  /// Draws the picture and returns the image.
   Image draw(const Picture& picture, PictureSize size);
 
   /// Draws the picture, and shows it in a part of the device's window.

@@ -35,8 +35,8 @@ const char* const kDepthFragment = R"(
 void main() {}
 )";
 
-// How a surface scatters light: sun through the shadow map, sky and ground through ambient occlusion. Cloth
-// is lit from both sides, lets some light through, and shines softly where it is seen edge-on.
+// Surface shading: sun through the shadow map, sky and ground through ambient occlusion. Cloth is lit from
+// both sides, is translucent, and has a soft sheen at grazing angles.
 const char* const kSurfaceFragment = R"(
 in vec3 world;
 in vec3 world_normal;
@@ -186,8 +186,8 @@ void main() {
 }
 )";
 
-// Scalable ambient obscurance (McGuire, Mara, Luebke 2012): how much of the surroundings rises above the
-// tangent plane of each place.
+// Scalable ambient obscurance (McGuire, Mara, Luebke 2012): the share of the surroundings above each point's
+// tangent plane.
 const char* const kOcclusionFragment = R"(
 in vec2 place;
 uniform sampler2D depth;

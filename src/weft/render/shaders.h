@@ -1,5 +1,5 @@
 #pragma once
-/// The sources of the graphics card's programs (GLSL 3.30).
+/// Sources of the GPU programs (GLSL 3.30).
 
 #include <string>
 

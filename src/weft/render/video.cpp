@@ -22,7 +22,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// How ffmpeg encodes each kind of file.
+/// Encoding options of ffmpeg for each file type.
 Arguments encoding(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   if (ending == ".mp4") {
@@ -59,7 +59,7 @@ Arguments command(const std::filesystem::path& file, const std::filesystem::path
   return arguments;
 }
 
-/// Ctrl-C and job managers signal the whole group of processes; ffmpeg ends when its input does, with a whole
+/// Ctrl-C and job managers signal the whole process group; ffmpeg ends when its input does, with a complete
 /// file.
 void block_signals(posix_spawnattr_t& attributes) {
   sigset_t blocked;
@@ -93,7 +93,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  // A socket, not a pipe: writing to one that is closed can be told not to end the program.
+  // A socket, not a pipe: sends to a closed socket need not raise SIGPIPE.
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     fail(std::generic_category().message(errno));
@@ -140,7 +140,7 @@ void VideoWriter::finish() {
   if (error) fail(error.message());
 }
 
-/// Tells ffmpeg that this was all, and gives its exit status.
+/// Closes ffmpeg's input, and returns its exit status.
 int VideoWriter::wait() {
   if (to_ffmpeg_ >= 0) close(to_ffmpeg_);
   to_ffmpeg_ = -1;

@@ -1,5 +1,5 @@
 #pragma once
-/// Moving pictures, made by the program ffmpeg.
+/// Videos, encoded by the program ffmpeg.
 
 #include <filesystem>
 #include <string>
@@ -8,24 +8,24 @@
 
 namespace weft::engine {
 
-/// Whether the file's ending is one that VideoWriter knows: .mp4 (H.264), .webp (animated) or .gif.
+/// Whether VideoWriter supports the file's extension: .mp4 (H.264), .webp (animated) or .gif.
 bool is_video(const std::filesystem::path& file);
 
-/// Throws InputError, with what to do, if there is no ffmpeg among the programs.
+/// Throws InputError, with a remedy, if ffmpeg is not installed.
 void require_ffmpeg(const std::filesystem::path& file);
 
-/// Takes pictures of one size and hands them to ffmpeg, which signals that end programs do not end. The file
-/// appears when finish() has returned; until then, and if anything fails, an earlier one stays.
+/// Passes pictures of one size to ffmpeg, which ignores terminating signals. The file is replaced when
+/// finish() returns; until then, and after any failure, an earlier one stays.
 class VideoWriter {
  public:
-  /// Throws InputError if ffmpeg cannot be started, or the file's ending is not known.
+  /// Throws InputError if ffmpeg cannot be started, or for an unsupported extension.
   VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second);
   ~VideoWriter();
 
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  /// Throws InputError if ffmpeg has given up.
+  /// Throws InputError if ffmpeg has failed.
   void add(const Image& image);
 
   /// Throws InputError if ffmpeg could not write the file.

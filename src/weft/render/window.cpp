@@ -1,6 +1,6 @@
 #include "weft/render/window.h"
 
-// epoxy comes before GLFW, which else brings OpenGL's own header.
+// epoxy must precede GLFW, which otherwise includes OpenGL's own header.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -37,7 +37,7 @@ struct Wheel {
 };
 using Event = std::variant<KeyDown, Press, Release, Move, Wheel>;
 
-/// GLFW's letters and digits are ASCII; 0: a key that nobody asks for.
+/// GLFW's letters and digits are ASCII; 0: an unused key.
 int to_key(int glfw_key) {
   switch (glfw_key) {
     case GLFW_KEY_ESCAPE:
@@ -68,7 +68,7 @@ bool is_software_driver(const std::string& name) {
 
 }  // namespace
 
-/// GLFW's and Dear ImGui's part.
+/// State of GLFW and Dear ImGui.
 struct Window::System {
   GLFWwindow* window = nullptr;
   std::string driver;
@@ -100,7 +100,7 @@ struct Window::System {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures are drawn elsewhere and copied
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures are drawn offscreen and copied
     window =
         glfwCreateWindow(settings.size.width, settings.size.height, settings.title.c_str(), nullptr, nullptr);
     if (window) return;
@@ -109,7 +109,7 @@ struct Window::System {
     throw GraphicsError("no window with OpenGL 3.3 can be opened here (" + reason + ")" + kAdvice);
   }
 
-  /// Callbacks only take notes: whether the controls want an event is known when they have seen it too.
+  /// Callbacks only record events: the controls process them first and may consume them.
   void listen() {
     glfwSetWindowUserPointer(window, this);
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
@@ -139,12 +139,12 @@ struct Window::System {
 
   void make_controls() {
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+    ImGui::GetIO().IniFilename = nullptr;  // no settings file
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
 
-  /// Pixels per unit of the places that GLFW tells.
+  /// Pixels per unit of GLFW's positions.
   double pixels() const {
     int width = 1, height = 1, wide = 1, high = 1;
     glfwGetWindowSize(window, &width, &height);

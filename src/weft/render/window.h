@@ -1,5 +1,5 @@
 #pragma once
-/// A window that shows pictures, with controls over them. Everything here belongs to the thread that made it.
+/// A window that shows pictures, with controls over them. All calls must be on the thread that created it.
 
 #include <functional>
 #include <memory>
@@ -10,62 +10,62 @@
 
 namespace weft::engine {
 
-/// Keys that are no letters; letters and digits are themselves, as in 'R'.
+/// Non-letter keys; letters and digits are their own codes, as in 'R'.
 enum SpecialKey { kKeyEscape = 256, kKeyRight, kKeyLeft, kKeyHelp };  // kKeyHelp: F1
 
 enum class MouseButton { left, right, middle };
 
-/// What people do, as calls. Places are pixels from the window's upper left corner. What they do to the
-/// controls is not told.
+/// User input as callbacks. Positions are in pixels from the window's upper left corner. Input to the
+/// controls is not reported.
 struct WindowEvents {
   std::function<void(int key, bool shift)> on_key;
   std::function<void(MouseButton button, double x, double y, bool shift)> on_press;
   std::function<void(MouseButton button)> on_release;
   std::function<void(double x, double y)> on_move;
-  std::function<void(double clicks)> on_wheel;  // > 0: away from the hand
+  std::function<void(double clicks)> on_wheel;  // > 0: away from the user
 };
 
 struct WindowSettings {
   std::string title = "Weft";
   PictureSize size;
 
-  /// Processors that OpenGL in software may use besides the calling thread, where it is Mesa's; the
-  /// environment's LP_NUM_THREADS comes first.
+  /// Processors for software OpenGL besides the calling thread, with Mesa; the environment variable
+  /// LP_NUM_THREADS takes precedence.
   int software_threads = 1;
 };
 
 /// A window with an OpenGL context, current on this thread. Each frame:
 ///
-///     begin_frame(events)   what people have done since the last one
+///     begin_frame(events)   input since the last frame
 ///     …                     draw with a Renderer on make_device(), call Dear ImGui for controls
-///     end_frame()           controls on top; then all of it appears
+///     end_frame()           draws the controls on top and presents the frame
 class Window {
  public:
-  /// Throws GraphicsError where there is no display or no OpenGL 3.3.
+  /// Throws GraphicsError without a display or without OpenGL 3.3.
   explicit Window(const WindowSettings& settings);
   ~Window();
 
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Draws to this window; to be destroyed before it.
+  /// A device that draws to this window; destroy it first.
   std::unique_ptr<Device> make_device();
 
-  PictureSize size() const;           // of what is seen, now [pixels]
-  double scale() const;               // of controls, so that they look alike on any screen [1]
-  bool is_software() const;           // OpenGL is computed by the processor
+  PictureSize size() const;           // of the visible area [pixels]
+  double scale() const;               // of controls, for the same appearance on any screen [1]
+  bool is_software() const;           // OpenGL runs on the processor
   const std::string& driver() const;  // its name
 
-  bool is_closing() const;  // somebody wants it closed
+  bool is_closing() const;  // the user has requested to close it
   void close();
 
-  /// Sleeps until somebody does something, or for so long [s].
+  /// Sleeps until the next input, or for this long [s].
   void wait_for_event(double seconds);
 
   void begin_frame(const WindowEvents& events);
   void end_frame();
 
-  /// As end_frame, and returns what the window shows.
+  /// As end_frame; returns the window's contents.
   Image end_frame_and_read();
 
  private:

@@ -12,7 +12,7 @@ std::vector<SurfaceView> cloth_surfaces(const Frame& frame) {
   return surfaces;
 }
 
-/// Colliders that are no meshes have no triangles.
+/// Only mesh colliders have triangles.
 void add_collider_surfaces(const Frame& frame, std::vector<SurfaceView>& surfaces) {
   for (const NamedCollider& collider : frame.colliders) {
     const auto* mesh = std::get_if<MeshView>(&collider.shape);
@@ -32,7 +32,7 @@ const std::string& bare_name_of(const Frame& frame, int surface) {
   return surface < num_cloths ? frame.cloths[surface].name : frame.colliders[surface - num_cloths].name;
 }
 
-/// Of each solid, in the cloths that it holds off.
+/// The deepest penetration of each solid by the cloths that collide with it.
 std::optional<Penetration> find_deepest_of_held(const Frame& frame, const std::vector<SurfaceView>& cloths,
                                                 const std::vector<Solid>& solids) {
   if (frame.passing.empty()) return find_deepest(cloths, solids);

@@ -11,7 +11,7 @@ namespace {
 
 // ---- One pair ----
 
-/// On which side of another triangle's plane three corners lie.
+/// Sides of another triangle's plane on which three corners lie.
 struct Sides {
   std::array<int, 3> of;  // orient3d of each corner
 
@@ -25,7 +25,7 @@ Sides sides_of(const Corners& corners, const Corners& plane) {
   return {{orient3d(a, b, c, corners[0]), orient3d(a, b, c, corners[1]), orient3d(a, b, c, corners[2])}};
 }
 
-/// The corner that has no other on its side.
+/// The corner that is alone on its side.
 int lonely_corner(const Sides& sides) {
   for (int k = 0; k < 3; ++k) {
     const int side = sides.of[k];
@@ -34,11 +34,11 @@ int lonely_corner(const Sides& sides) {
   return 0;
 }
 
-/// Both triangles have corners strictly on both sides of the other's plane, so each cuts an interval out of
-/// the line in which the planes meet, by the two edges at its lonely corner:
+/// Both triangles have corners strictly on both sides of the other's plane. Each therefore cuts an interval
+/// out of the intersection line of the planes, by the two edges at its lonely corner:
 ///
-///            a0                      Once each lonely corner is on the positive side of the other
-///            /\                      triangle, turning that one round if need be, the order of the
+///            a0                      With each lonely corner on the positive side of the other triangle
+///            /\                      (flipping that one if necessary), the order of the
 ///     ------/--\--------o====o----   intervals' ends is that of two orientations (Guigue and
 ///          /    \                    Devillers 2003).
 ///         a1    a2
@@ -51,15 +51,15 @@ bool intervals_overlap(const Corners& a, const Sides& sides_a, const Corners& b,
   return orient3d(a0, *a1, b0, *b1) < 0 && orient3d(a0, *a2, *b2, b0) < 0;
 }
 
-/// How a pair meets: crossing, or in a way that the triangles next to it decide.
+/// Kind of intersection of a pair: crossing, or a degenerate case decided by adjacent triangles.
 enum class Meeting { none, crossing, edge_of_a_in_b, edge_of_b_in_a, edge_on_edge };
 
-/// The edge of a that lies in b's plane, by the corner opposite to it.
+/// The edge of a that is in b's plane, by the corner opposite to it.
 int corner_off_plane(const Sides& sides) { return sides.of[0] != 0 ? 0 : sides.of[1] != 0 ? 1 : 2; }
 
-/// Does a's edge, which lies in b's plane, run through b's inside? b has corners on both sides of the edge's
-/// line, so only a side of b can part them. Sides are told in space, by planes through a's corner off the
-/// plane.
+/// Whether a's edge, which is in b's plane, runs through b's interior. b has corners on both sides of the
+/// edge's line, so only a side of b can separate them. Sides are tested in space, by planes through a's
+/// corner off the plane.
 bool edge_runs_inside(const Corners& a, const Sides& sides_a, const Corners& b) {
   const int apex = corner_off_plane(sides_a);
   const Vec3 &top = a[apex], &from = a[(apex + 1) % 3], &to = a[(apex + 2) % 3];
@@ -71,7 +71,7 @@ bool edge_runs_inside(const Corners& a, const Sides& sides_a, const Corners& b) 
   return true;
 }
 
-/// Do two edges in one line share more than a point?
+/// Whether two collinear edges share more than a point.
 bool edges_overlap(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
   const int axis = a0.x() != a1.x() ? 0 : a0.y() != a1.y() ? 1 : 2;
   const auto [a_low, a_high] = std::minmax(a0[axis], a1[axis]);
@@ -108,7 +108,7 @@ MeetingOfPair meet(const Corners& a, const Corners& b) {
   return result;
 }
 
-// ---- Meetings that the triangles next to them decide ----
+// ---- Cases decided by adjacent triangles ----
 
 struct EdgeId {
   int surface, low, high;  // vertices, low < high
@@ -116,8 +116,8 @@ struct EdgeId {
   auto operator<=>(const EdgeId&) const = default;
 };
 
-/// An edge of one surface runs through the inside of a triangle of the other; `side` of that triangle's plane
-/// is where a triangle at the edge lies.
+/// An edge of one surface runs through the interior of a triangle of the other; `side` is the side of that
+/// triangle's plane on which a triangle at the edge lies.
 struct EdgeInTriangle {
   EdgeId edge;
   TriangleId crossed;
@@ -127,7 +127,7 @@ struct EdgeInTriangle {
   auto operator<=>(const EdgeInTriangle&) const = default;
 };
 
-/// Edges of two surfaces lie on each other; `pair` are triangles at them, and these are their third corners.
+/// Edges of two surfaces overlap; `pair` are triangles at them, and these are their third corners.
 struct EdgeOnEdge {
   EdgeId first, second;
   int wing_first, wing_second;
@@ -147,14 +147,14 @@ void for_each_group(const std::vector<Item>& items, Key key, Judge judge) {
   }
 }
 
-/// Directions around an axis, seen along it.
+/// Directions around an axis, viewed along it.
 struct Around {
   const Vec3 &from, &to;  // the axis
 
-  /// Positive if a turn of less than half leads from p to q.
+  /// Positive if a turn of less than 180° leads from p to q.
   int turn(const Vec3& p, const Vec3& q) const { return orient3d(from, to, p, q); }
 
-  /// Strictly between `first` and `last` on the way round in the positive sense.
+  /// Strictly between `first` and `last` in the positive sense of rotation.
   bool is_between(const Vec3& p, const Vec3& first, const Vec3& last) const {
     const int before = turn(first, p), after = turn(p, last);
     if (turn(first, last) >= 0) return before > 0 && after > 0;
@@ -257,7 +257,7 @@ class Finder {
     on_edges_.push_back(touch);
   }
 
-  /// The second way: one edge, one triangle, and wings on both of its sides.
+  /// Case 2: one edge, one triangle, and adjacent triangles on both of its sides.
   void judge_edges_in_triangles() {
     std::sort(in_triangles_.begin(), in_triangles_.end());
     const auto key = [](const EdgeInTriangle& item) { return std::pair(item.edge, item.crossed); };
@@ -266,7 +266,7 @@ class Finder {
     });
   }
 
-  /// The third way: two edges, and wings that alternate around them.
+  /// Case 3: two edges, and adjacent triangles that alternate around them.
   void judge_edges_on_edges() {
     std::sort(on_edges_.begin(), on_edges_.end());
     const auto key = [](const EdgeOnEdge& item) { return std::pair(item.first, item.second); };

@@ -9,7 +9,7 @@ namespace {
 
 Segment side(const Corners& triangle, int k) { return {triangle[k], triangle[(k + 1) % 3]}; }
 
-/// Is the foot of p in the plane of the triangle inside it?
+/// Whether the projection of p on the triangle's plane is inside the triangle.
 bool is_above_inside(const Vec3& p, const Corners& triangle, const Vec3& normal) {
   for (int k = 0; k < 3; ++k) {
     const auto [from, to] = side(triangle, k);
@@ -18,7 +18,7 @@ bool is_above_inside(const Vec3& p, const Corners& triangle, const Vec3& normal)
   return true;
 }
 
-/// The segment's ends are strictly on different sides, and its line meets the closed triangle.
+/// Whether the segment's ends are strictly on different sides, and its line meets the closed triangle.
 bool pierces(const Segment& segment, const Corners& triangle) {
   const auto& [a, b, c] = triangle;
   const auto& [p, q] = segment;

@@ -1,6 +1,5 @@
 #pragma once
-/// Private to verify/: squared distances between points, segments and triangles [m²]. Degenerate ones are
-/// welcome.
+/// Private to verify/: squared distances between points, segments and triangles [m²]. They may be degenerate.
 
 #include "weft/verify/crossings.h"
 

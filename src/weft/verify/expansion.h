@@ -6,7 +6,7 @@ namespace weft::engine::verify {
 
 inline int sign(double x) { return (x > 0) - (x < 0); }
 
-/// high + low is the exact value, high the rounded one.
+/// high + low is the exact value; high is the rounded one.
 struct Pair {
   double high, low;
 };
@@ -19,7 +19,7 @@ inline Pair two_sum(double a, double b) {
   return {sum, (a - a_virtual) + (b - b_virtual)};
 }
 
-/// Two halves of 26 bits, whose products are exact (Dekker).
+/// Two halves of 26 bits with exact products (Dekker).
 inline Pair split(double a) {
   constexpr double kSplitter = 0x1p27 + 1;
   const double c = kSplitter * a;
@@ -36,9 +36,9 @@ inline Pair two_product(double a, double b) {
   return {product, a_low * b_low - error};
 }
 
-/// An expansion is a sum of doubles that do not overlap, smallest first, none of them 0: its sign is that of
-/// the last. Adds b to the one in terms[0 … size), which has room for one more (Grow-Expansion; zeros are
-/// dropped); returns the new size.
+/// An expansion is a sum of non-overlapping nonzero doubles, smallest first: its sign is that of the last.
+/// Adds b to the one in terms[0 … size), which has room for one more (Grow-Expansion; zeros are dropped);
+/// returns the new size.
 inline int grow_expansion(double* terms, int size, double b) {
   int kept = 0;
   for (int i = 0; i < size; ++i) {

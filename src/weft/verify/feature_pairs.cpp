@@ -12,14 +12,14 @@
 namespace weft::engine::verify {
 namespace {
 
-constexpr double kSteps = 4;        // that a list must last as it seems, to be worth the making
-constexpr double kRounding = 1e-9;  // of distances and of how far surfaces have moved [m]
+constexpr double kSteps = 4;        // minimum expected lifetime of a list, in steps
+constexpr double kRounding = 1e-9;  // of distances and displacements [m]
 
 using Bounds = Eigen::AlignedBox3d;
 using Box = FeaturePairs::Box;
 using Boxes = FeaturePairs::Boxes;
 
-/// The way that a surface makes, but for the mean.
+/// Displacement of a surface: its mean, and the largest deviation from it.
 struct Way {
   Vec3 mean = Vec3::Zero();  // [m]
   double most_astray = 0;    // [m]
@@ -38,7 +38,7 @@ Way way_of(const MovingSurface& surface) {
   return way;
 }
 
-/// No two points of the surfaces move farther than this relative to each other.
+/// Bound of the relative displacement of any two points of the surfaces.
 double relative_way(const Way& a, const Way& b) {
   return a.most_astray + b.most_astray + (a.mean - b.mean).norm() + kRounding;
 }
@@ -95,7 +95,7 @@ Box box_of(const Triangle& t, const std::vector<Box>& boxes) {
   return boxes[t[0]].merged(boxes[t[1]]).merged(boxes[t[2]]);
 }
 
-/// Calls visit for the pairs of two triangles' own features whose boxes overlap.
+/// Calls visit for the pairs of two triangles' owned features with overlapping boxes.
 class PairsOfTriangles {
  public:
   PairsOfTriangles(const std::vector<MovingSurface>& surfaces, const Boxes& boxes,
@@ -217,8 +217,8 @@ bool FeaturePairs::for_each(const std::vector<MovingSurface>& surfaces, const Ma
   return true;
 }
 
-/// For the surfaces whose lists are due: visits the pairs of this motion, and lists those that are near at
-/// its end where a list will last.
+/// For surfaces with expired lists: visits the pairs of this motion, and lists those that are near at its end
+/// if a list will last.
 void FeaturePairs::rebuild(const std::vector<MovingSurface>& surfaces, const Visit& visit) {
   bool is_any_listed = false;
   for (Group& g : groups_) {
@@ -247,7 +247,7 @@ void FeaturePairs::rebuild(const std::vector<MovingSurface>& surfaces, const Vis
   reach_across_gaps(surfaces);
 }
 
-/// Of the triangles that can meet others whose lists are due.
+/// Boxes of the triangles that can meet others with expired lists.
 std::vector<Sweep::Box> FeaturePairs::boxes_of_triangles(const std::vector<MovingSurface>& surfaces,
                                                          const Boxes& boxes) {
   Boxes::value_type whole;
@@ -272,7 +272,7 @@ std::vector<Sweep::Box> FeaturePairs::boxes_of_triangles(const std::vector<Movin
   return result;
 }
 
-/// Surfaces that are far apart need no list until they have moved by what is between them.
+/// Distant surfaces need no list until they have moved by the gap between them.
 void FeaturePairs::reach_across_gaps(const std::vector<MovingSurface>& surfaces) {
   std::vector<Bounds> bounds;
   for (const MovingSurface& surface : surfaces) bounds.push_back(bounds_of(surface.end));

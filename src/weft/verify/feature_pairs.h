@@ -1,5 +1,5 @@
 #pragma once
-/// The pairs of features that can have met while surfaces moved.
+/// Feature pairs that can have met during a motion of surfaces.
 
 #include <algorithm>
 #include <array>
@@ -17,15 +17,15 @@ struct FeaturePair {
 
   Kind kind = Kind::vertex_triangle;
   int surface = 0, other = 0;
-  std::array<int, 2> feature = {0, 0};  // of `surface`: a vertex, twice, or an edge's two
+  std::array<int, 2> feature = {0, 0};  // of `surface`: a vertex, twice, or an edge's two vertices
   std::array<int, 2> opposite = {0, 0};  // of `other`: a triangle, twice, an edge's two vertices, or −1 twice
 
   auto operator<=>(const FeaturePair&) const = default;
 };
 
-/// A surface that moves in straight lines from one moment to the next.
+/// A surface in linear motion between two frames.
 struct MovingSurface {
-  enum class Kind { cloth, body, frame };  // a frame is a body of which only vertices and edges count
+  enum class Kind { cloth, body, frame };  // frame: a body without faces; only vertices and edges count
 
   MovingSurface(std::vector<Triangle> of, Kind kind);
 
@@ -36,39 +36,39 @@ struct MovingSurface {
                                      // each vertex and edge belongs to the first triangle that has it
 };
 
-/// Verlet lists: pairs of features by the distance that they had once. Each surface's motion since is bounded
-/// by its mean motion and the farthest that a vertex has strayed from that; two surfaces' pairs that were
-/// farther apart than they have moved relative to each other cannot have met. Where surfaces have moved
-/// farther than the lists reach, all pairs whose boxes overlap during the motion are found again.
+/// Verlet lists: feature pairs with their distance when listed. Each surface's motion since then is bounded
+/// by its mean motion and the largest deviation of a vertex from it. Pairs of two surfaces that were farther
+/// apart than their relative motion cannot have met. If surfaces have moved farther than the lists reach, all
+/// pairs with overlapping swept boxes are found again.
 class FeaturePairs {
  public:
-  /// `reach`: lists hold pairs that are as near as this [m].
+  /// `reach`: lists contain pairs up to this distance [m].
   FeaturePairs(int num_surfaces, double reach);
 
-  /// The boxes in which vertices move, in floats: rounding never changes the order of two numbers, so it
-  /// hides no overlap.
+  /// Swept boxes of vertices, in floats: rounding never changes the order of two numbers, so it hides no
+  /// overlap.
   using Box = Eigen::AlignedBox3f;
   using Boxes = std::vector<std::vector<Box>>;  // (surfaces) of (vertices)
 
   using Visit = std::function<void(const FeaturePair&)>;
   using MayMeet = std::function<bool(int, int)>;
 
-  /// Calls visit once for every vertex and triangle, and every two edges, that can have met in this motion:
-  /// of surfaces that may meet, without a vertex in common. To be called for each motion in turn. Of cloth
-  /// that has been flung about, by more than its own size against itself, everything may have met everything:
-  /// then no pair is visited, and the answer is false.
+  /// Calls visit once for every vertex–triangle and edge–edge pair that can have met in this motion, on
+  /// surfaces that may meet, without common vertices. Call for each motion in sequence. If cloth moves
+  /// relative to itself by more than its own size, every pair may have met: then no pair is visited, and the
+  /// result is false.
   bool for_each(const std::vector<MovingSurface>& surfaces, const MayMeet& may_meet, const Visit& visit);
 
  private:
   struct Near {
-    double distance;  // when the list was made [m]
+    double distance;  // when listed [m]
     FeaturePair pair;
   };
 
   struct Group {
-    bool is_due = false;     // no list reaches as far as they have moved
-    double way = 0;          // relative to each other in this motion, at most [m]
-    double moved = 0;        // relative to each other since the list was made, at most [m]
+    bool is_due = false;     // the list is too short for the motion
+    double way = 0;          // bound of the relative displacement in this motion [m]
+    double moved = 0;        // bound of the relative displacement since the list was made [m]
     double reach = 0;        // the list is complete up to this distance [m]
     std::vector<Near> near;  // by distance
   };
@@ -80,7 +80,7 @@ class FeaturePairs {
 
   int num_surfaces_;
   double reach_;
-  std::vector<Group> groups_;  // of two surfaces
+  std::vector<Group> groups_;  // one per two surfaces
 };
 
 }  // namespace weft::engine::verify

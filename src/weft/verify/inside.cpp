@@ -46,9 +46,8 @@ int InsideOfMesh::cell(double coordinate, int axis) const {
   return std::clamp(static_cast<int>((coordinate - low) / size * num_cells_), 0, num_cells_ - 1);
 }
 
-/// How often the triangle, seen along x, runs round p: +1, −1 or 0. Sides that go up in y count to the left
-/// of p, others are taken back; where p is on a side's line, it counts as right of it, whichever triangle
-/// asks.
+/// Winding of the triangle around p, viewed along x: +1, −1 or 0. Sides that go up in y to the left of p add
+/// one, others subtract one; if p is on a side's line, it counts as right of it, for every triangle.
 int InsideOfMesh::turns_round(const Triangle& triangle, const Vec3& p) const {
   int turns = 0;
   for (int k = 0; k < 3; ++k) {
@@ -72,7 +71,7 @@ bool InsideOfMesh::contains(const Vec3& p) const {
     if (turns == 0) continue;
     const auto& [a, b, c] = triangle;
     const int side = orient3d(positions_[a], positions_[b], positions_[c], p);
-    if (side * turns > 0) winding += turns;  // the triangle lies ahead
+    if (side * turns > 0) winding += turns;  // the triangle is ahead of p
   }
   return winding != 0;
 }

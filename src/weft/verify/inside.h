@@ -1,5 +1,5 @@
 #pragma once
-/// Is a point inside a closed mesh?
+/// Point-in-mesh test for closed meshes.
 
 #include <span>
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace weft::engine::verify {
 
-/// Answers for many points: looks along +x from each and adds up the triangles ahead, +1 for a front left
-/// behind, −1 for one met. The sum is the number of times the surface winds round the point. All decisions
-/// are signs of orient2d and orient3d, and a ray through an edge or a corner is given to one of the triangles
-/// there by one rule for all, so that there are no unlucky rays.
+/// Tests many points: a ray along +x from each sums the triangles ahead, +1 for leaving through a front, −1
+/// for entering through one. The sum is the winding number of the surface around the point. All decisions are
+/// signs of orient2d and orient3d, and a single rule assigns a ray through an edge or a corner to one of the
+/// triangles there: there are no degenerate rays.
 class InsideOfMesh {
  public:
   /// The spans must outlive this.
   InsideOfMesh(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
-  /// True if the surface winds round p; points on the surface itself may count either way.
+  /// True if the winding number of p is not 0; results for points on the surface are arbitrary.
   bool contains(const Vec3& p) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace weft::engine::verify {
 namespace {
 
-/// How far the vertex or first edge is moved aside, so that no decision is a tie [m].
+/// Perturbation of the vertex or first edge against ties [m].
 const Vec3 kAside(0x1.3a5p-150, 0x1.71bp-151, 0x1.d17p-152);
 constexpr double kFarFromAside = 1e-40;  // [m]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ class Exact {
   std::vector<double> terms_;
 };
 
-/// A determinant in doubles, and how far the exact one may be from it.
+/// A determinant in doubles, and the bound of its error.
 struct Estimate {
   double value, error;
 
@@ -117,8 +117,8 @@ class Image {
  public:
   void add(const Vec3& from, const Vec3& to) { corners_[size_++] = {&from, &to, to - from}; }
 
-  /// True only if a plane across an axis, or across the way to the corners' middle, parts the corners from
-  /// the origin: then f has no root.
+  /// True only if a plane perpendicular to an axis, or to the direction of the corners' centre, separates the
+  /// corners from the origin: then f has no root.
   bool is_aside() {
     Vec3 low = Vec3::Constant(kInfinity), high = -low, middle = Vec3::Zero();
     for (int k = 0; k < size_; ++k) {
@@ -127,11 +127,11 @@ class Image {
       middle += corners_[k].value;
     }
     if (low.maxCoeff() > kFarFromAside || high.minCoeff() < -kFarFromAside) return true;
-    reach_ = std::max(-low.minCoeff(), high.maxCoeff());  // the box holds the origin
+    reach_ = std::max(-low.minCoeff(), high.maxCoeff());  // the box contains the origin
     return is_aside_along(middle);
   }
 
-  /// The same of a plane across the direction; after is_aside().
+  /// The same for a plane perpendicular to the direction; call after is_aside().
   bool is_aside_along(const Vec3& direction) const {
     double low = kInfinity, high = -kInfinity;
     for (int k = 0; k < size_; ++k) {
@@ -143,19 +143,19 @@ class Image {
     return low > margin || high < -margin;
   }
 
-  /// Does the ray from the origin along x meet the triangle?
+  /// Whether the ray from the origin along x meets the triangle.
   bool is_ahead(int a, int b, int c) const {
     const int turns = turns_of(a, b) + turns_of(b, c) + turns_of(c, a);
     return turns != 0 && turns * volume_sign(corners_[a], corners_[b], corners_[c]) > 0;
   }
 
-  /// Does it meet, of the quad's two triangles that have its first and third corner in common, just one?
+  /// Whether it meets exactly one of the quad's two triangles that share its first and third corner.
   bool meets_triangles(const Quad& q) const {
     return is_ahead(q[0], q[1], q[2]) != is_ahead(q[0], q[2], q[3]);
   }
 
-  /// Is the origin between those triangles and the bilinear patch through the quad's sides? On the patch the
-  /// products of barycentric coordinates of opposite corners are equal.
+  /// Whether the origin is between those triangles and the bilinear patch through the quad's sides. On the
+  /// patch the products of barycentric coordinates of opposite corners are equal.
   bool is_under_patch(const Quad& q) const {
     const Corner *a = &corners_[q[0]], *b = &corners_[q[1]], *c = &corners_[q[2]], *d = &corners_[q[3]];
     const std::array<std::array<const Corner*, 3>, 4> faces = {{{b, c, d}, {a, d, c}, {a, b, d}, {a, c, b}}};
@@ -176,7 +176,7 @@ class Image {
  private:
   bool is_below(int a) const { return corners_[a].value.y() <= kAside.y(); }
 
-  /// Seen along x, sides that go up left of the origin count, those that go down are taken back.
+  /// Viewed along x, sides that go up left of the origin add one, those that go down subtract one.
   int turns_of(int a, int b) const {
     if (is_below(a) == is_below(b)) return 0;
     const int side = turn(corners_[a], corners_[b]);
@@ -200,7 +200,7 @@ class Image {
 
 Eigen::Vector2d seen_along(int axis, const Vec3& p) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-/// Of a point in the triangle's plane.
+/// Whether a point in the triangle's plane is inside it.
 bool is_in_triangle(const Vec3& p, const std::array<Vec3, 3>& triangle) {
   for (int axis = 0; axis < 3; ++axis) {
     bool is_left = false, is_right = false;

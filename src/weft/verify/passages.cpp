@@ -11,12 +11,12 @@
 namespace weft::engine::verify {
 namespace {
 
-constexpr double kListedReach = 0.5;  // of the lists of near pairs, in mean edges of cloth
+constexpr double kListedReach = 0.5;  // range of the lists of near pairs, in mean edges of cloth
 
 using Kind = FeaturePair::Kind;
 using Bounds = Eigen::AlignedBox3d;
 
-// ---- Shapes as surfaces: features deep inside, which no cloth may pass ----
+// ---- Shapes as surfaces: features deep inside, which no cloth may pass through ----
 
 const std::vector<Triangle> kPoint = {{0, 0, 0}}, kSegment = {{0, 1, 1}};
 
@@ -25,7 +25,7 @@ const std::vector<Triangle> kBox = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, 
                                     {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
 
 struct FeaturesInside {
-  double tolerance;  // how deep they are in boxes [m]
+  double tolerance;  // depth of the features in boxes [m]
 
   std::vector<Vec3> operator()(const Sphere& s) const { return {s.center}; }
   std::vector<Vec3> operator()(const Capsule& c) const { return {c.a, c.b}; }
@@ -107,10 +107,10 @@ struct Placement {
   Vec3 local(const Vec3& p) const { return rotation.transpose() * (p - origin); }
 };
 
-/// A frame in which a shape rests.
+/// A frame of reference in which a shape is at rest.
 struct RestFrame {
   Placement before, after;
-  Solid shape;  // in it
+  Solid shape;  // in that frame
 };
 
 struct RestFrames {
@@ -122,7 +122,7 @@ struct RestFrames {
                       {{{Mat3::Identity(), s.center}, {Mat3::Identity(), next(s).center}, at_origin}});
   }
 
-  /// The one that does not turn about the axis, and the one that turns with the body.
+  /// The frame that does not rotate about the axis, and the one that rotates with the body.
   std::vector<RestFrame> operator()(const Capsule& c) const {
     const Capsule& to = next(c);
     const Vec3 axis = c.b - c.a, middle = 0.5 * (c.a + c.b), to_middle = 0.5 * (to.a + to.b);
@@ -155,7 +155,7 @@ struct RestFrames {
   }
 };
 
-/// The deepest point of a way; not positive if it stays outside.
+/// Depth of the deepest point of a path; not positive if the path stays outside.
 double depth_on(const Vec3& from, const Vec3& to, const Solid& solid) {
   const auto depth = [&](const auto& shape) {
     if constexpr (std::is_same_v<decltype(shape), const MeshView&>) {
@@ -167,7 +167,7 @@ double depth_on(const Vec3& from, const Vec3& to, const Solid& solid) {
   return std::visit(depth, solid);
 }
 
-/// In every frame in which the shape rests.
+/// Depth in every rest frame of the shape.
 double depth_on(const PointMotion& way, const std::vector<RestFrame>& frames) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [before, after, shape] : frames)
@@ -175,7 +175,8 @@ double depth_on(const PointMotion& way, const std::vector<RestFrame>& frames) {
   return least;
 }
 
-/// At a place, in the first of the frames: they differ only by turns that the shape does not show.
+/// Depth at a point, in the first of the frames: they differ only by rotations under which the shape is
+/// symmetric.
 double depth_at(const Vec3& p, const Placement& placement, const Solid& shape) {
   const Vec3 local = placement.local(p);
   return depth_on(local, local, shape);
@@ -216,7 +217,7 @@ PassageWatch::PassageWatch(const Frame& start, double tolerance)
   colliders_ = start.colliders;
 }
 
-/// The ends of the motion.
+/// Reads the ends of the motion.
 void PassageWatch::read(const Frame& frame) {
   std::size_t s = 0;
   for (const NamedCloth& cloth : frame.cloths)
@@ -263,7 +264,7 @@ void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
   if (frames.empty()) return;
   const Bounds bounds = bounds_of_motion(before.shape, after.shape);
   const bool is_turning =
-      frames[0].before.rotation != frames[0].after.rotation;  // then ways are bent outside
+      frames[0].before.rotation != frames[0].after.rotation;  // then paths are curved outside
   const MovingSurface& surface = surfaces_[cloth];
   const int collider_surface = static_cast<int>(next.cloths.size()) + collider;
   for (int i = 0; i < static_cast<int>(surface.end.size()); ++i) {
@@ -278,8 +279,8 @@ void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
   }
 }
 
-/// A pair is open while it touches, or a particle is in a shape: what it comes to is told when it no longer
-/// is.
+/// A pair is open while it touches, or a particle is in a shape; its result is reported when it is no longer
+/// open.
 void PassageWatch::settle(const FeaturePair& pair, bool passes, bool is_open_before, bool is_open_after) {
   const auto known = open_.find(pair);
   Open state = known != open_.end() ? known->second : Open{.is_known = !is_open_before};

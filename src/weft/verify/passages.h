@@ -1,18 +1,18 @@
 #pragma once
-/// What goes through what from one moment to the next: cloth through itself, through other cloth and through
-/// colliders. Two sheets that change sides between two moments cross at neither of them.
+/// Tunnelling between frames: cloth through itself, through other cloth and through colliders. Two sheets
+/// that change sides between two frames intersect in neither of them.
 ///
-/// Vertices move in straight lines. A pair of features, a vertex and a triangle or two edges, passes where
-/// the one is on the other side afterwards, decided exactly (pair_motion.h); what grazes, or comes back, does
-/// not. A pair that touches exactly at a moment, to the last bit, stays open, and passes in the motion that
-/// ends that, if it has then come out on the other side. Features that share a vertex are left out.
+/// Vertices move linearly. A feature pair, vertex–triangle or edge–edge, passes if one feature is on the
+/// other side afterwards, decided exactly (pair_motion.h); grazing contact, or passing back, does not count.
+/// A pair that touches exactly in a frame, to the last bit, stays open. It passes in the motion that ends the
+/// touch, if it is then on the other side. Features that share a vertex are excluded.
 ///
-/// Sphere, capsule and box: a particle that is in one no deeper than a tolerance before and after, but was on
-/// its way, has passed. The way is a straight line in the frame in which the shape rests. Where shapes turn
-/// in themselves (balls, capsules), there are two such frames, one that turns along and one that does not,
-/// and the way must be too deep in both. Besides, a sphere's centre, a capsule's axis, and the corners and
-/// edges of a box less the tolerance are features that triangles and edges of cloth may pass: a bullet
-/// smaller than a triangle. Nothing can pass a half space.
+/// Sphere, capsule and box: a particle has passed if it is at most a tolerance deep before and after, but
+/// deeper on its path. The path is a straight line in the shape's rest frame. Rotationally symmetric shapes
+/// (balls, capsules) have two such frames, one that rotates along and one that does not; the path must be too
+/// deep in both. In addition, a sphere's centre, a capsule's axis, and the corners and edges of a box less
+/// the tolerance are features that triangles and edges of cloth may pass: a bullet smaller than a triangle.
+/// Nothing can pass a half space.
 
 #include <map>
 #include <string>
@@ -23,26 +23,25 @@
 
 namespace weft::engine::verify {
 
-/// Watches a motion, moment by moment. All moments have the same cloths and colliders, as many vertices and
-/// the same triangles; coordinates are in the range of pair_motion.h.
+/// Checks a motion, frame by frame. All frames have the same cloths and colliders, the same number of
+/// vertices and the same triangles; coordinates are in the range of pair_motion.h.
 class PassageWatch {
  public:
   explicit PassageWatch(const Frame& start, double tolerance = 1e-4);  // in shapes [m]
 
-  /// The pairs that pass in the motion from the last moment to this one, in order; `surface` and `other` are
-  /// the cloths, then the colliders. Names that may pass are this moment's. A moment with coordinates that
-  /// are not finite is left out.
+  /// The pairs that pass in the motion from the last frame to this one, in order; `surface` and `other` are
+  /// the cloths, then the colliders. The collision filter is this frame's. A frame with non-finite
+  /// coordinates is skipped.
   std::vector<FeaturePair> advance(const Frame& next);
 
-  /// Motions that were not looked at, because cloth was flung about by more than its own size, or its
-  /// coordinates were not finite.
+  /// Skipped motions: cloth moved by more than its own size, or its coordinates were not finite.
   int num_left_out() const { return num_left_out_; }
 
  private:
-  /// A pair that touches, or a particle in a shape.
+  /// A touching pair, or a particle in a shape.
   struct Open {
-    bool is_through = false;  // as things stand
-    bool is_known = true;     // false: it has been so from the first moment on
+    bool is_through = false;  // currently
+    bool is_known = true;     // false: since the first frame
   };
 
   void read(const Frame& frame);
@@ -53,7 +52,7 @@ class PassageWatch {
   double tolerance_;
   std::vector<MovingSurface> surfaces_;
   FeaturePairs pairs_;
-  std::vector<NamedCollider> colliders_;  // at the last moment; of meshes only the kind counts
+  std::vector<NamedCollider> colliders_;  // in the last frame; of meshes only the kind counts
   std::map<FeaturePair, Open> open_, still_open_;
   std::vector<FeaturePair> passages_;
   int num_left_out_ = 0;

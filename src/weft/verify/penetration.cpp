@@ -40,7 +40,7 @@ double depth_in(const Faces& faces, const Vec3& p) {
   return least;
 }
 
-/// No point of the triangle is deeper than this.
+/// Upper bound of the depth of any point of the triangle.
 double bound_depth(const Faces& faces, const Corners& triangle) {
   double bound = kInfinity;
   for (const Face& face : faces) {
@@ -50,7 +50,7 @@ double bound_depth(const Faces& faces, const Corners& triangle) {
   return bound;
 }
 
-/// A triangle and what clipping by five half spaces leaves of it: each adds at most one corner.
+/// A triangle clipped by five half spaces: each adds at most one corner.
 struct Polygon {
   std::array<Vec3, 8> corners;
   int size = 0;
@@ -58,7 +58,7 @@ struct Polygon {
   void add(const Vec3& p) { corners[size++] = p; }
 };
 
-/// The part where `value`, a linear function, is not negative.
+/// Clips to the part where the linear function `value` is not negative.
 template <class Value>
 Polygon clip(const Polygon& polygon, Value value) {
   Polygon kept;
@@ -82,8 +82,8 @@ Polygon part_nearest_to(const Face& nearest, const Faces& faces, const Corners& 
   return part;
 }
 
-/// Over each face's part depth is linear, so the greatest is at a corner of a part. Every corner is a point
-/// of the triangle: rounding may miss the deepest point by a hair, never invent one.
+/// Depth is linear over each face's part, so the greatest is at a corner of a part. Every corner is a point
+/// of the triangle: rounding may slightly underestimate the depth, never overestimate it.
 double greatest_depth(const Faces& faces, const Corners& triangle) {
   double deepest = -kInfinity;
   for (const Vec3& p : triangle) deepest = std::max(deepest, depth_in(faces, p));
@@ -101,7 +101,7 @@ bool overlaps(const Bounds& bounds, const Corners& t) {
   return (low.array() <= bounds.max().array()).all() && (high.array() >= bounds.min().array()).all();
 }
 
-/// Keeps the deepest place.
+/// Keeps the deepest point.
 class Search {
  public:
   explicit Search(std::span<const SurfaceView> cloths) : cloths_(cloths) {}
@@ -140,13 +140,13 @@ class Search {
   std::optional<Penetration> result() const { return is_measured_ ? std::optional(deepest_) : std::nullopt; }
 
  private:
-  /// Distance from inner points to a mesh's surface.
+  /// Distance of interior points from a mesh's surface.
   class DepthInMesh {
    public:
     explicit DepthInMesh(const MeshView& mesh) : mesh_(mesh) {}
 
-    /// The depth at p, or some number <= `known` if it is not greater than that. Neighbours tend to be near
-    /// the same triangle, so the one that was nearest last time is asked first.
+    /// The depth at p, or any number <= `known` if it is not greater than that. Neighbours tend to be near
+    /// the same triangle, so the last nearest triangle is tested first.
     double at(const Vec3& p, double known) {
       double least = distance_sq(p, corners(nearest_));
       for (std::size_t t = 0; t < mesh_.triangles.size() && least > known * known; ++t) {

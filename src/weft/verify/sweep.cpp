@@ -32,7 +32,7 @@ int Sweep::Strip::collect_overlaps(std::size_t i, int* hits) const {
   return count;
 }
 
-/// The sweep goes where the boxes vary most, the strips lie where they vary second most.
+/// The sweep is along the axis of greatest variance of the boxes, the strips along the second.
 void Sweep::choose_axes() {
   Vec3 sum = Vec3::Zero(), sum_sq = Vec3::Zero();
   for (const Box& box : boxes_) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to verify/: pairs of triangles whose boxes overlap.
+/// Private to verify/: pairs of triangles with overlapping boxes (sweep and prune).
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace weft::engine::verify {
 
-/// A sweep along the axis in which the boxes spread most, in each of many strips along the second. Boxes are
-/// kept in floats: rounding never changes the order of two numbers, so it hides no overlap.
+/// A sweep along the axis of greatest extent, in each of many strips along the second. Boxes are stored in
+/// floats: rounding never changes the order of two numbers, so it hides no overlap.
 class Sweep {
  public:
   struct Box {
@@ -24,7 +24,7 @@ class Sweep {
 
   explicit Sweep(std::vector<Box> boxes);
 
-  /// Calls visit(p, q) once for every two triangles whose boxes overlap.
+  /// Calls visit(p, q) once for every two triangles with overlapping boxes.
   template <class Visit>
   void for_each_pair(Visit visit) const {
     std::vector<int> hits(boxes_.size());
@@ -43,12 +43,12 @@ class Sweep {
   }
 
  private:
-  /// The boxes that reach into a strip in the order of the sweep, as columns.
+  /// Boxes of one strip in sweep order, as columns.
   struct Strip {
     std::vector<int> boxes;
     std::vector<float> start, end, low_y, high_y, low_z, high_z;
 
-    /// Places of boxes after place i that overlap box i; how many.
+    /// Indices of boxes after box i that overlap it; returns their number.
     int collect_overlaps(std::size_t i, int* hits) const;
   };
 
@@ -56,7 +56,7 @@ class Sweep {
   void fill_strips();
   void add_to_strip(int k, Strip& strip) const;
 
-  std::vector<Box> boxes_;  // in the order of the sweep
+  std::vector<Box> boxes_;  // in sweep order
   int sweep_axis_ = 0, strip_axis_ = 1, third_axis_ = 2;
   std::vector<Strip> strips_;
 };
