@@ -25,6 +25,7 @@ inline constexpr int kMostStretchPoints = 8;
 struct StretchPoint {
   double strain = 0;   // extension over rest length, > 0 [1]
   double tension = 0;  // force per width, > 0 [N/m]
+  bool operator==(const StretchPoint&) const = default;
 };
 
 /// The defaults are those of the preset `cotton_shirting`, which gives their sources.
@@ -85,6 +86,7 @@ struct Fabric {
   /// always apply in compression. The membrane stays positive definite: c12² is less than the product of the
   /// curves' least slopes. `springs` ignore them.
   std::vector<StretchPoint> stretch_warp = {}, stretch_weft = {};
+  bool operator==(const Fabric&) const = default;
 };
 
 /// An invalid number of a fabric.

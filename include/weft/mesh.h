@@ -28,6 +28,7 @@ struct Grid {
   int index(int i, int j) const { return j * num_columns() + i; }
   double spacing_x() const { return size_x / cells_x; }
   double spacing_z() const { return size_z / cells_z; }
+  bool operator==(const Grid&) const = default;
 };
 
 using Triangle = std::array<int, 3>;  // vertex indices, counter-clockwise seen from the front

@@ -12,16 +12,19 @@ namespace weft {
 
 struct ExplicitSettings {
   int substeps = 0;  // per step; 0: as many as stability requires [1]
+  bool operator==(const ExplicitSettings&) const = default;
 };
 
 struct PaperSettings {
   /// Uses the damping force with the sign printed in the paper, d (v_i − v_j), which amplifies motion.
   bool printed_damping_sign = false;
+  bool operator==(const PaperSettings&) const = default;
 };
 
 struct ImplicitEulerSettings {
   double tolerance = 1e-2;  // Newton stops at a largest velocity change below it; smaller is slower [m/s]
   int iterations = 50;      // maximum Newton iterations per step; the report says when they run out [1]
+  bool operator==(const ImplicitEulerSettings&) const = default;
 };
 
 /// Solver budget of `newton`: half or twice its automatic choice.
@@ -33,12 +36,14 @@ struct NewtonSettings {
   /// exact solution [1].
   int iterations = 0;
   NewtonQuality quality = NewtonQuality::normal;  // applies only if `iterations` is 0
+  bool operator==(const NewtonSettings&) const = default;
 };
 
 struct XpbdSettings {
   /// Per step. More is slower and stretches less: measured errors fall like 1/substeps, and the number needed
   /// for the same error grows with the particles per side [1].
   int substeps = 50;
+  bool operator==(const XpbdSettings&) const = default;
 };
 
 struct IntegratorSettings {
@@ -51,6 +56,7 @@ struct IntegratorSettings {
   /// For reference solutions: also stores states in doubles. `newton` then solves its equations like
   /// `implicit_euler`, to full precision, by sparse Cholesky. Only these two support it.
   bool is_double = false;
+  bool operator==(const IntegratorSettings&) const = default;
 };
 
 WEFT_API const std::vector<std::string_view>& integrator_names();

@@ -129,7 +129,7 @@ TEST(SceneReader, FindsMeshesBesideTheScene) {
   const std::string cloth =
       "[[cloth]]\nmesh = \"scene_reader_test.obj\"\nup = \"z\"\nscale = 0.01\nweld = 0.002\n";
   const SceneDesc scene = parse_scene(kScene + cloth, mesh.path().parent_path() / "scene.toml");
-  const MeshFile& file = std::get<MeshFile>(scene.cloths.at(0).shape);
+  const MeshSource& file = std::get<MeshSource>(scene.cloths.at(0).shape);
   EXPECT_EQ(file.file, mesh.path());
   EXPECT_TRUE(file.up_is_z);
   EXPECT_EQ(file.scale, 0.01);
@@ -141,11 +141,11 @@ TEST(SceneReader, WeldsByYesNoOrDistance) {
   const TemporaryFile mesh("scene_reader_test_weld.obj");
   const auto parse_weld = [&](const std::string& weld) {
     const std::string cloth = "[[cloth]]\nmesh = \"scene_reader_test_weld.obj\"\nweld = " + weld;
-    return std::get<MeshFile>(parse_scene(kScene + cloth, mesh.path()).cloths.at(0).shape);
+    return std::get<MeshSource>(parse_scene(kScene + cloth, mesh.path()).cloths.at(0).shape);
   };
   EXPECT_FALSE(parse_weld("false").weld);
   EXPECT_TRUE(parse_weld("true").weld);
-  EXPECT_EQ(parse_weld("true").weld_distance, MeshFile().weld_distance);
+  EXPECT_EQ(parse_weld("true").weld_distance, MeshSource().weld_distance);
   EXPECT_TRUE(parse_weld("0").weld);
   EXPECT_EQ(parse_weld("0").weld_distance, 0);
 }
@@ -154,7 +154,7 @@ TEST(SceneReader, SewsByDistance) {
   const TemporaryFile mesh("scene_reader_test_sew.obj");
   const std::string cloth = "[[cloth]]\nmesh = \"scene_reader_test_sew.obj\"\n";
   const auto parse_sew = [&](const std::string& key) {
-    return std::get<MeshFile>(parse_scene(kScene + cloth + key, mesh.path()).cloths.at(0).shape);
+    return std::get<MeshSource>(parse_scene(kScene + cloth + key, mesh.path()).cloths.at(0).shape);
   };
   EXPECT_EQ(parse_sew("").sew_distance, 0);
   EXPECT_EQ(parse_sew("sew = 0.002").sew_distance, 0.002);
@@ -259,13 +259,13 @@ half_size = [1, 1, 1]
   EXPECT_EQ(capsule.b, Vec3(0.5, 1, 0));
   EXPECT_EQ(capsule.radius, 0.1);
   EXPECT_EQ(colliders[0].friction, 0.5);
-  const OrientedBox& box = std::get<OrientedBox>(colliders[1].shape);
+  const PlacedBox& box = std::get<PlacedBox>(colliders[1].shape);
   EXPECT_EQ(colliders[1].name, "crate");
   EXPECT_EQ(box.center, Vec3(0, 1, 2));
   EXPECT_EQ(box.half_size, Vec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(box.rotation, rotation_from_angles_deg({0, 90, 0}));
+  EXPECT_EQ(box.rotation_deg, Vec3(0, 90, 0));
   EXPECT_FALSE(colliders[1].motion.is_still());
-  EXPECT_EQ(std::get<OrientedBox>(colliders[2].shape).rotation, Mat3(Mat3::Identity()));
+  EXPECT_EQ(std::get<PlacedBox>(colliders[2].shape).rotation_deg, Vec3(Vec3::Zero()));
 }
 
 TEST(SceneReader, FindsMeshesOfCollidersBesideTheScene) {

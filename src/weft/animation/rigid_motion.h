@@ -12,6 +12,7 @@ namespace weft::engine {
 struct Pose {
   Vec3 translation = Vec3::Zero();  // [m]
   Mat3 rotation = Mat3::Identity();
+  bool operator==(const Pose&) const = default;
 };
 
 /// Rotation by angles about the fixed axes x, then y, then z, in degrees; exact for multiples of 90.
@@ -21,6 +22,7 @@ struct KeyFrame {
   double time = 0;                  // [s]
   Vec3 translation = Vec3::Zero();  // from the initial position [m]
   Vec3 angles_deg = Vec3::Zero();   // about fixed x, then y, then z; may exceed a full turn [degrees]
+  bool operator==(const KeyFrame&) const = default;
 };
 
 /// Key frames by ascending time. Translation and angles are interpolated linearly between them, and constant
@@ -46,8 +48,10 @@ class RigidMotion {
     double start = 0, end = 0;  // [s]
     Pose from, to;
     Pose at(double time) const;
+    bool operator==(const Passage&) const = default;
   };
   const std::vector<KeyFrame>& keys() const { return keys_; }
+  bool operator==(const RigidMotion&) const = default;
   const std::optional<Passage>& passage() const { return passage_; }  // set: replaces key frames
 
  private:

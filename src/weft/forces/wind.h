@@ -18,6 +18,7 @@ struct Wind {
 struct WindKey {
   double time = 0;               // [s]
   Vec3 velocity = Vec3::Zero();  // [m/s]
+  bool operator==(const WindKey&) const = default;
 };
 
 /// The velocity at a time: linear between keys, constant outside. At least one key.

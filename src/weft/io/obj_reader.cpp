@@ -353,15 +353,27 @@ void append_number(std::string& text, double value) {
   text.append(digits.data(), end);
 }
 
-void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex) {
+/// `uv`: (num_triangles), or empty; a triangle without has no number in it.
+void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex,
+                 const std::vector<CornerUv>& uv = {}) {
   for (const Vec3& position : mesh.positions) {
     text += 'v';
     for (const double coordinate : position) append_number(text += ' ', coordinate);
     text += '\n';
   }
-  for (const Triangle& triangle : mesh.triangles) {
+  int num_uv = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const bool has_uv = !uv.empty() && std::isfinite(uv[t][0][0]);
+    for (int corner = 0; has_uv && corner < 3; ++corner) {
+      append_number(text += "vt ", uv[t][corner][0]);
+      append_number(text += ' ', uv[t][corner][1]);
+      text += '\n';
+    }
     text += 'f';
-    for (const int v : triangle) text += ' ' + std::to_string(first_vertex + v + 1);
+    for (const int v : mesh.triangles[t]) {
+      text += ' ' + std::to_string(first_vertex + v + 1);
+      if (has_uv) text += '/' + std::to_string(++num_uv);
+    }
     text += '\n';
   }
 }
@@ -372,9 +384,9 @@ ObjMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_text
 
 ObjMesh parse_obj(const std::string& text, const std::string& name) { return ObjParser(text, name).parse(); }
 
-void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh) {
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
   std::string text;
-  append_mesh(text, mesh, 0);
+  append_mesh(text, mesh, 0, uv);
   write_file(file, text);
 }
 

@@ -34,8 +34,9 @@ struct ObjObject {
 };
 
 /// Writes vertices and triangles, with as many digits as it takes to read the same doubles back.
-/// Throws InputError if the file cannot be written.
-void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
+/// `uv` as in ObjMesh. Throws InputError if the file cannot be written.
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
+               const std::vector<CornerUv>& uv = {});
 
 /// The same for several meshes, each as an object of its own.
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects);

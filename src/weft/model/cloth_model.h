@@ -36,6 +36,7 @@ struct ClothMaterial {
 
   /// Multiplier of each spring's stiffness, in the topology's order, >= 0; empty: 1.
   std::vector<double> spring_factors;
+  bool operator==(const ClothMaterial&) const = default;
 };
 
 struct ClothTopology {

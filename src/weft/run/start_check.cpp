@@ -30,7 +30,7 @@ struct MeshBody {
   std::string name;  // `cloth "shirt"`
   Vec3 size = Vec3::Zero();
   int num_triangles = 0;
-  const MeshFile* file = nullptr;  // null: it has none
+  const MeshSource* file = nullptr;  // null: it has none
   bool is_turned = false;          // by the scene
   double largest() const { return size.maxCoeff(); }
 };
@@ -50,7 +50,7 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
       positions.push_back(world.state(world.cloth(c)).position(i));
     bodies.push_back({"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions),
                       world.model(world.cloth(c)).topology->mesh.num_triangles(),
-                      std::get_if<MeshFile>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
+                      std::get_if<MeshSource>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
   }
   for (std::size_t c = 0; c < world.colliders().size(); ++c) {
     const ColliderShape shape = shape_at(world.colliders()[c], 0);

@@ -11,7 +11,7 @@
 namespace weft::engine {
 namespace {
 
-using Shape = std::variant<Grid, MeshFile>;
+using Shape = std::variant<Grid, MeshSource>;
 
 void read_model(TomlTable& cloth, SpringModel& model) {
   cloth.read_choice<SpringModel>("model", model,
@@ -31,7 +31,7 @@ std::optional<Shape> read_grid(TomlTable table) {
   return Grid{size[0], size[1], cells[0], cells[1]};
 }
 
-void read_weld(TomlTable& cloth, MeshFile& mesh) {
+void read_weld(TomlTable& cloth, MeshSource& mesh) {
   const TomlValue weld = cloth.get("weld");
   if (!weld) return;
   if (weld.is_boolean()) {
@@ -43,8 +43,8 @@ void read_weld(TomlTable& cloth, MeshFile& mesh) {
   }
 }
 
-MeshFile read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
-  MeshFile mesh = read_mesh_file(cloth, "mesh", folder);
+MeshSource read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
+  MeshSource mesh = read_mesh_file(cloth, "mesh", folder);
   read_weld(cloth, mesh);
   cloth.read("sew", mesh.sew_distance, above_zero("m"));
   return mesh;
@@ -119,6 +119,7 @@ std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
     table.refuse(key, "a fabric has either spring stiffnesses or SI values (c11 to bend_bias)");
   FabricDesc fabric{.name = "fabric", .numbers = {}};
   if (base) fabric = read_named_fabric(base, folder).value_or(fabric);
+  table.read("name", fabric.name);
   fabric.numbers = read_fabric_numbers(table, false, fabric.numbers);
   return fabric;
 }
@@ -156,8 +157,8 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
 
 }  // namespace
 
-MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder) {
-  MeshFile mesh;
+MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder) {
+  MeshSource mesh;
   std::string name;
   std::error_code unreadable;
   const TomlValue value = owner.get(key);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 
 #include "weft/scene/scene_sections.h"
@@ -7,6 +8,8 @@ namespace weft::engine {
 namespace {
 
 using Shape = decltype(ColliderSceneDesc::shape);
+
+constexpr double kUnit = 1e-15;  // of |n|² from 1: the direction is normalised already
 
 /// Keys of a mesh, on a shape that is given by keys of its own: refused with the reason, rather than being
 /// unknown.
@@ -32,7 +35,7 @@ Plane read_plane(TomlTable& collider) {
   if (collider.read("normal", plane.normal, any_number())) {
     if (plane.normal.norm() < 1e-12) {
       collider.get("normal").mistake("expected a direction, found a vector without length");
-    } else {
+    } else if (std::abs(plane.normal.squaredNorm() - 1) > kUnit) {
       plane.normal.normalize();
     }
   }
@@ -52,34 +55,14 @@ Capsule read_capsule(TomlTable& collider) {
   return capsule;
 }
 
-OrientedBox read_box(TomlTable& collider) {
-  OrientedBox box;
-  Vec3 rotation_deg = Vec3::Zero();
+PlacedBox read_box(TomlTable& collider) {
+  PlacedBox box;
   collider.require({"half_size"}, "3 numbers above 0 in m");
   collider.read("center", box.center, any_number("m"));
   collider.read("half_size", box.half_size, above_zero("m"), "[0.5, 0.5, 0.5]");
-  collider.read("rotation", rotation_deg, any_number("degrees"), "[0, 90, 0]");
-  box.rotation = rotation_from_angles_deg(rotation_deg);
+  collider.read("rotation", box.rotation_deg, any_number("degrees"), "[0, 90, 0]");
   refuse_mesh_keys(collider, "a box has center, half_size and rotation", true);
   return box;
-}
-
-/// The files of a name with one star, in the order of their names.
-std::vector<std::filesystem::path> find_files(const std::filesystem::path& pattern) {
-  const std::string name = pattern.filename().string();
-  const std::size_t star = name.find('*');
-  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
-  std::vector<std::filesystem::path> files;
-  std::error_code unreadable;
-  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
-  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
-    const std::string candidate = entry.path().filename().string();
-    if (candidate.size() >= begin.size() + end.size() && candidate.starts_with(begin) &&
-        candidate.ends_with(end))
-      files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 void read_frames(TomlTable& collider, const std::filesystem::path& folder, PlacedMesh& mesh) {
@@ -91,7 +74,7 @@ void read_frames(TomlTable& collider, const std::filesystem::path& folder, Place
   if (std::count(name.begin(), name.end(), '*') != 1 ||
       pattern.filename().string().find('*') == std::string::npos)
     return frames.expected("file names with one star, as in \"walk/body_*.obj\"");
-  mesh.frames = find_files(pattern);
+  mesh.frames = find_frame_files(pattern);
   if (mesh.frames.empty())
     return frames.mistake("there are no files " + quote(pattern.generic_string(), 1000));
   mesh.source.file = mesh.frames[0];
@@ -140,6 +123,23 @@ Shape read_shape(TomlTable& collider, const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> find_frame_files(const std::filesystem::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const std::size_t star = name.find('*');
+  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
+  std::vector<std::filesystem::path> files;
+  std::error_code unreadable;
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+    const std::string candidate = entry.path().filename().string();
+    if (candidate.size() >= begin.size() + end.size() && candidate.starts_with(begin) &&
+        candidate.ends_with(end))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 std::vector<KeyFrame> read_motion(TomlTable& owner) {
   std::vector<KeyFrame> frames;

@@ -12,7 +12,7 @@ MeshFromFile read_obj(const std::string& file) {
 }
 
 void write_obj(const std::string& file, const TriangleMesh& mesh) {
-  engine::write_obj(file, engine::to_engine(mesh));
+  engine::write_obj(file, engine::to_engine(mesh), engine::to_engine(mesh.uv));
 }
 
 }  // namespace weft

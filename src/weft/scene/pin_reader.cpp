@@ -11,7 +11,7 @@ struct Pinnable {
   bool has_corners = true;
   IntegerRule index = {.least = 0};
 
-  explicit Pinnable(const std::variant<Grid, MeshFile>* shape) {
+  explicit Pinnable(const std::variant<Grid, MeshSource>* shape) {
     if (!shape) return;
     const Grid* grid = std::get_if<Grid>(shape);
     has_corners = grid != nullptr;
@@ -124,7 +124,7 @@ std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pin
 
 }  // namespace
 
-std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape) {
+std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<PinDesc> pins;
   if (const TomlValue names = cloth.get("pins")) {
@@ -145,7 +145,7 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFi
   return pins;
 }
 
-std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape) {
+std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<StiffenDesc> stiffened;
   for (TomlTable& table : cloth.tables("stiffen")) {

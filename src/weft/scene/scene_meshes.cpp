@@ -19,14 +19,23 @@ ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
 }
 
 /// In metres, y up.
-ObjMesh read_in_metres(const std::filesystem::path& file, const MeshFile& source, const std::string& owner) {
+Vec3 to_world(const Vec3& p, const MeshSource& source) {
+  return source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+}
+
+ObjMesh read_in_metres(const std::filesystem::path& file, const MeshSource& source, const std::string& owner) {
   ObjMesh obj = read(file, owner);
-  for (Vec3& p : obj.mesh.positions) p = source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+  for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   return obj;
 }
 
-weft::TriangleMesh read_mesh(const MeshFile& source, const std::string& owner,
+weft::TriangleMesh read_mesh(const MeshSource& source, const std::string& owner,
                              std::vector<std::string>& warnings) {
+  if (source.mesh) {
+    weft::TriangleMesh mesh = *source.mesh;
+    for (weft::Vec3& p : mesh.positions) p = from_engine(to_world(to_engine(p), source));
+    return mesh;
+  }
   const ObjMesh obj = read_in_metres(source.file, source, owner);
   for (const std::string& warning : obj.warnings)
     warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
@@ -55,6 +64,15 @@ std::string describe(std::size_t vertices, std::size_t triangles) {
 std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const weft::TriangleMesh& first,
                                    const std::string& owner) {
   std::vector<MeshFrame> frames;
+  for (const std::vector<Vec3>& positions : placed.frame_positions) {
+    if (positions.size() != first.positions.size())
+      throw InputError(owner + ": frame " + std::to_string(frames.size()) + " has " +
+                       std::to_string(positions.size()) + " vertices, the mesh " +
+                       std::to_string(first.positions.size()));
+    MeshFrame frame{static_cast<double>(frames.size()) / placed.frame_rate, {}};
+    for (const Vec3& p : positions) frame.positions.push_back(from_engine(to_world(p, placed.source)));
+    frames.push_back(std::move(frame));
+  }
   for (std::size_t k = 0; k < placed.frames.size(); ++k) {
     const TriangleMesh mesh = read_in_metres(placed.frames[k], placed.source, owner).mesh;
     if (mesh.positions.size() != first.positions.size() || mesh.triangles != first.triangles) {
@@ -81,8 +99,9 @@ struct ShapeDescriber {
   void operator()(const Capsule& c) const {
     desc.shape = weft::Capsule{from_engine(c.a), from_engine(c.b), c.radius};
   }
-  void operator()(const OrientedBox& b) const {
-    desc.shape = weft::OrientedBox{from_engine(b.center), from_engine(b.half_size), from_engine(b.rotation)};
+  void operator()(const PlacedBox& b) const {
+    desc.shape = weft::OrientedBox{from_engine(b.center), from_engine(b.half_size),
+                                   from_engine(rotation_from_angles_deg(b.rotation_deg))};
   }
   void operator()(const PlacedMesh& placed) const {
     weft::TriangleMesh mesh = read_mesh(placed.source, owner, warnings);
@@ -105,7 +124,7 @@ int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
 
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
   ClothDesc cloth{.name = desc.name};
-  if (const MeshFile* file = std::get_if<MeshFile>(&desc.shape)) {
+  if (const MeshSource* file = std::get_if<MeshSource>(&desc.shape)) {
     cloth.shape = read_mesh(*file, "cloth \"" + desc.name + '"', warnings);
     cloth.source = file->file.filename().string();
     if (file->weld) cloth.weld = file->weld_distance;

@@ -17,10 +17,10 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
 ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::path& folder);
 
 /// A cloth's pins, in both forms; `shape` is nullptr if it could not be read.
-std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
+std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
 
 /// Where a cloth's springs are stiffer or softer; `shape` as for pins.
-std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshFile>* shape);
+std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
 
 /// The key "static_friction": not less than `friction`.
 void read_static_friction(TomlTable& table, double friction, double& static_friction);
@@ -28,12 +28,15 @@ void read_static_friction(TomlTable& table, double friction, double& static_fric
 /// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 
+/// The files of a name with one star, in the order of their names.
+std::vector<std::filesystem::path> find_frame_files(const std::filesystem::path& pattern);
+
 /// A fabric's numbers in SI, and what they are together; what is left out is as in `base`. `needs_all`: only
 /// damping and what follows it may be.
 Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base = {});
 
 /// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
-MeshFile read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
+MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
 
 /// The key "motion" of a pin or collider: key frames with increasing times.
 std::vector<KeyFrame> read_motion(TomlTable& owner);

@@ -1,0 +1,466 @@
+#include "weft/scene/scene_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "weft/core/staged_file.h"
+#include "weft/error.h"
+#include "weft/face/convert.h"
+#include "weft/io/obj_reader.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_sections.h"
+
+namespace weft::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+// ---- Values as TOML text; numbers with as many digits as it takes to read the same doubles back ----
+
+std::string toml(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+std::string toml(int number) { return std::to_string(number); }
+std::string toml(bool value) { return value ? "true" : "false"; }
+
+std::string toml(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') {
+      text += '\\';
+      text += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04X", static_cast<unsigned>(c));
+      text += escape;
+    } else {
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+template <class Numbers>
+std::string toml_array(const Numbers& numbers) {
+  std::string text = "[";
+  for (const auto& number : numbers) text += (text.size() > 1 ? ", " : "") + toml(number);
+  return text + ']';
+}
+
+std::string toml(const Vec3& v) { return toml_array(v); }
+
+/// Keys and values: the lines of a table, or what stands in an inline one.
+class Table {
+ public:
+  template <class Value>
+  Table& add(const char* key, const Value& value) {
+    return add_text(key, toml(value));
+  }
+
+  /// Only if it is not what the reader takes for a missing key.
+  template <class Value>
+  Table& add(const char* key, const Value& value, const Value& usual) {
+    return value == usual ? *this : add(key, value);
+  }
+
+  Table& add_text(const char* key, const std::string& text) {
+    entries_.push_back(std::string(key) + " = " + text);
+    return *this;
+  }
+
+  std::string lines() const {
+    std::string text;
+    for (const std::string& entry : entries_) text += entry + '\n';
+    return text;
+  }
+
+  std::string in_line() const {
+    std::string text;
+    for (const std::string& entry : entries_) text += (text.empty() ? "{ " : ", ") + entry;
+    return text.empty() ? "{}" : text + " }";
+  }
+
+ private:
+  std::vector<std::string> entries_;
+};
+
+std::string toml_array(const std::vector<Table>& tables) {
+  std::string text = "[\n";
+  for (const Table& table : tables) text += "  " + table.in_line() + ",\n";
+  return text + ']';
+}
+
+// ---- Meshes ----
+
+/// Names of mesh files, as a scene file in a folder has them; meshes in memory are written there first.
+class MeshFiles {
+ public:
+  explicit MeshFiles(const fs::path& scene_file)
+      : folder_(scene_file.parent_path()), stem_(scene_file.stem().string()) {}
+
+  std::string name_of(const MeshSource& source, const std::string& owner) const {
+    if (!source.mesh) return relative(source.file);
+    const std::string name = stem_ + "_" + file_stem(owner) + ".obj";
+    write_obj(folder_ / name, to_engine(*source.mesh), to_engine(source.mesh->uv));
+    return name;
+  }
+
+  /// A name with a star.
+  std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) const {
+    if (mesh.frame_positions.empty()) return relative(pattern_of(mesh.frames, owner));
+    const std::string begin = stem_ + "_" + file_stem(owner) + "_";
+    TriangleMesh moved = to_engine(*mesh.source.mesh);
+    for (std::size_t k = 0; k < mesh.frame_positions.size(); ++k) {
+      moved.positions = mesh.frame_positions[k];
+      char number[32];
+      std::snprintf(number, sizeof number, "%06zu.obj", k);
+      write_obj(folder_ / (begin + number), moved, to_engine(mesh.source.mesh->uv));
+    }
+    return begin + "*.obj";
+  }
+
+ private:
+  std::string relative(const fs::path& file) const {
+    const fs::path name = fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
+    return (name.empty() ? fs::absolute(file) : name).generic_string();
+  }
+
+  static std::string file_stem(std::string name) {
+    for (char& c : name) {
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    }
+    return name;
+  }
+
+  /// The pattern that finds these files, all of them and no other.
+  static fs::path pattern_of(const std::vector<fs::path>& frames, const std::string& owner) {
+    const std::string first = frames.front().filename().string();
+    std::size_t begin = first.size(), end = first.size();
+    for (const fs::path& frame : frames) {
+      const std::string name = frame.filename().string();
+      begin = std::min<std::size_t>(
+          begin, std::mismatch(first.begin(), first.end(), name.begin(), name.end()).first - first.begin());
+      end = std::min<std::size_t>(
+          end, std::mismatch(first.rbegin(), first.rend(), name.rbegin(), name.rend()).first - first.rbegin());
+    }
+    end = std::min(end, first.size() - std::min(begin, first.size()));
+    const fs::path pattern = frames.front().parent_path() /
+                             (first.substr(0, begin) + '*' + first.substr(first.size() - end));
+    if (find_frame_files(pattern) != frames)
+      throw InputError("collider \"" + owner + "\": its frames are not the files of one name with a star");
+    return pattern;
+  }
+
+  fs::path folder_;
+  std::string stem_;
+};
+
+void add_mesh_keys(const MeshSource& mesh, Table& table) {
+  if (mesh.up_is_z) table.add("up", std::string("z"));
+  table.add("scale", mesh.scale, MeshSource().scale);
+}
+
+// ---- Parts of a scene ----
+
+std::string motion_text(const std::vector<KeyFrame>& motion) {
+  std::vector<Table> keys;
+  for (const KeyFrame& key : motion) {
+    Table table;
+    table.add("time", key.time)
+        .add("position", key.translation, KeyFrame().translation)
+        .add("rotation", key.angles_deg, KeyFrame().angles_deg);
+    keys.push_back(table);
+  }
+  return toml_array(keys);
+}
+
+std::string selection_text(const ParticleSelection& selection) {
+  if (const auto* corner = std::get_if<GridCorner>(&selection))
+    return toml("corner:" + std::to_string(corner->i) + "," + std::to_string(corner->j));
+  if (const auto* indices = std::get_if<ParticleIndices>(&selection))
+    return "{ index = " + toml_array(indices->indices) + " }";
+  if (const auto* box = std::get_if<Box>(&selection))
+    return "{ box = " + Table().add("min", box->min).add("max", box->max).in_line() + " }";
+  const Sphere& ball = std::get<Sphere>(selection);
+  return "{ sphere = " + Table().add("center", ball.center).add("radius", ball.radius).in_line() + " }";
+}
+
+std::string curve_text(const std::vector<StretchPoint>& curve) {
+  std::string text = "[";
+  for (const StretchPoint& p : curve)
+    text += (text.size() > 1 ? ", " : "") + toml_array(std::array{p.strain, p.tension});
+  return text + ']';
+}
+
+std::string fabric_text(const FabricDesc& fabric) {
+  const auto& presets = fabric_presets();
+  const auto preset =
+      std::find_if(presets.begin(), presets.end(), [&](const auto& p) { return p.name == fabric.name; });
+  const Fabric& f = fabric.numbers;
+  if (preset != presets.end() && preset->fabric == f) return toml(fabric.name);
+  Table table;
+  table.add("name", fabric.name, std::string("fabric"))
+      .add("density", f.density)
+      .add("c11", f.c11)
+      .add("c22", f.c22)
+      .add("c12", f.c12)
+      .add("g", f.g)
+      .add("bend_warp", f.bend_warp)
+      .add("bend_weft", f.bend_weft)
+      .add("bend_bias", f.bend_bias)
+      .add("damping", f.damping)
+      .add("thickness", f.thickness)
+      .add("friction", f.friction)
+      .add("strain_limit", f.strain_limit, Fabric().strain_limit);
+  if (!f.stretch_warp.empty()) table.add_text("stretch_warp", curve_text(f.stretch_warp));
+  if (!f.stretch_weft.empty()) table.add_text("stretch_weft", curve_text(f.stretch_weft));
+  return table.in_line();
+}
+
+std::string springs_text(const ClothSceneDesc& cloth) {
+  const ClothMaterial& m = cloth.material;
+  Table table;
+  table.add("density", m.density)
+      .add("spring_structural", m.structural)
+      .add("spring_shear", m.shear)
+      .add("spring_bend", m.bend)
+      .add("damping", m.damping, ClothMaterial().damping)
+      .add("friction", m.friction, ClothMaterial().friction);
+  if (m.damping_kind != ClothMaterial().damping_kind) table.add("damping_kind", std::string("plain"));
+  if (cloth.has_own_thickness) table.add("thickness", m.thickness);
+  return table.in_line();
+}
+
+std::string shape_lines(const ClothSceneDesc& cloth, const MeshFiles& files) {
+  Table table;
+  if (const Grid* grid = std::get_if<Grid>(&cloth.shape)) {
+    const Table inner = Table()
+                            .add_text("size", toml_array(std::array{grid->size_x, grid->size_z}))
+                            .add_text("cells", toml_array(std::array{grid->cells_x, grid->cells_z}));
+    return table.add_text("grid", inner.in_line()).add("model", std::string(to_string(cloth.model))).lines();
+  }
+  const MeshSource& mesh = std::get<MeshSource>(cloth.shape);
+  table.add("mesh", files.name_of(mesh, cloth.name));
+  add_mesh_keys(mesh, table);
+  if (mesh.weld && mesh.weld_distance == MeshSource().weld_distance) table.add("weld", true);
+  if (mesh.weld && mesh.weld_distance != MeshSource().weld_distance) table.add("weld", mesh.weld_distance);
+  table.add("sew", mesh.sew_distance, MeshSource().sew_distance);
+  return table.lines();
+}
+
+std::string cloth_text(const ClothSceneDesc& cloth, const MeshFiles& files) {
+  Table table;
+  table.add_text("fabric", cloth.fabric ? fabric_text(*cloth.fabric) : springs_text(cloth));
+  if (cloth.fabric && cloth.fabric->membrane == Membrane::springs)
+    table.add("membrane", std::string("springs"));
+  if (cloth.fabric && cloth.fabric->warp) table.add("warp", *cloth.fabric->warp);
+  table.add("position", cloth.position, ClothSceneDesc().position)
+      .add("rotation", cloth.rotation_deg, ClothSceneDesc().rotation_deg)
+      .add("velocity", cloth.velocity, ClothSceneDesc().velocity)
+      .add_text("color", toml_array(cloth.color));
+  std::string text = "\n[[cloth]]\n" + Table().add("name", cloth.name).lines() + shape_lines(cloth, files) +
+                     table.lines();
+  for (const PinDesc& pin : cloth.pins) {
+    Table own;
+    own.add_text("select", selection_text(pin.select));
+    if (!pin.motion.empty()) own.add_text("motion", motion_text(pin.motion));
+    text += "\n[[cloth.pin]]\n" + own.add("pivot", pin.pivot, PinDesc().pivot).lines();
+  }
+  for (const StiffenDesc& part : cloth.stiffened)
+    text += "\n[[cloth.stiffen]]\n" + Table().add_text("select", selection_text(part.select)).add("factor", part.factor).lines();
+  return text;
+}
+
+/// Shape and keys of a collider.
+struct ShapeKeys {
+  const MeshFiles& files;
+  const std::string& owner;
+  Table& table;
+
+  void operator()(const Sphere& s) const {
+    table.add("shape", std::string("sphere")).add("center", s.center).add("radius", s.radius);
+  }
+  void operator()(const Plane& p) const {
+    table.add("shape", std::string("plane")).add("point", p.point).add("normal", p.normal);
+  }
+  void operator()(const Capsule& c) const {
+    table.add("shape", std::string("capsule")).add("a", c.a).add("b", c.b).add("radius", c.radius);
+  }
+  void operator()(const PlacedBox& b) const {
+    table.add("shape", std::string("box"))
+        .add("center", b.center)
+        .add("half_size", b.half_size)
+        .add("rotation", b.rotation_deg, PlacedBox().rotation_deg);
+  }
+  void operator()(const PlacedMesh& m) const {
+    table.add("shape", std::string("mesh"));
+    if (m.frames.empty() && m.frame_positions.empty())
+      table.add("file", files.name_of(m.source, owner));
+    else
+      table.add("frames", files.name_of_frames(m, owner)).add("frame_rate", m.frame_rate);
+    add_mesh_keys(m.source, table);
+    table.add("position", m.position, PlacedMesh().position)
+        .add("rotation", m.rotation_deg, PlacedMesh().rotation_deg);
+  }
+};
+
+std::string collider_text(const ColliderSceneDesc& collider, const MeshFiles& files) {
+  if (collider.motion.passage())
+    throw InputError("collider \"" + collider.name + "\": a scene file has motions by key frames only");
+  Table table;
+  table.add("name", collider.name);
+  std::visit(ShapeKeys{files, collider.name, table}, collider.shape);
+  table.add("friction", collider.friction)
+      .add("static_friction", collider.static_friction, ColliderSceneDesc().static_friction);
+  if (!collider.motion.keys().empty()) table.add_text("motion", motion_text(collider.motion.keys()));
+  return "\n[[collider]]\n" + table.lines();
+}
+
+std::string contact_text(const ContactDesc& contact) {
+  Table table;
+  table.add_text("between", toml_array(contact.between)).add("collide", contact.collide, true);
+  if (contact.friction) table.add("friction", *contact.friction);
+  table.add("static_friction", contact.static_friction, 0.0);
+  return "\n[[contact]]\n" + table.lines();
+}
+
+std::string wind_text(const WindDesc& wind) {
+  if (wind == WindDesc()) return "";
+  Table table;
+  table.add("drag", wind.drag);
+  if (wind.air.density > 0)
+    table.add_text("air", Table()
+                              .add("density", wind.air.density)
+                              .add("drag", wind.air.drag)
+                              .add("lift", wind.air.lift)
+                              .in_line());
+  if (wind.gusts.strength > 0)
+    table.add_text("gusts", Table()
+                                .add("strength", wind.gusts.strength)
+                                .add("length", wind.gusts.length)
+                                .add("time", wind.gusts.time)
+                                .add("seed", static_cast<int>(wind.gusts.seed))
+                                .in_line());
+  std::vector<Table> keys;
+  for (const WindKey& key : wind.keys)
+    keys.push_back(Table().add("time", key.time).add("velocity", key.velocity));
+  const bool is_steady = wind.keys.size() == 1 && wind.keys[0].time == 0;
+  is_steady ? table.add("velocity", wind.keys[0].velocity) : table.add_text("keys", toml_array(keys));
+  return "\n[wind]\n" + table.lines();
+}
+
+std::string solver_text(const SceneDesc& scene) {
+  const IntegratorSettings& s = scene.solver;
+  const IntegratorSettings usual;
+  Table table;
+  table.add("integrator", s.integrator).add("steps_per_frame", scene.steps_per_frame, 1);
+  if (scene.adaptive) table.add("adaptive", *scene.adaptive);
+  table.add("max_steps_per_frame", scene.max_steps_per_frame, SceneDesc().max_steps_per_frame);
+  const bool is_newton = s.integrator != "implicit_euler";
+  const int iterations = is_newton ? s.newton.iterations : s.implicit_euler.iterations;
+  table.add("iterations", iterations,
+            is_newton ? usual.newton.iterations : usual.implicit_euler.iterations);
+  if (s.newton.quality == NewtonQuality::fast) table.add("quality", std::string("fast"));
+  if (s.newton.quality == NewtonQuality::high) table.add("quality", std::string("high"));
+  if (s.is_double) table.add("precision", std::string("double"));
+  table.add("tolerance", s.implicit_euler.tolerance, usual.implicit_euler.tolerance)
+      .add("contact", scene.contact, true)
+      .add("untangle", scene.untangle, true);
+  if (scene.crossed_start == CrossedStart::allow) table.add("crossed_start", std::string("allow"));
+  if (s.explicit_euler.substeps != usual.explicit_euler.substeps)
+    table.add_text("explicit", Table().add("substeps", s.explicit_euler.substeps).in_line());
+  if (s.paper.printed_damping_sign)
+    table.add_text("paper", Table().add("damping_sign", std::string("as_printed")).in_line());
+  if (s.xpbd.substeps != usual.xpbd.substeps)
+    table.add_text("xpbd", Table().add("substeps", s.xpbd.substeps).in_line());
+  return "\n[solver]\n" + table.lines();
+}
+
+std::string scene_text(const SceneDesc& scene, const MeshFiles& files) {
+  Table head;
+  head.add("format", 1)
+      .add("description", scene.description, std::string())
+      .add("gravity", scene.gravity)
+      .add("fps", scene.fps)
+      .add("duration", scene.duration);
+  std::string text = "[scene]\n" + head.lines();
+  for (const ClothSceneDesc& cloth : scene.cloths) text += cloth_text(cloth, files);
+  for (const ColliderSceneDesc& collider : scene.colliders) text += collider_text(collider, files);
+  for (const ContactDesc& contact : scene.contacts) text += contact_text(contact);
+  return text + wind_text(scene.wind) + solver_text(scene);
+}
+
+/// The section of a line of scene_text(), as overrides name it: "scene", "cloth[0]", "cloth[0].pin[1]".
+std::string section_at(const std::string& text, int line) {
+  std::string section;
+  std::map<std::string, int> counts;
+  std::istringstream lines(text);
+  std::string now, last_owner;
+  for (int k = 1; k <= line && std::getline(lines, now); ++k) {
+    if (!now.starts_with('[')) continue;
+    std::string name = now.substr(now.find_first_not_of('['));
+    name.resize(name.find(']'));
+    if (!now.starts_with("[[")) {
+      section = name;
+      continue;
+    }
+    const std::size_t dot = name.find('.');
+    const std::string path = dot == std::string::npos ? name : last_owner + name.substr(dot);
+    section = path + '[' + std::to_string(counts[path]++) + ']';
+    if (dot == std::string::npos) last_owner = section;
+  }
+  return section;
+}
+
+/// An empty folder of the system's temporary ones, removed with this.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / ("weft-" + std::to_string(std::random_device()()))) {
+    fs::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+void write_scene(const fs::path& file, const SceneDesc& scene) {
+  write_file(file, scene_text(scene, MeshFiles(file)));
+}
+
+std::vector<std::string> check_scene(const SceneDesc& scene) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.toml";
+  std::vector<std::string> sentences;
+  try {
+    const std::string text = scene_text(scene, MeshFiles(file));
+    try {
+      parse_scene(text, file);
+    } catch (const SceneError& error) {
+      for (const Diagnostic& mistake : error.diagnostics())
+        sentences.push_back(section_at(text, mistake.line) + '.' + mistake.message);
+    }
+  } catch (const InputError& error) {
+    sentences.emplace_back(error.what());
+  }
+  return sentences;
+}
+
+}  // namespace weft::engine
