@@ -27,6 +27,7 @@ SKIPPED = {  # generated, history, or the list itself
     "CHANGELOG.md",
 }
 CPP = {".h", ".cpp"}
+WORD = re.compile(r"[^\W\d_]{2}|^\W*(?:\d|[aIA]\W*$)|X")  # not the single letters of formulas
 KEY_TABLES = ("key", "symbol")  # first header cell of a table that lists names
 
 
@@ -159,7 +160,7 @@ def cpp_blocks(text):
 
 def plain(text):
     """Without inline code, pictures, link targets and emphasis: same length, so that offsets stay."""
-    blank = lambda m: "x" + " " * (len(m.group()) - 1)
+    blank = lambda m: "X" + " " * (len(m.group()) - 1)
     text = re.sub(r"`[^`]*`", blank, text)
     text = re.sub(r"\]\([^)]*\)", lambda m: " " * len(m.group()), text)
     text = re.sub(r"<[^>]+>", lambda m: " " * len(m.group()), text)
@@ -181,7 +182,7 @@ def find_places(path, vocabulary):
             continue
         shown = plain(block.text)
         for start, sentence in sentences(shown):
-            count = sum(1 for word in sentence.split() if re.search(r"\w", word))
+            count = sum(1 for word in sentence.split() if WORD.search(word))
             if count > MAX_WORDS:
                 begin = start + len(sentence) - len(sentence.lstrip())
                 head = " ".join(block.text[begin:begin + 60].split())
