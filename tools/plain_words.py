@@ -40,7 +40,7 @@ def read_vocabulary():
         if len(cells) != 3:
             continue
         for pattern in re.findall(r"`([^`]+)`", cells[2]):
-            rows.append((re.compile(pattern.replace(r"\|", "|")), cells[1].strip()))
+            rows.append((re.compile(pattern.replace(r"\|", "|"), re.IGNORECASE), cells[1].strip()))
     return rows
 
 
