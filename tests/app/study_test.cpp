@@ -33,7 +33,8 @@ TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
     for (const auto& claim : chapter.at("claims")) {
       for (const auto& figure : claim.at("figures")) {
         const std::string name = figure.at("name");
-        ASSERT_EQ(committed.count(name), 1) << name << " is not in docs/study/study.md; run tools/make_study.sh";
+        ASSERT_EQ(committed.count(name), 1)
+            << name << " is not in docs/study/study.md; run tools/make_study.sh";
         const double tolerance = figure.at("tolerance");
         if (tolerance == 0) continue;
         ++held;

@@ -49,7 +49,8 @@ TEST(Manual, ItsFirstSceneIsGood) {
 
 TEST(Manual, ListsEveryKeyTheReaderKnows) {
   EXPECT_EQ(read_page("reference/scene_keys.md"), describe_scene_keys())
-      << "run `weft check --keys > docs/reference/scene_keys.md` and describe new keys in docs/manual/scenes.md";
+      << "run `weft check --keys > docs/reference/scene_keys.md`, and describe new keys in "
+         "docs/manual/scenes.md";
 }
 
 TEST(Manual, ExplainsEveryKeyThatItLists) {
