@@ -10,7 +10,7 @@ help:
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
-	@echo "make study   every claim tested: docs/study.md anew (most of an hour)"
+	@echo "make study   every claim tested: docs/study/study.md again (most of an hour)"
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
@@ -38,7 +38,7 @@ videos: build
 	@tools/make_videos.sh build/release/bin/weft out/videos
 
 study: build
-	@tools/make_study.sh build/release/bin/weft docs
+	@tools/make_study.sh build/release/bin/weft docs/study
 
 docs:
 	@tools/install_deps.sh --docs

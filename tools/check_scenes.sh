@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs the collision scenes at their full size and holds every frame against the independent checker:
-# nothing may cross at any frame nor pass through anything within any step, and nothing be more than 0.1 mm inside a collider
-# (a hundredth of that in the scenes of contact/, which the last line of contact holds). `garment` is run and told, not judged: see "What there is not, yet" in README.md.
+# Runs the collision scenes at their full size and checks every frame with the independent checker. Errors are
+# intersections in any frame, passages within any step, and depths of more than 0.1 mm inside a collider
+# (a hundredth of that in the scenes of contact/, which use the CCD fail-safe). `garment` is run and reported only: see
+# "Limits" in README.md.
 set -euo pipefail
 
 weft=${1:?"usage: check_scenes.sh path/to/weft"}
@@ -22,13 +23,13 @@ done
 for scene in needle knife_edge bullet wall ball_and_floor folded_fall crossed_strips table_cloth crumple squeeze garment_body self_crossing_body; do
   check "contact/$scene" 0.000001
 done
-# Of those that take long, the beginning.
+# The beginning of long scenes.
 check contact/funnel 0.000001 120
 check contact/twisted_tube 0.000001 100
 check contact/stack 0.000001 40
 
 "$weft" run garment --frames 30 --out "$out/garment"
-"$weft" verify "$out/garment" || echo "garment: told, not judged"
+"$weft" verify "$out/garment" || echo "garment: reported only"
 
-# What people bring: garments that start through the figure, in pieces, in another unit.
+# Typical input: garments that start through the figure, in pieces, in another unit.
 "$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 30 --cell 0.012 --out "$out/garments"

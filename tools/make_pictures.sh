@@ -36,7 +36,7 @@ as_it_is=(--set solver.untangle=false --set solver.crossed_start=allow)
 ffmpeg -v error -y -i "$wardrobe/start.png" -i "$wardrobe/walk.png" -filter_complex hstack -q:v 3 "$images/garment_start.jpg"
 "$weft" render "$wardrobe/dress_kick.toml" --frames 0,20,31,40 --columns 4 --size 400x520 --camera 30,8,1.3 --out "$images/dress_kick.jpg"
 
-# The examples of docs/cpp.md.
+# The examples of docs/manual/cpp.md.
 films=$(mktemp -d)
 trap 'rm -rf "$wardrobe" "$films"' EXIT
 "$(dirname "$weft")/../tools/film_examples" "$films" > /dev/null

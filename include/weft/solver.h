@@ -47,7 +47,7 @@ struct XpbdSettings {
 };
 
 struct IntegratorSettings {
-  std::string integrator = "newton";  // one of integrator_names(); docs/choosing.md compares them
+  std::string integrator = "newton";  // one of integrator_names(); docs/manual/choosing.md compares them
   ExplicitSettings explicit_euler = {};
   PaperSettings paper = {};
   ImplicitEulerSettings implicit_euler = {};

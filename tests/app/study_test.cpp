@@ -27,13 +27,14 @@ TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
   const std::map<std::string, double> committed =
-      read_figures(read_text(fs::path(WEFT_SOURCE_DIR) / "docs/study.md"));
+      read_figures(read_text(fs::path(WEFT_SOURCE_DIR) / "docs/study/study.md"));
   int held = 0;
   for (const auto& chapter : json.at("chapters")) {
     for (const auto& claim : chapter.at("claims")) {
       for (const auto& figure : claim.at("figures")) {
         const std::string name = figure.at("name");
-        ASSERT_EQ(committed.count(name), 1) << name << " is not in docs/study.md; run tools/make_study.sh";
+        ASSERT_EQ(committed.count(name), 1)
+            << name << " is not in docs/study/study.md; run tools/make_study.sh";
         const double tolerance = figure.at("tolerance");
         if (tolerance == 0) continue;
         ++held;

@@ -70,7 +70,7 @@ TEST(ContactExperiments, ASheetThatMovesTakesAnotherAlong) {
     EXPECT_NEAR(fast.expected, 0.3 * 9.81, 1e-9);
     EXPECT_NEAR(fast.acceleration, fast.expected,
                 (integrator == std::string("newton") ? 0.2 : 0.03) * fast.expected)
-        << integrator << " slides; with newton friction is too weak (docs/contact.md)";
+        << integrator << " slides; with newton friction is too weak (docs/explanation/contact.md)";
   }
 }
 

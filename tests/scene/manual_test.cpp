@@ -12,11 +12,11 @@ namespace weft::engine {
 namespace {
 
 TEST(Manual, ItsSceneFileIsGood) {
-  std::ifstream in(std::string(WEFT_SOURCE_DIR) + "/docs/scenes.md");
+  std::ifstream in(std::string(WEFT_SOURCE_DIR) + "/docs/manual/scenes.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   const auto begin = page.find("```toml\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
-  const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/scenes.md");
+  const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/manual/scenes.md");
   EXPECT_EQ(scene.cloths.at(0).pins.size(), 4u);
   EXPECT_EQ(scene.colliders.size(), 4u);
 
@@ -39,26 +39,27 @@ std::string read_page(const std::string& name) {
 }
 
 TEST(Manual, ItsFirstSceneIsGood) {
-  const std::string page = read_page("getting_started.md");
+  const std::string page = read_page("manual/getting_started.md");
   const auto begin = page.find("```toml\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
-  const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/getting_started.md");
+  const SceneDesc scene = parse_scene(page.substr(begin, end - begin), "docs/manual/getting_started.md");
   EXPECT_EQ(scene.cloths.at(0).name, "curtain");
   EXPECT_EQ(scene.colliders.size(), 1u);
 }
 
 TEST(Manual, ListsEveryKeyTheReaderKnows) {
-  EXPECT_EQ(read_page("scene_keys.md"), describe_scene_keys())
-      << "run `weft check --keys > docs/scene_keys.md`, and say in docs/scenes.md what is new";
+  EXPECT_EQ(read_page("reference/scene_keys.md"), describe_scene_keys())
+      << "run `weft check --keys > docs/reference/scene_keys.md`, and describe new keys in "
+         "docs/manual/scenes.md";
 }
 
 TEST(Manual, ExplainsEveryKeyThatItLists) {
-  const std::string manual = read_page("scenes.md"), keys = describe_scene_keys();
+  const std::string manual = read_page("manual/scenes.md"), keys = describe_scene_keys();
   int count = 0;
   for (auto at = keys.find("| `"); at != std::string::npos; at = keys.find("| `", at + 1), ++count) {
     const auto begin = at + 3, end = keys.find('`', begin);
     const std::string key = keys.substr(begin, end - begin);
-    EXPECT_NE(manual.find(key), std::string::npos) << key << " is not in docs/scenes.md";
+    EXPECT_NE(manual.find(key), std::string::npos) << key << " is not in docs/manual/scenes.md";
   }
   EXPECT_GT(count, 60);
 }

@@ -170,7 +170,7 @@ TEST(EnergyAudit, OfASheetOnARisingBallHasTheBallLiftIt) {
   const Audited lift = audit(world, 60, 60);
   const double expected = mass_of(world, sheet) * kGravity * 0.5;
   EXPECT_NEAR(lift.gain(), expected, 0.03 * expected) << "it starts with a jerk, and falls back on the ball";
-  // On a moving ball contact points bear 6 % too much (docs/contact.md).
+  // On a moving ball contact points bear 6 % too much (docs/explanation/contact.md).
   EXPECT_NEAR(lift.sum.work_shapes, expected, 0.1 * expected);
 }
 

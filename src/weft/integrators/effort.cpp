@@ -6,8 +6,8 @@
 namespace weft::engine {
 namespace {
 
-/// Measured on the hanging sheet (docs/method.md): 10 iterations at 2000 N/m and 60 steps per second, where
-/// `reach` is 13.7, half as many at 200 N/m and twice as many at 20000.
+/// Measured on the hanging sheet (docs/explanation/method.md): 10 iterations at 2000 N/m and 60 steps per
+/// second, where `reach` is 13.7, half as many at 200 N/m and twice as many at 20000.
 constexpr double kUsualReach = 13.7;
 constexpr double kUsualIterations = 10;
 constexpr double kStiffReach = 70;  // from here on a second Newton step pays off
