@@ -68,8 +68,8 @@ const vec2 kDisc[16] = vec2[](
     vec2(0.685, 0.250), vec2(-0.712, 0.294), vec2(0.343, -0.734), vec2(0.254, 0.809),
     vec2(-0.765, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779), vec2(-0.126, -0.976));
 
-// Sun visibility in [0, 1]. Loops end early where nothing or everything is occluded: software drivers skip the rest
-// of a loop, but execute both sides of a branch.
+// Sun visibility in [0, 1]. Loops end early where nothing or everything is occluded: software drivers skip
+// the rest of a loop, but execute both sides of a branch.
 float sunlight(vec3 n) {
   const int kLooks = 6, kTaps = 12;
   vec4 place = to_shadow * vec4(world + 4.0 * shadow_texel * n, 1.0);
