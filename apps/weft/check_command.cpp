@@ -31,10 +31,10 @@ bool check(const std::string& name, const Overrides& overrides) {
     const std::vector<std::string> crossed = check_start(built.world);
     add(crossed);
     if (!crossed.empty() && !scene.untangle)
-      warnings.push_back("solver.untangle = true sets apart what crosses at the start");
+      warnings.push_back("solver.untangle = true repairs intersections at the start");
   }
   for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
-  if (warnings.empty()) fmt::print("{}: good\n", file.string());
+  if (warnings.empty()) fmt::print("{}: OK\n", file.string());
   return warnings.empty();
 }
 
@@ -42,10 +42,10 @@ bool check(const std::string& name, const Overrides& overrides) {
 
 void add_check_command(CLI::App& app, int& exit_code) {
   auto scene = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("check", "Judge a scene file: every mistake, with its place");
+  CLI::App* command = app.add_subcommand("check", "Check a scene file: every mistake, with line and column");
   CLI::Option* file = command->add_option("FILE", *scene, "A scene file, or the name of a shipped scene");
   auto keys = std::make_shared<bool>(false);
-  CLI::Option* list = command->add_flag("--keys", *keys, "Instead, list every key that scene files may have");
+  CLI::Option* list = command->add_flag("--keys", *keys, "List all keys of scene files instead");
   file->excludes(list);
   auto overrides = std::make_shared<Overrides>();
   add_set_option(*command, *overrides);
@@ -53,7 +53,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_flag("--strict", *strict, "Exit with 1 if there is a warning");
   command->callback([scene, keys, overrides, strict, &exit_code] {
     if (*keys) return fmt::print("{}", describe_scene_keys());
-    if (scene->empty()) throw InputError("FILE is required; or --keys, to list the keys of scene files");
+    if (scene->empty()) throw InputError("FILE is required, or --keys to list the keys of scene files");
     if (!check(*scene, *overrides) && *strict) exit_code = kNotClean;
   });
 }

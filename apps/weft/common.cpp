@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InputError("the folder " + folder.string() + " cannot be made: " + error.message());
+  if (error) throw InputError("cannot create folder " + folder.string() + ": " + error.message());
 }
 
 void say(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
@@ -26,7 +26,7 @@ int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware
 int choose_threads(int asked) {
   constexpr int kMostPerProcessor = 4;  // above it, oneTBB ignores the excess and prints a warning
   const int most = kMostPerProcessor * num_processors();
-  if (asked > most) say(fmt::format("--threads {}: {} are used, four for each processor", asked, most));
+  if (asked > most) say(fmt::format("--threads {}: limited to {}, four per processor", asked, most));
   return asked > 0 ? std::min(asked, most) : num_processors();
 }
 

@@ -8,8 +8,8 @@
 #include "run_command.h"
 #include "summary.h"
 #include "view_command.h"
-#include "weft/run/film.h"
 #include "weft/render/video.h"
+#include "weft/run/film.h"
 
 namespace weft::engine::app {
 namespace {
@@ -47,7 +47,7 @@ class Pictures {
   }
 
   void tell() const {
-    if (!trouble_.empty()) fmt::print("\nPictures or videos are missing: {}\n", trouble_);
+    if (!trouble_.empty()) fmt::print("\nPictures or videos were not written: {}\n", trouble_);
   }
 
  private:
@@ -63,12 +63,12 @@ void show_window() {
   try {
     view({.scene = scene});
   } catch (const std::runtime_error& error) {
-    fmt::print("There is no window: {}\n", error.what());
+    fmt::print("No window: {}\n", error.what());
   }
 }
 
 int run_demo(const fs::path& out) {
-  fmt::print("The paper's four scenes, and each again with real fabric (_real).\n\n{}", table_head());
+  fmt::print("The paper's four scenes, each also with real fabric (_real).\n\n{}", table_head());
   Pictures pictures;
   for (const std::string& scene : kScenes) {
     FilmSink film;
@@ -94,7 +94,7 @@ int run_demo(const fs::path& out) {
 
 void add_demo_command(CLI::App& app, int& exit_code) {
   auto out = std::make_shared<fs::path>("out");
-  CLI::App* command = app.add_subcommand("demo", "Simulate the paper's scenes and their real-fabric twins");
+  CLI::App* command = app.add_subcommand("demo", "Simulate the paper's scenes, each also with real fabric");
   command->add_option("--out", *out, "Folder for the results")->type_name("DIR")->capture_default_str();
   command->callback([out, &exit_code] { exit_code = run_demo(*out); });
 }

@@ -9,9 +9,9 @@
 #include "commands.h"
 #include "common.h"
 #include "progress.h"
-#include "weft/error.h"
 #include "weft/core/nearest_name.h"
 #include "weft/core/version.h"
+#include "weft/error.h"
 
 namespace weft::engine::app {
 namespace {
@@ -38,7 +38,7 @@ void require_commands(const CLI::App& app, int argc, char** argv) {
     if (names.empty()) return;
     if (!chosen) {
       const std::string nearest = find_nearest(argv[i], names);
-      const std::string hint = nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+      const std::string hint = nearest.empty() ? fmt::format("available: {}", fmt::join(names, ", "))
                                                : fmt::format("did you mean \"{}\"?", nearest);
       throw InputError(
           fmt::format("{} has no command \"{}\"; {} (see {} --help)", path, argv[i], hint, path));

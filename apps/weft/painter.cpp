@@ -18,7 +18,7 @@ constexpr int kMostColumns = 4;
 
 void require_picture(const fs::path& file) {
   if (is_picture(file) || is_video(file)) return;
-  throw InputError(file.string() + ": expected a name that ends in .png, .jpg, .mp4, .webp or .gif");
+  throw InputError(file.string() + ": expected a file name ending in .png, .jpg, .mp4, .webp or .gif");
 }
 
 Painter::Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device)

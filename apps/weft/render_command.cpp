@@ -9,8 +9,8 @@
 #include "painter.h"
 #include "progress.h"
 #include "run_command.h"
-#include "weft/error.h"
 #include "weft/core/staged_file.h"
+#include "weft/error.h"
 #include "weft/io/glb_reader.h"
 #include "weft/render/video.h"
 #include "weft/run/film.h"
@@ -56,9 +56,9 @@ class Source {
     }
     if (scene_) return;
     if (!request.overrides.empty())
-      throw InputError("--set has no meaning for " + file_.string() + ", which is done");
+      throw InputError("--set does not apply to " + file_.string() + ": it is already simulated");
     if (request.springs)
-      throw InputError("--springs needs a scene: " + file_.string() + " does not tell its springs");
+      throw InputError("--springs requires a scene: " + file_.string() + " does not contain springs");
   }
 
   /// At least up to the last requested frame, unless the simulation ends before.
@@ -136,7 +136,7 @@ RunOutcome render(const RenderRequest& request) {
     const std::vector<int> frames = choose_frames(request.frames, outcome, painter.last_frame());
     painter.write_pictures(request.out, frames, request.columns);
   }
-  if (interrupted()) fmt::print("interrupted: what was done is kept\n");
+  if (interrupted()) fmt::print("interrupted: partial results kept\n");
   fmt::print("written {}\n", request.out.string());
   return interrupted() ? RunOutcome::interrupted : outcome;
 }
@@ -148,7 +148,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("render", "Draw a scene: a picture, a contact sheet or a video; no display needed");
   command
-      ->add_option("SCENE", request->scene, "A scene, or what weft run left: a folder or its animation.glb")
+      ->add_option("SCENE", request->scene,
+                   "A scene, or results of weft run: the folder or its animation.glb")
       ->required();
   command->add_option("--out", request->out, "A .png, .jpg, .mp4, .webp or .gif file")
       ->type_name("FILE")
@@ -156,19 +157,19 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--frame,--frames", request->frames,
                    "Frame to draw, 0 being the start (default: the last); several, as in 0,20,40, make a "
-                   "contact sheet; of "
-                   "a video the last one")
+                   "contact sheet; for "
+                   "a video, its last frame")
       ->delimiter(',')
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
-  command->add_option("--columns", request->columns, "Pictures side by side in a contact sheet")
+  command->add_option("--columns", request->columns, "Columns of a contact sheet")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
-  command->add_option("--every", request->every, "Of a video: every so many frames")
+  command->add_option("--every", request->every, "For a video: draw every N-th frame")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--size", request->size, "Of each picture, in pixels")
+  command->add_option("--size", request->size, "Picture size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
   command
@@ -177,7 +178,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->expected(1, 3)
       ->type_name("A,E,Z");
-  command->add_flag("--transparent", request->transparent, "Neither sky nor ground");
+  command->add_flag("--transparent", request->transparent, "Transparent background, without sky and ground");
   command->add_flag("--springs", request->springs, "Draw particles and springs instead of cloth");
   command->add_option("--threads", request->threads, "Threads of the simulation (default: all processors)")
       ->check(CLI::Range(1, 1024))

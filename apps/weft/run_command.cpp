@@ -144,16 +144,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("!--no-glb", request->glb, "Do not write animation.glb");
   command->add_flag("--obj", request->obj, "Also write a folder obj: an OBJ file per cloth and frame");
   command->add_flag("--audit", request->audit,
-                    "Also report the work done in every frame, and the energy it leaves over; slower");
-  command->add_flag("!--no-passages", request->check_passages,
-                    "Do not check what goes through what within steps");
+                    "Also report the work and the unexplained energy of every frame; slower");
+  command->add_flag("!--no-passages", request->check_passages, "Do not check for tunnelling within steps");
   add_set_option(*command, request->overrides);
-  command->add_flag("--strict", request->strict, "Exit with 1 if the last lines say that something is wrong");
+  command->add_flag("--strict", request->strict, "Exit with 1 if the run has problems");
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
   command->callback([request, &exit_code] {
     const FinishedRun run = run_to_files(*request);
     fmt::print("{}", summarise(run.report));
-    if (run.report.outcome == RunOutcome::interrupted) fmt::print("  interrupted: what was done is kept\n");
+    if (run.report.outcome == RunOutcome::interrupted) fmt::print("  interrupted: partial results kept\n");
     for (const fs::path& file : run.files)
       fmt::print("  {:13}{}\n", file == run.files[0] ? "written" : "", file.string());
     fmt::print("{}", describe_problems(run.report));

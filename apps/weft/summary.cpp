@@ -18,13 +18,13 @@ std::string format_crossings(const RunReport& r) {
 /// The frame with the largest excess of energy, if an energy audit found any.
 std::string format_left_over(const std::vector<double>& left_over) {
   const auto most = std::max_element(left_over.begin(), left_over.end());
-  if (*most <= 0) return "no energy from nothing in any frame";
-  return fmt::format("{:.3g} J of energy from nothing at most, in frame {}", *most,
+  if (*most <= 0) return "no unexplained energy in any frame";
+  return fmt::format("at most {:.3g} J of unexplained energy, in frame {}", *most,
                      most - left_over.begin() + 1);
 }
 
 std::string first_passage_in_words(const RunReport& r) {
-  return r.first_passage.empty() ? "" : ", the first in " + r.first_passage;
+  return r.first_passage.empty() ? "" : ", first in " + r.first_passage;
 }
 
 double last(const std::vector<double>& values) { return values.empty() ? 0.0 : values.back(); }
@@ -47,9 +47,9 @@ std::string summarise(const RunReport& r) {
   if (!r.energy.left_over.empty())
     text += fmt::format("  audit        {}\n", format_left_over(r.energy.left_over));
   text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
-  if (r.intersections) text += fmt::format("  crossings    {} at worst\n", *r.intersections);
+  if (r.intersections) text += fmt::format("  crossings    at most {}\n", *r.intersections);
   if (r.passages) text += fmt::format("  passages     {}{}\n", *r.passages, first_passage_in_words(r));
-  if (r.penetration_max) text += fmt::format("  penetration  {} at worst\n", format_depth(r));
+  if (r.penetration_max) text += fmt::format("  penetration  at most {}\n", format_depth(r));
   text += fmt::format("  state hash   {}\n", r.state_hash);
   for (const std::string& note : r.notes) text += "  note: " + note + "\n";
   for (const std::string& warning : r.warnings) text += "  warning: " + warning + "\n";
@@ -60,7 +60,7 @@ std::string summarise(const RunReport& r) {
 std::string describe_problems(const RunReport& r) {
   std::string text;
   for (const RunProblem& p : r.problems) {
-    text += fmt::format("  wrong: {} ({}{})\n", p.sentence, to_string(p.code),
+    text += fmt::format("  problem: {} ({}{})\n", p.sentence, to_string(p.code),
                         p.frames > 1 ? fmt::format(", {} times", p.frames) : "");
   }
   return text;

@@ -25,14 +25,14 @@ std::string count(int number, const char* one, const char* many) {
 }
 
 std::string crossings_in_words(const AnimationCheck& check) {
-  if (check.intersections == 0) return "nothing crosses";
+  if (check.intersections == 0) return "no intersections";
   return fmt::format(
-      "{} with crossings, at worst {} in frame {}", count(check.frames_with_crossings, "frame", "frames"),
+      "{} with intersections, at most {} in frame {}", count(check.frames_with_crossings, "frame", "frames"),
       count(check.intersections, "pair of triangles", "pairs of triangles"), check.worst_frame);
 }
 
 std::string depth_in_words(const AnimationCheck& check) {
-  if (!check.penetration_max) return "no colliders to be inside of";
+  if (!check.penetration_max) return "no colliders with an inside";
   if (check.deepest_frame < 0) return "no cloth inside a collider";
   return fmt::format("deepest {:.3g} mm in frame {}: {}", 1000 * *check.penetration_max, check.deepest_frame,
                      check.deepest_place);
@@ -43,10 +43,10 @@ void print(const fs::path& file, const AnimationCheck& check) {
              crossings_in_words(check), depth_in_words(check));
   for (const auto& [frame, what] : check.offences) fmt::print("  frame {}: {}\n", frame, what);
   if (check.passages == 0) {
-    fmt::print("  between frames, on straight lines, nothing passes through anything\n");
+    fmt::print("  between frames, on linear paths: no tunnelling\n");
     return;
   }
-  fmt::print("  between frames, on straight lines, {} may have passed through each other:\n",
+  fmt::print("  between frames, on linear paths: possible tunnelling of {}:\n",
              count(check.passages, "pair", "pairs"));
   for (const auto& [frame, what] : check.may_passed) fmt::print("  before frame {}: {}\n", frame, what);
 }
@@ -78,7 +78,7 @@ nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check
 std::string require_depth(const std::string& text) {
   double depth = 0;
   if (CLI::detail::lexical_cast(text, depth) && std::isfinite(depth) && depth >= 0) return "";
-  return text + " is no depth; expected a finite number of metres, 0 or more";
+  return text + " is not a depth; expected a finite number of metres, 0 or more";
 }
 
 int verify(const VerifyRequest& request) {
@@ -98,18 +98,18 @@ int verify(const VerifyRequest& request) {
 
 void add_verify_command(CLI::App& app, int& exit_code) {
   auto request = std::make_shared<VerifyRequest>();
-  CLI::App* command = app.add_subcommand("verify", "Check the frames of a run: does cloth cross anything?");
+  CLI::App* command =
+      app.add_subcommand("verify", "Check the frames of a run for intersections and penetration");
   command->add_option("DIR", request->path, "The folder of a run, or a .glb file that a run wrote")
       ->required();
-  command->add_option("--tolerance", request->tolerance, "How deep cloth may be inside a collider [m]")
+  command->add_option("--tolerance", request->tolerance, "Tolerated penetration into colliders [m]")
       ->check(require_depth)
       ->type_name("M")
       ->capture_default_str();
   command->add_flag("--passages", request->passages,
-                    "What may have passed through anything between two frames is no clean run either");
+                    "Possible tunnelling between frames also fails the check");
   command->add_flag("--json", request->json, "Print the result as JSON");
-  command->footer(
-      "Exit code 0: clean. 1: cloth crosses something or is too deep in a collider. 2: bad input.");
+  command->footer("Exit code 0: clean. 1: intersections or excessive penetration. 2: bad input.");
   command->callback([request, &exit_code] { exit_code = verify(*request); });
 }
 

@@ -65,23 +65,23 @@ bool has_spectator() {
 
 void add_view_command(CLI::App& app, int& exit_code) {
   auto request = std::make_shared<ViewRequest>();
-  CLI::App* command = app.add_subcommand("view", "Watch and touch a scene in a window, in real time");
-  command->add_option("SCENE", request->scene, "A scene that ships, or a file")->required();
+  CLI::App* command = app.add_subcommand("view", "Run a scene in a window in real time, and grab its cloth");
+  command->add_option("SCENE", request->scene, "A scene file, or the name of a shipped scene")->required();
   command
       ->add_option("--compare", request->compare,
-                   "Two integrators side by side, as in --compare paper,paper_fixed")
+                   "Compare two integrators, as in --compare paper,paper_fixed")
       ->delimiter(',')
       ->expected(2)
       ->type_name("A,B");
-  command->add_option("--size", request->size, "Of the window, in pixels")
+  command->add_option("--size", request->size, "Window size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
   command
       ->add_option("--threads", request->threads,
-                   "Threads of each simulation (default: the processors, but for one that draws)")
+                   "Threads of each simulation (default: all processors except one for drawing)")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
-  command->add_option("--frames", request->frames, "Close the window after so many pictures")
+  command->add_option("--frames", request->frames, "Close the window after N pictures")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
   command

@@ -83,7 +83,7 @@ void draw_status(const LiveStatus& s) {
   ImGui::SameLine(kWidth * 0.52f * scale());
   ImGui::TextUnformatted(fmt::format("time {:.2f} s", s.time).c_str());
   if (s.too_heavy)
-    say(kAlarm, fmt::format("Too heavy for real time: {:.3g} times slower", 1 / s.simulated_per_second));
+    say(kAlarm, fmt::format("Slower than real time by a factor of {:.3g}", 1 / s.simulated_per_second));
   if (!s.failure.empty()) say(kAlarm, "Paused: " + s.failure);
   for (const std::string& trouble : s.troubles) say(kAlarm, trouble);
   for (const std::string& warning : s.warnings) say(kAlarm, warning);
@@ -158,24 +158,24 @@ void draw_main_box(Viewer& viewer) {
   ImGui::Separator();
   draw_view(viewer);
   say(kPale, fmt::format("{:.0f} ms per picture{}", viewer.picture_ms(),
-                         viewer.window().is_software() ? ", by the processor" : ""));
+                         viewer.window().is_software() ? ", software rendering" : ""));
   if (!viewer.message().empty()) say(kPale, viewer.message());
   ImGui::End();
 }
 
 constexpr const char* kHelp[][2] = {
-    {"left drag on cloth", "grab it, pull it, let it go"},
-    {"left or right drag", "turn the view"},
-    {"middle or shift drag", "move the view"},
-    {"wheel", "nearer, farther"},
+    {"left drag on cloth", "grab, pull, release"},
+    {"left or right drag", "rotate the view"},
+    {"middle or shift drag", "pan the view"},
+    {"wheel", "zoom"},
     {"space", "play, pause"},
     {". or S", "one step"},
     {"right arrow, shift+S", "one frame"},
-    {"R", "back to the start"},
-    {"I, shift+I", "next, last integrator"},
+    {"R", "restart"},
+    {"I, shift+I", "next, previous integrator"},
     {"M", "next spring model"},
     {"G", "cloth or springs"},
-    {"C", "the first view again"},
+    {"C", "reset the view"},
     {"P", "save the picture as PNG"},
     {"J", "write the report (--report)"},
     {"H, F1", "this help"},
@@ -186,7 +186,7 @@ void draw_help() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::Begin("keys", nullptr, kBox);
-  if (ImGui::BeginTable("keys and what they do", 2, ImGuiTableFlags_SizingFixedFit)) {
+  if (ImGui::BeginTable("keyboard shortcuts", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const auto& [key, meaning] : kHelp) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();

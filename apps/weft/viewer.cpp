@@ -103,7 +103,7 @@ void Viewer::cycle_model() {
   const std::string now = model_ ? std::string(to_string(*model_)) : sides_[0]->status().model;
   const auto known = std::find_if(std::begin(kModels), std::end(kModels),
                                   [&](SpringModel m) { return to_string(m) == now; });
-  if (known == std::end(kModels)) return say("these springs are a mesh's edges; there is no other model");
+  if (known == std::end(kModels)) return say("mesh cloth: its edges are the only spring model");
   set_model(kModels[(known - std::begin(kModels) + 1) % std::size(kModels)]);
 }
 

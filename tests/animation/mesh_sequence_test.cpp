@@ -29,7 +29,7 @@ TEST(MeshSequence, OfKeysThatDoNotFitIsRefused) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "key 1 of the mesh sequence has 2 vertices, the first one 1; all must have the same");
+              "key 1 of the mesh sequence has 2 vertices, the first key 1; all must have the same number");
   }
 }
 

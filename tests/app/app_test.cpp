@@ -173,7 +173,7 @@ TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
   expect_bad_input("weft run '" + broken + "'",
                    broken + ":5:3: unknown key \"cloht\"; did you mean \"cloth\"?");
   expect_bad_input("weft run paper/fig6_bal", "did you mean \"paper/fig6_ball\"?");
-  expect_bad_input("weft run .", "there is no scene file");
+  expect_bad_input("weft run .", "no scene file");
   expect_bad_input("weft run", "SCENE");
   expect_bad_input("weft run paper/fig6_ball --fraims 3", "--fraims");
   expect_bad_input("weft run paper/fig6_ball --frames 0", "--frames");
@@ -182,7 +182,7 @@ TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
   expect_bad_input("weft run paper/fig6_ball --set solver", "expected path.to.key=value");
   expect_bad_input("weft run paper/fig6_ball --set solver.integratr=paper", "did you mean \"integrator\"?");
   expect_bad_input("weft", "--help");
-  expect_bad_input("weft fly", "weft has no command \"fly\"; there are run, demo, ");
+  expect_bad_input("weft fly", "weft has no command \"fly\"; available: run, demo, ");
   expect_bad_input("weft rnu garment", "weft has no command \"rnu\"; did you mean \"run\"?");
   expect_bad_input("weft study drpae", "weft study has no command \"drpae\"; did you mean \"drape\"?");
   expect_bad_input("weft bench integrators --integrators magic", "magic");
@@ -195,8 +195,8 @@ TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
   fs::create_directories("results/animation.glb/folder");
   // A million frames take hours. /proc is a folder that nobody can write to, including root.
   const std::string run = "timeout 60 '" WEFT_PROGRAM "' run paper/fig6_ball --frames 1000000 ";
-  expect_bad_input(run + "--out file", "the folder file cannot be made: Not a directory");
-  expect_bad_input(run + "--out file/results", "the folder file/results cannot be made: Not a directory");
+  expect_bad_input(run + "--out file", "cannot create folder file: Not a directory");
+  expect_bad_input(run + "--out file/results", "cannot create folder file/results: Not a directory");
   expect_bad_input(run + "--out /proc", "/proc/animation.glb cannot be written: ");
   expect_bad_input(run + "--out results", "results/animation.glb cannot be written: Is a directory");
   expect_bad_input(run + "--report no/such/report.json",
@@ -210,7 +210,7 @@ TEST_F(App, SignalsThatEndProgramsKeepWhatWasDone) {
     ASSERT_TRUE(run.catches(SIGTERM));
     run.send(signal);
     EXPECT_EQ(run.wait(), 130) << signal;
-    EXPECT_TRUE(contains(read_text("background.txt"), "interrupted: what was done is kept"));
+    EXPECT_TRUE(contains(read_text("background.txt"), "interrupted: partial results kept"));
     EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
     const nlohmann::json report = read_json("results/report.json");
     EXPECT_EQ(report["outcome"], "interrupted");
@@ -285,7 +285,7 @@ TEST_F(App, ThreadsAreAtMostFourForEachProcessor) {
   const int most = std::min(1024, 4 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
   EXPECT_EQ(read_json("results/report.json")["threads"], most);
   if (most == 1024) return;
-  EXPECT_EQ(done.err, "--threads 1024: " + std::to_string(most) + " are used, four for each processor\n");
+  EXPECT_EQ(done.err, "--threads 1024: limited to " + std::to_string(most) + ", four per processor\n");
 }
 
 TEST_F(App, ScenesListsEverySceneWithItsDescription) {
@@ -362,9 +362,8 @@ TEST_F(App, VerifyFindsACleanRunClean) {
   EXPECT_EQ(shell("weft run paper/fig3_horizontal --frames 5 --out results").exit_code, 0);
   const Finished done = shell("weft verify results");
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
-  EXPECT_TRUE(contains(done.out, "6 frames; nothing crosses")) << done.out;
-  EXPECT_TRUE(contains(done.out, "between frames, on straight lines, nothing passes through anything"))
-      << done.out;
+  EXPECT_TRUE(contains(done.out, "6 frames; no intersections")) << done.out;
+  EXPECT_TRUE(contains(done.out, "between frames, on linear paths: no tunnelling")) << done.out;
   EXPECT_EQ(shell("weft verify results/animation.glb").out, done.out);
 }
 
@@ -390,9 +389,10 @@ TEST_F(App, VerifyFindsPlantedCrossings) {
   weft::engine::write_glb("planted.glb", animation);
   const Finished done = shell("weft verify planted.glb");
   EXPECT_EQ(done.exit_code, 1) << done.err;
-  EXPECT_TRUE(contains(done.out, "3 frames; 1 frame with crossings, at worst 1 pair of triangles in frame 2"))
+  EXPECT_TRUE(
+      contains(done.out, "3 frames; 1 frame with intersections, at most 1 pair of triangles in frame 2"))
       << done.out;
-  EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 crosses cloth \"blade\" triangle 0"))
+  EXPECT_TRUE(contains(done.out, "frame 2: cloth \"sheet\" triangle 0 intersects cloth \"blade\" triangle 0"))
       << done.out;
   EXPECT_EQ(shell("weft verify planted.glb --json | grep -c '\"clean\": false'").out, "1\n");
 }
@@ -407,7 +407,7 @@ TEST_F(App, VerifyTellsWhatMayHavePassedAndFailsWhereAsked) {
   EXPECT_TRUE(contains(run.out, ", the first in frame 2")) << run.out;
   const Finished done = shell("weft verify results");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "may have passed through each other:")) << done.out;
+  EXPECT_TRUE(contains(done.out, "on linear paths: possible tunnelling of ")) << done.out;
   EXPECT_EQ(shell("weft verify results --passages").exit_code, 1);
   EXPECT_EQ(shell(ribbons + " --no-passages").exit_code, 0);
   EXPECT_TRUE(read_json("results/report.json")["passages"].is_null());
@@ -418,9 +418,9 @@ TEST_F(App, VerifyRefusesWhatIsNoRun) {
   fs::create_directories("empty");
   expect_bad_input("weft verify empty", "empty/animation.glb");
   std::ofstream("words.glb") << "words";
-  expect_bad_input("weft verify words.glb", "words.glb: is no complete .glb file");
+  expect_bad_input("weft verify words.glb", "words.glb: is not a complete .glb file");
   for (const std::string tolerance : {"nan", "inf", "-1", "deep"})
-    expect_bad_input("weft verify words.glb --tolerance=" + tolerance, tolerance + " is no depth");
+    expect_bad_input("weft verify words.glb --tolerance=" + tolerance, tolerance + " is not a depth");
 }
 
 TEST_F(App, BenchMeasures) {

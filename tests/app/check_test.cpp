@@ -66,7 +66,7 @@ TEST_F(App, CheckSeesACrossedStart) {
   const Finished done = shell(crossed);
   EXPECT_TRUE(contains(done.out, "at the start cloth \"shirt\" triangle")) << done.out;
   EXPECT_TRUE(contains(done.out, "solver.untangle = true")) << done.out;
-  EXPECT_FALSE(contains(done.out, ": good")) << done.out;
+  EXPECT_FALSE(contains(done.out, ": OK")) << done.out;
   EXPECT_EQ(shell(crossed + " --strict").exit_code, 1);
 }
 
@@ -85,7 +85,7 @@ TEST_F(App, CheckTellsOfOpenSeamsAndRunOfThoseThatItSewed) {
                                 "f 1 3 4 2\nf 5 7 8 6\n";
   std::ofstream("strip.toml") << "[scene]\nformat = 1\n[[cloth]]\nmesh = \"strip.obj\"\n";
   const Finished open = shell("weft check strip.toml");
-  EXPECT_TRUE(contains(open.out, "2 borders run 1.0 mm apart: sew = 0.00")) << open.out << open.err;
+  EXPECT_TRUE(contains(open.out, "2 borders are 1.0 mm apart: sew = 0.00")) << open.out << open.err;
   const Finished sewn = shell("weft run strip.toml --frames 1 --set cloth[0].sew=0.002");
   EXPECT_EQ(sewn.exit_code, 0) << sewn.err;
   EXPECT_TRUE(contains(sewn.out, "note: cloth \"cloth\" (strip.obj): sewed 1 seam")) << sewn.out;
@@ -96,14 +96,14 @@ TEST_F(App, CheckIsStrictlyContentWithShippedGarments) {
        {"garment", "garment_hung", "contact/garment_body", "contact/self_crossing_body"}) {
     const Finished done = shell(std::string("weft check --strict ") + scene);
     EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
-    EXPECT_TRUE(contains(done.out, ": good")) << done.out;
+    EXPECT_TRUE(contains(done.out, ": OK")) << done.out;
   }
 }
 
 TEST_F(App, AFabricNeedsNoTextureCoordinates) {
   const Finished done = shell("weft run garment --set 'cloth[0].fabric=denim' --frames 1");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "it goes upwards, warp = [0, 1, 0]")) << done.out;
+  EXPECT_TRUE(contains(done.out, "it is set upwards, warp = [0, 1, 0]")) << done.out;
 }
 
 }  // namespace

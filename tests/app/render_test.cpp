@@ -85,7 +85,7 @@ TEST_F(Render, DrawsSprings) {
 }
 
 TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
-  expect_bad_input("weft render paper/fig6_ball --out film.avi", "film.avi: expected a name that ends in");
+  expect_bad_input("weft render paper/fig6_ball --out film.avi", "film.avi: expected a file name ending in");
   expect_bad_input("weft render paper/fig6_ball --size big", "--size big: expected WIDTHxHEIGHT");
   expect_bad_input("weft render paper/fig6_ball --size 100000x100000", "each from 1 to 16384");
   expect_bad_input("weft render paper/fig6_ball --camera 0,95", "elevation between -90 and 90");
@@ -99,13 +99,13 @@ TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
 TEST_F(Render, AFrameThatIsNotThereIsNamed) {
   ASSERT_EQ(shell("weft run paper/fig3_horizontal --frames 2 --out done" + kQuick).exit_code, 0);
   expect_bad_input("weft render done --frame 7 --out a.png", "there is no frame 7; the last one is 2");
-  expect_bad_input("weft render done --springs --out a.png", "--springs needs a scene");
-  expect_bad_input("weft render done --set scene.fps=3 --out a.png", "--set has no meaning");
+  expect_bad_input("weft render done --springs --out a.png", "--springs requires a scene");
+  expect_bad_input("weft render done --set scene.fps=3 --out a.png", "--set does not apply");
 }
 
 TEST_F(Render, WithoutFfmpegAVideoIsRefusedWithAdvice) {
   expect_bad_input("PATH=/nowhere weft render paper/fig6_ball --out a.mp4",
-                   "needs the program ffmpeg, which is not installed");
+                   "requires ffmpeg, which is not installed");
 }
 
 TEST_F(App, RenderWithoutOpenGlSaysWhatToInstall) {

@@ -184,7 +184,7 @@ TEST(Untangle, WhatPinsHoldThroughEachOtherIsNamed) {
   ASSERT_FALSE(report.left.empty());
   EXPECT_NE(report.left[0].find("cloth \"a\""), std::string::npos) << report.left[0];
   EXPECT_NE(report.left[0].find("cloth \"b\""), std::string::npos) << report.left[0];
-  EXPECT_NE(report.left[0].find("through triangle"), std::string::npos) << report.left[0];
+  EXPECT_NE(report.left[0].find("with triangle"), std::string::npos) << report.left[0];
 }
 
 }  // namespace

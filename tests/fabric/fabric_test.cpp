@@ -83,9 +83,9 @@ TEST(Fabric, BendingRigidityIsTheGivenOneInTheThreeDirections) {
 TEST(Fabric, StretchCurveMustRiseFromTheOrigin) {
   EXPECT_EQ(mistake({.stretch_warp = {{0.01, 20}, {0.02, 90}}}), "");
   EXPECT_EQ(mistake({.stretch_warp = {{0.02, 20}, {0.01, 90}}}),
-            "stretch_warp must rise from the origin, does not at strain 0.01");
+            "stretch_warp must increase from the origin, does not at strain 0.01");
   EXPECT_EQ(mistake({.stretch_weft = {{0, 20}}}),
-            "stretch_weft must rise from the origin, does not at strain 0");
+            "stretch_weft must increase from the origin, does not at strain 0");
 }
 
 TEST(Fabric, AllMistakesStandInOneSentence) {

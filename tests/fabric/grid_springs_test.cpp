@@ -97,8 +97,8 @@ TEST(GridSprings, ChangesAreNamed) {
       make_grid_springs({1, 1, 10, 10}, CellDiagonals::parallel, GridWarp::first_axis, denim, "denim");
   ASSERT_EQ(springs.warnings.size(), 2u);
   EXPECT_EQ(springs.warnings[0],
-            "fabric \"denim\": springs make c12 = g: c12 is 53.4 N/m instead of 20.5 N/m (membrane = "
-            "\"triangle\" keeps it)");
+            "fabric \"denim\": springs impose c12 = g: c12 is 53.4 N/m instead of 20.5 N/m (membrane = "
+            "\"triangle\" preserves it)");
   EXPECT_NE(springs.warnings[1].find("c16 = 53.4 N/m, c26 = 53.4 N/m"), std::string::npos);
 }
 
@@ -111,10 +111,10 @@ TEST(GridSprings, FabricsThatSpringsCannotBeAreRefusedWithWhatToDo) {
     }
     return "";
   };
-  EXPECT_EQ(
-      complaint({1, 1, 10, 10}, find_fabric("gray_interlock")),
-      "fabric \"jersey\": springs cannot be it: c11 = 33.2 N/m must be above g = 36.9 N/m; use membrane = "
-      "\"triangle\", a smaller g, or a larger c11");
+  EXPECT_EQ(complaint({1, 1, 10, 10}, find_fabric("gray_interlock")),
+            "fabric \"jersey\": springs cannot represent it: c11 = 33.2 N/m must exceed g = 36.9 N/m; use "
+            "membrane = "
+            "\"triangle\", a smaller g, or a larger c11");
   EXPECT_NE(complaint({4, 1, 10, 10}, kFabric).find("times the cells' (length/width)², 800 N/m"),
             std::string::npos);
 }

@@ -70,9 +70,9 @@ TEST(Presets, NamesMayBeWrittenWithHyphensSpacesAndCapitals) {
 }
 
 TEST(Presets, UnknownNameIsAnsweredWithTheNearestOne) {
-  EXPECT_EQ(complaint("denin"), "there is no fabric \"denin\"; did you mean \"denim\"?");
-  EXPECT_EQ(
-      complaint("chain mail").find("there is no fabric \"chain mail\"; there are silk, cotton_shirting"), 0u);
+  EXPECT_EQ(complaint("denin"), "unknown fabric \"denin\"; did you mean \"denim\"?");
+  EXPECT_EQ(complaint("chain mail").find("unknown fabric \"chain mail\"; available: silk, cotton_shirting"),
+            0u);
 }
 
 }  // namespace

@@ -106,8 +106,8 @@ TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
 
   const ObjMesh other = parse_obj("v 0 0 0\nw 0\nv 1 0 0\nw 0\nv 0 1 0\nf 1 2 3\ncurv 0\n", "x.obj");
   ASSERT_EQ(other.warnings.size(), 2u);
-  EXPECT_EQ(other.warnings[0], "x.obj:7: unknown keyword 'curv' was passed over; it begins 1 lines");
-  EXPECT_EQ(other.warnings[1], "x.obj:2: unknown keyword 'w' was passed over; it begins 2 lines");
+  EXPECT_EQ(other.warnings[0], "x.obj:7: unknown keyword 'curv' was ignored; it begins 1 lines");
+  EXPECT_EQ(other.warnings[1], "x.obj:2: unknown keyword 'w' was ignored; it begins 2 lines");
 }
 
 TEST(ObjReader, TellsFewOfVeryManyUnknownKeywords) {

@@ -422,7 +422,7 @@ TEST(CleanMesh, TellsWhatWasSewnAndWhatStaysOpen) {
   add(mesh, sheet(0.1, 0.1, 4, 10), moved(0.1018, 0, 0));
   const CleanMesh open = clean_mesh(mesh, {.sew_distance = 0.001});
   EXPECT_EQ(open.warnings,
-            std::vector<std::string>{"2 borders run 1.8 mm apart: sew = 0.002 would join them"});
+            std::vector<std::string>{"2 borders are 1.8 mm apart: sew = 0.002 would join them"});
   const CleanMesh sewn = clean_mesh(mesh, {.sew_distance = 0.002});
   EXPECT_TRUE(sewn.warnings.empty());
   ASSERT_EQ(sewn.notes.size(), 1u);

@@ -127,7 +127,7 @@ TEST(VideoTrouble, WithoutFfmpegSaysWhatToInstall) {
     said = error.what();
   }
   setenv("PATH", path.c_str(), 1);
-  EXPECT_NE(said.find("film.mp4 needs the program ffmpeg"), std::string::npos) << said;
+  EXPECT_NE(said.find("film.mp4 requires ffmpeg"), std::string::npos) << said;
   EXPECT_NE(said.find("install"), std::string::npos) << said;
 }
 

@@ -92,7 +92,7 @@ TEST(FrameChecks, CountFramesThatCross) {
   EXPECT_EQ(check.intersections, 1);
   EXPECT_EQ(check.worst_frame, 1);
   ASSERT_EQ(check.offences.size(), 3u);
-  EXPECT_EQ(check.offences[0].what, "cloth \"rag\" triangle 0 crosses cloth \"blade\" triangle 0");
+  EXPECT_EQ(check.offences[0].what, "cloth \"rag\" triangle 0 intersects cloth \"blade\" triangle 0");
 }
 
 TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {

@@ -135,8 +135,8 @@ frame_rate = 30
 TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
   ObjSink obj(folder_);
   FilmSink film;
-  run_scene(shipped("two_layers", {"cloth[0].grid.cells=[6, 6]", "cloth[1].grid.cells=[6, 6]"}), {.frames = 3},
-            {&obj, &film});
+  run_scene(shipped("two_layers", {"cloth[0].grid.cells=[6, 6]", "cloth[1].grid.cells=[6, 6]"}),
+            {.frames = 3}, {&obj, &film});
   for (const AnimatedMesh& cloth : film.animation().cloths) {
     std::string name = cloth.name;  // "upper sheet"
     std::replace(name.begin(), name.end(), ' ', '_');
@@ -158,7 +158,8 @@ TEST_F(FrameSinks, GlbRefusesARunThatItCannotHoldBeforeItStarts) {
     run_scene(shipped("flag"), {.frames = 1000000}, {&glb});
     FAIL() << "no refusal";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("a .glb holds 4 GiB"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("a .glb holds at most 4 GiB"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -86,7 +86,7 @@ TEST(BrokenScenes, EmptyFileLacksSceneAndCloth) {
     const Lines found = mistakes(text);
     ASSERT_EQ(found.size(), 2u) << text;
     EXPECT_EQ(found[0], "1:1: missing key \"scene\", expected [scene] with format = 1");
-    EXPECT_EQ(found[1], "1:1: missing key \"cloth\", expected one [[cloth]] at least");
+    EXPECT_EQ(found[1], "1:1: missing key \"cloth\", expected at least one [[cloth]]");
   }
 }
 

@@ -116,11 +116,10 @@ TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
     build();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "collider \"body\": frame 1 (body_01.obj) has 24 vertices and 11 triangles, the first one "
-        "(body_00.obj) 24 vertices and 12 triangles; all frames must have the same triangles of the same "
-        "vertices, in the same order");
+    EXPECT_EQ(std::string(error.what()),
+              "collider \"body\": frame 1 (body_01.obj) has 24 vertices and 11 triangles, the first "
+              "(body_00.obj) 24 vertices and 12 triangles; all frames must have the same vertices and "
+              "triangles, in the same order");
   }
 }
 

@@ -42,7 +42,7 @@ TEST(FabricFile, GivesEveryNumberAndTheDefaultsOfTheRest) {
   EXPECT_EQ(fabric.fabric.c22, 2027.8);
   EXPECT_EQ(fabric.fabric.bend_bias, 18.35e-6);
   EXPECT_EQ(fabric.fabric.damping, Fabric().damping);
-  EXPECT_EQ(fabric.sources.damping, "default: left out");
+  EXPECT_EQ(fabric.sources.damping, "default: not given");
   EXPECT_EQ(fabric.sources.shear, "given in folder/my_denim.toml");
 }
 
@@ -70,7 +70,7 @@ TEST(FabricFile, RefusesCurvesThatAreNone) {
   EXPECT_NE(warp("3").find("9:16: stretch_warp: expected points of strain and tension"), std::string::npos);
   EXPECT_NE(warp("[[0.01, -4]]").find("9:24: stretch_warp[0][1]: expected a number above 0"),
             std::string::npos);
-  EXPECT_NE(warp("[[0.02, 4], [0.01, 9]]").find("must rise from the origin"), std::string::npos);
+  EXPECT_NE(warp("[[0.02, 4], [0.01, 9]]").find("must increase from the origin"), std::string::npos);
   EXPECT_NE(warp("[[0.1, 400], [0.2, 401]]").find("is too flat"), std::string::npos);
 }
 

@@ -118,7 +118,8 @@ TEST(FabricScenes, SaySoWhereSpringsCannotBeTheFabric) {
     }
     return "no error";
   };
-  EXPECT_NE(failure("fabric = { c11 = 50, g = 60 }\n").find("springs cannot be it: c11"), std::string::npos);
+  EXPECT_NE(failure("fabric = { c11 = 50, g = 60 }\n").find("springs cannot represent it: c11"),
+            std::string::npos);
   EXPECT_NE(failure("fabric = \"silk\"\nwarp = [1, 0, 1]\n").find("membrane = \"triangle\""),
             std::string::npos);
 }

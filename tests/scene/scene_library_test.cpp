@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "weft/error.h"
 #include "weft/core/nearest_name.h"
+#include "weft/error.h"
 
 namespace weft::engine {
 namespace {
@@ -52,7 +52,7 @@ TEST_F(SceneLibrary, NamesTheNearestScene) {
   const std::string meant = "did you mean \"paper/fig6_ball\"?";
   EXPECT_NE(failure("paper/fig6_bal").find(meant), std::string::npos);
   EXPECT_NE(failure("fig6_ball").find(meant), std::string::npos);
-  EXPECT_NE(failure("something else").find("there are "), std::string::npos);
+  EXPECT_NE(failure("something else").find("available: "), std::string::npos);
 }
 
 TEST_F(SceneLibrary, FolderFromTheEnvironmentMustExist) {

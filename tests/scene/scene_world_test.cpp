@@ -64,7 +64,8 @@ TriangleMesh make_tube(double hem) {
   }
   for (int row = 0; row + 1 < static_cast<int>(heights.size()); ++row) {
     for (int i = 0; i < kAround; ++i) {
-      const int a = row * kAround + i, b = row * kAround + (i + 1) % kAround, c = a + kAround, d = b + kAround;
+      const int a = row * kAround + i, b = row * kAround + (i + 1) % kAround, c = a + kAround,
+                d = b + kAround;
       if ((row + i) % 2 == 0) {
         mesh.triangles.insert(mesh.triangles.end(), {{a, d, b}, {a, c, d}});
       } else {
@@ -204,7 +205,7 @@ TEST_F(MeshCollider, InsideOutIsTurnedAndNamed) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   const SceneWorld built = build(mesh);
   EXPECT_TRUE(warns(built, "collider \"body\" (body.obj): is inside out"));
-  EXPECT_TRUE(warns(built, "turned right side out"));
+  EXPECT_TRUE(warns(built, "flipped"));
   EXPECT_NEAR(compute_signed_volume(*shape(built).mesh), 1, 1e-15);
 }
 
@@ -217,7 +218,7 @@ TEST_F(MeshCollider, WithABorderIsNamed) {
 TEST_F(MeshCollider, WithTwistedTrianglesOrFinsIsNamed) {
   TriangleMesh mesh = box();
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
-  EXPECT_TRUE(warns(build(mesh), "3 edges between triangles that face opposite ways"));
+  EXPECT_TRUE(warns(build(mesh), "3 edges between triangles of opposite orientation"));
   mesh = box();
   mesh.positions.emplace_back(0, 2, 0);
   mesh.triangles.push_back({0, 1, 24});

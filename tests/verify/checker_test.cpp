@@ -39,9 +39,10 @@ TEST(Checker, NamesWhatCrossesAndWhatIsInside) {
   const FrameCheck check = check_frame(frame);
   EXPECT_EQ(check.intersections, 2) << "the rag lies on the spike in its own plane";
   ASSERT_EQ(check.first.size(), 2u);
-  EXPECT_EQ(describe(frame, check.first[0]), "cloth \"sheet\" triangle 0 crosses cloth \"rag\" triangle 0");
+  EXPECT_EQ(describe(frame, check.first[0]),
+            "cloth \"sheet\" triangle 0 intersects cloth \"rag\" triangle 0");
   EXPECT_EQ(describe(frame, check.first[1]),
-            "cloth \"sheet\" triangle 0 crosses collider \"spike\" triangle 0");
+            "cloth \"sheet\" triangle 0 intersects collider \"spike\" triangle 0");
   EXPECT_NEAR(check.penetration(), 0.05, 1e-12);
   EXPECT_TRUE(describe(frame, *check.deepest).starts_with("cloth \"sheet\" triangle "));
   EXPECT_TRUE(describe(frame, *check.deepest).ends_with(" in collider \"ball\""));

@@ -46,7 +46,7 @@ TEST(WorldInput, ShapesThatCannotBe) {
   expect_names(refused(Sphere{Vec3::Zero(), kNan}), "radius");
   expect_names(refused(Sphere{Vec3(0, kNan, 0), 1}), "centre");
   expect_names(refused(Plane{Vec3::Zero(), Vec3(0, 5, 0)}),
-               "its normal must have length 1, and is (0, 5, 0)");
+               "its normal must have length 1, but is (0, 5, 0)");
   expect_names(refused(Plane{Vec3::Zero(), Vec3::Zero()}), "normal");
   expect_names(refused(Capsule{Vec3::Zero(), Vec3(0, kNan, 0), 1}), "its end b");
   expect_names(refused(OrientedBox{Vec3::Zero(), Vec3(1, 0, 1), Mat3::Identity()}), "half size");
@@ -76,7 +76,7 @@ TEST(WorldInput, ClothThatCannotBe) {
   expect_names(refused([](ClothTopology& t) { t.mesh.triangles[3][1] = 99; }), "triangle 3 uses vertex 99");
   expect_names(refused([](ClothTopology& t) { t.springs[2].j = -1; }), "a spring joins");
   expect_names(refused([](ClothTopology& t) { t.area.pop_back(); }), "area");
-  expect_names(refused([](ClothTopology& t) { t.area[5] = 0; }), "particle 5 stands for no area");
+  expect_names(refused([](ClothTopology& t) { t.area[5] = 0; }), "particle 5 has no area");
   expect_names(error_of([&] { world.add_cloth({.topology = sheet, .velocity = Vec3(kNan, 0, 0)}); }),
                "velocity");
   EXPECT_EQ(world.num_cloths(), 0);
@@ -90,8 +90,7 @@ TEST(WorldInput, NamesDifferWhereARuleNeedsThem) {
   EXPECT_EQ(world.name(second), "cloth 2");
   EXPECT_EQ(world.collider(world.add_collider({.shape = Sphere{}})).name, "collider");
   for (int n = 0; n < 2; ++n) world.add_collider({.name = "table", .shape = Sphere{}});
-  expect_names(error_of([&] { world.set_friction("cloth", "table", 0.5); }),
-               "there are 2 things named \"table\"");
+  expect_names(error_of([&] { world.set_friction("cloth", "table", 0.5); }), "2 bodies are named \"table\"");
 }
 
 TEST(WorldInput, NumbersThatAreNone) {
@@ -105,10 +104,10 @@ TEST(WorldInput, NumbersThatAreNone) {
   EXPECT_THROW(world.set_collider_friction(ball, -1), InputError);
   EXPECT_THROW(world.move_collider(ball, {.rotation = Mat3::Zero()}), InputError);
   EXPECT_THROW(world.place_collider(ball, {.translation = Vec3(kNan, 0, 0)}), InputError);
-  expect_names(error_of([&] { world.move_vertices(ball, {}); }), "it is no mesh");
+  expect_names(error_of([&] { world.move_vertices(ball, {}); }), "it is not a mesh");
   const ColliderId solid = world.add_collider(
       {.name = "solid", .shape = MeshShape{.mesh = std::make_shared<const TriangleMesh>(tetrahedron())}});
-  expect_names(error_of([&] { world.move_vertices(solid, {Vec3::Zero()}); }), "it has 4 vertices, not 1");
+  expect_names(error_of([&] { world.move_vertices(solid, {Vec3::Zero()}); }), "expected 4 vertices, got 1");
   world.add_cloth({.topology = build_grid_topology(square(2), SpringModel::simplified)});
   EXPECT_TRUE(world.step(1.0 / 60).ok);
 }
@@ -120,7 +119,7 @@ TEST(WorldInput, IdsOfNothingOfOthersAndOfWhatIsGone) {
   const ColliderId ball = world.add_collider({.shape = Sphere{}});
   const ClothId foreign = other.add_cloth({.topology = sheet});
   expect_names(error_of([&] { world.state(ClothId()); }), "this ClothId is empty");
-  expect_names(error_of([&] { world.set_pins(foreign, {}); }), "this ClothId is of another world");
+  expect_names(error_of([&] { world.set_pins(foreign, {}); }), "this ClothId belongs to another world");
   EXPECT_FALSE(world.contains(foreign));
   EXPECT_FALSE(world.contains(ClothId()));
   EXPECT_TRUE(world.contains(cloth));

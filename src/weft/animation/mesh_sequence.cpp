@@ -8,14 +8,14 @@
 namespace weft::engine {
 
 MeshSequence::MeshSequence(std::vector<Key> keys) : keys_(std::move(keys)) {
-  if (keys_.empty()) throw InputError("a mesh sequence needs one key at least");
+  if (keys_.empty()) throw InputError("a mesh sequence requires at least one key");
   for (std::size_t k = 1; k < keys_.size(); ++k) {
     const std::string key = "key " + std::to_string(k) + " of the mesh sequence ";
-    if (!(keys_[k].time > keys_[k - 1].time)) throw InputError(key + "is not later than the one before it");
+    if (!(keys_[k].time > keys_[k - 1].time)) throw InputError(key + "is not later than the previous one");
     if (keys_[k].positions.size() != keys_[0].positions.size())
       throw InputError(key + "has " + std::to_string(keys_[k].positions.size()) +
-                       " vertices, the first one " + std::to_string(keys_[0].positions.size()) +
-                       "; all must have the same");
+                       " vertices, the first key " + std::to_string(keys_[0].positions.size()) +
+                       "; all must have the same number");
   }
 }
 

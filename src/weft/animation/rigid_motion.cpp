@@ -23,11 +23,11 @@ RigidMotion::RigidMotion(std::vector<KeyFrame> keys) : keys_(std::move(keys)) {
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     if (!std::isfinite(keys_[k].time) || !keys_[k].translation.allFinite() ||
         !keys_[k].angles_deg.allFinite())
-      throw InputError("key frame " + std::to_string(k) + " has a number that is not finite");
+      throw InputError("key frame " + std::to_string(k) + " has a non-finite number");
   }
   for (std::size_t k = 1; k < keys_.size(); ++k) {
     if (!(keys_[k].time > keys_[k - 1].time)) {
-      throw InputError("key frame " + std::to_string(k) + " is not later than the one before it");
+      throw InputError("key frame " + std::to_string(k) + " is not later than the previous one");
     }
   }
 }

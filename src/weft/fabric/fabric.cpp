@@ -79,12 +79,12 @@ void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judg
     const bool rises = point.strain > last.strain && point.tension > last.tension &&
                        std::isfinite(point.strain) && std::isfinite(point.tension);
     if (!rises) {
-      return judge.refuse(field, "must rise from the origin, does not at strain " + text(point.strain));
+      return judge.refuse(field, "must increase from the origin, does not at strain " + text(point.strain));
     }
     last = point;
   }
   if (curve.size() > kMostStretchPoints)
-    judge.refuse(field, "must be at most " + std::to_string(kMostStretchPoints) + " points, are " +
+    judge.refuse(field, "must have at most " + std::to_string(kMostStretchPoints) + " points, has " +
                             std::to_string(curve.size()));
 }
 
@@ -103,9 +103,9 @@ void judge_slopes(const Fabric& f, Judge& judge) {
   const char* field = warp / f.c11 < weft / f.c22 ? "stretch_warp" : "stretch_weft";
   if (warp > 0 && weft > 0 && warp * weft > f.c12 * f.c12) return;
   judge.refuse(field,
-               "is too flat: tension over stretch must rise everywhere, and the product of both threads' "
-               "least slopes, " +
-                   text(warp) + " and " + text(weft) + " N/m, be more than c12²");
+               "is too flat: tension over stretch must increase everywhere, and the product of the minimum "
+               "slopes of warp and weft, " +
+                   text(warp) + " and " + text(weft) + " N/m, must exceed c12²");
 }
 
 }  // namespace

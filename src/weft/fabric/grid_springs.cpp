@@ -10,8 +10,8 @@ void require_stiffer(double c, double shear, const char* key, const Fabric& fabr
   if (c > shear) return;
   const std::string why =
       shear == fabric.g ? "" : " times the cells' (length/width)², " + short_text(shear) + " N/m";
-  throw InputError("fabric \"" + name + "\": springs cannot be it: " + key + " = " + short_text(c) +
-                   " N/m must be above g = " + short_text(fabric.g) + " N/m" + why +
+  throw InputError("fabric \"" + name + "\": springs cannot represent it: " + key + " = " + short_text(c) +
+                   " N/m must exceed g = " + short_text(fabric.g) + " N/m" + why +
                    "; use membrane = \"triangle\", a smaller g, or a larger " + key);
 }
 
@@ -34,8 +34,7 @@ GridSprings make_grid_springs(const Grid& grid, CellDiagonals diagonals, GridWar
   springs.along_z = (cz - shear_z) * dx / dz;
   if (diagonals == CellDiagonals::parallel) {
     springs.warnings.push_back(
-        "fabric \"" + name +
-        "\": with one diagonal per cell, all the same way, stretch turns into shear (c16 = " +
+        "fabric \"" + name + "\": parallel diagonals, one per cell, couple stretch to shear (c16 = " +
         short_text(fabric.g * dx / dz) + " N/m, c26 = " + short_text(fabric.g * dz / dx) +
         " N/m); alternating diagonals do not");
   }

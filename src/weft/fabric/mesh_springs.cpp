@@ -124,7 +124,7 @@ MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, c
   springs.warnings = warn_of_springs(fabric, name);
   const Mat3& c = springs.mean;
   springs.warnings.push_back(
-      "fabric \"" + name + "\": springs on this mesh come to c11 = " + short_text(c(0, 0)) +
+      "fabric \"" + name + "\": springs on this mesh give c11 = " + short_text(c(0, 0)) +
       ", c22 = " + short_text(c(1, 1)) + ", c12 = g = " + short_text(c(2, 2)) +
       " N/m on average instead of " + short_text(fabric.c11) + ", " + short_text(fabric.c22) + " and " +
       short_text(fabric.g) + "; membrane = \"triangle\" is exact");

@@ -51,7 +51,7 @@ FabricPreset make_cotton_shirting() {
            .bending = "between the 25 % and 50 % quantiles of 618 fabrics (Feng et al. 2022: 4.1e-6 and "
                       "13.9e-6 N·m), as its weight is",
            .damping = "typical of published scenes (ARCSim: 1e-3 to 3e-2 s)",
-           .thickness = "typical, with the distance that two layers keep",
+           .thickness = "typical, with the gap between two layers",
            .friction = "typical of cotton on cotton"}};
 }
 
@@ -216,9 +216,9 @@ const FabricPreset& find_fabric_preset(std::string_view name) {
     names.push_back(preset.name);
     list += (list.empty() ? "" : ", ") + preset.name;
   }
-  const std::string sentence = "there is no fabric \"" + std::string(name) + "\"";
+  const std::string sentence = "unknown fabric \"" + std::string(name) + "\"";
   const std::string nearest = engine::find_nearest(plain, names);
-  throw InputError(nearest.empty() ? sentence + "; there are " + list
+  throw InputError(nearest.empty() ? sentence + "; available: " + list
                                    : sentence + "; did you mean \"" + nearest + "\"?");
 }
 

@@ -13,11 +13,11 @@ std::vector<std::string> warn_of_springs(const Fabric& fabric, const std::string
   std::vector<std::string> warnings;
   if (!fabric.stretch_warp.empty() || !fabric.stretch_weft.empty())
     warnings.push_back("fabric \"" + name +
-                       "\": springs do not follow its stretch curves; use membrane = \"triangle\"");
+                       "\": springs ignore its stretch curves; use membrane = \"triangle\"");
   if (fabric.c12 != fabric.g)
-    warnings.push_back("fabric \"" + name + "\": springs make c12 = g: c12 is " + short_text(fabric.g) +
+    warnings.push_back("fabric \"" + name + "\": springs impose c12 = g: c12 is " + short_text(fabric.g) +
                        " N/m instead of " + short_text(fabric.c12) +
-                       " N/m (membrane = \"triangle\" keeps it)");
+                       " N/m (membrane = \"triangle\" preserves it)");
   return warnings;
 }
 

@@ -56,7 +56,7 @@ class Reader {
   }
 
   std::size_t left() const { return left_.size(); }
-  [[noreturn]] static void fail() { throw InputError("these bytes are not a saved world: they are damaged"); }
+  [[noreturn]] static void fail() { throw InputError("not a saved world, or a damaged one"); }
 
  private:
   std::span<const std::byte> left_;

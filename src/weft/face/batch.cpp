@@ -5,7 +5,7 @@
 namespace weft {
 
 WorldBatch::WorldBatch(std::shared_ptr<JobSystem> jobs) : jobs_(std::move(jobs)) {
-  if (!jobs_) throw InputError("a batch needs a job system; make_serial_jobs() makes one without threads");
+  if (!jobs_) throw InputError("a batch requires a job system; make_serial_jobs() makes one without threads");
 }
 
 int WorldBatch::add(World world) {

@@ -56,16 +56,15 @@ WarpField find_warp(const ClothDesc& desc, const RestShape& rest, const std::str
   if (!direction && rest.uv.empty()) {
     const bool stands = stands_upright(mesh);
     direction = stands ? Vec3::UnitY() : Vec3::UnitX();
-    warnings.push_back(who +
-                       "its mesh has no texture coordinates, which would say where warp goes; it goes " +
+    warnings.push_back(who + "its mesh has no texture coordinates to define warp; it is set " +
                        (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
   }
   WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, rest.uv);
   if (warp.num_guessed == 0) return warp;
   warnings.push_back(
-      who + (direction ? "warp is perpendicular to " : "texture coordinates do not say where warp goes in ") +
+      who + (direction ? "warp is perpendicular to " : "texture coordinates do not define warp in ") +
       std::to_string(warp.num_guessed) + (warp.num_guessed == 1 ? " triangle" : " triangles") +
-      ", which got another axis");
+      ", which use another axis");
   return warp;
 }
 
@@ -99,7 +98,7 @@ ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const R
     const std::optional<GridWarp> warp = grid_warp(desc);
     if (!warp)
       throw InputError(who +
-                       "springs can only have warp along one of the grid's axes, "
+                       "springs require warp along one of the grid's axes, "
                        "[1, 0, 0] or [0, 0, 1]; use membrane = \"triangle\" for other directions");
     const GridSprings springs =
         make_grid_springs(*grid, cell_diagonals(desc.model), *warp, fabric, desc.fabric_name);
@@ -145,8 +144,8 @@ RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& n
 
 RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh, ClothNotes& notes) {
   if (!mesh.uv.empty() && mesh.uv.size() != mesh.triangles.size())
-    throw InputError("it has texture coordinates of " + std::to_string(mesh.uv.size()) + " triangles, but " +
-                     std::to_string(mesh.triangles.size()) + " triangles");
+    throw InputError("its texture coordinates are of " + std::to_string(mesh.uv.size()) +
+                     " triangles, but it has " + std::to_string(mesh.triangles.size()));
   const double thickness = std::visit([](const auto& fabric) { return fabric.thickness; }, desc.fabric);
   CleanMesh clean = clean_mesh(to_engine(mesh), {.weld_distance = desc.weld.value_or(-1),
                                                  .sew_distance = desc.sew,

@@ -16,16 +16,16 @@ void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
   if (edges.non_manifold > 0) {
     warnings.push_back(count_edges(edges.non_manifold) +
                        " of more than two triangles (non-manifold): inside and outside may be " +
-                       "mistaken there");
+                       "wrong there");
   }
   if (edges.twisted > 0) {
     warnings.push_back(count_edges(edges.twisted) +
-                       " between triangles that face opposite ways: inside and outside may be " +
-                       "mistaken; recalculate the mesh's normals to face outwards");
+                       " between triangles of opposite orientation: inside and outside may be " +
+                       "wrong; recalculate the mesh's normals to face outwards");
   }
   if (edges.border > 0) {
     warnings.push_back("has a border of " + count_edges(edges.border) +
-                       ": cloth is held off on both sides, inside is not defined");
+                       ": cloth collides with both sides, the inside is undefined");
     return;
   }
   const Shells shells = turn_shells_outwards(mesh);
@@ -34,7 +34,7 @@ void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
   warnings.push_back((shells.count == 1
                           ? "is inside out (its triangles face inwards); it was"
                           : turned + " shells are inside out (their triangles face inwards); they were") +
-                     std::string(" turned right side out"));
+                     std::string(" flipped"));
 }
 
 /// Shapes transformed by the pose.
@@ -81,7 +81,7 @@ struct ShapeBuilder {
                              std::vector<Vec3>& positions) {
     const std::vector<int>& map = built.vertex_of_source;
     if (given.size() != map.size())
-      throw InputError("it was given " + std::to_string(map.size()) + " vertices, not " +
+      throw InputError("expected " + std::to_string(map.size()) + " vertices, got " +
                        std::to_string(given.size()));
     for (std::size_t v = 0; v < map.size(); ++v) {
       if (map[v] >= 0) positions[map[v]] = to_engine(given[v]);
@@ -113,7 +113,7 @@ BuiltCollider build_collider(const ColliderDesc& desc, const std::string& who) {
 std::vector<Vec3> select_vertices(const std::vector<weft::Vec3>& given, const BuiltCollider& built) {
   const std::string who = "collider \"" + built.collider.name + "\": ";
   const MeshShape* shape = std::get_if<MeshShape>(&built.collider.shape);
-  if (shape == nullptr) throw InputError(who + "it is no mesh, and has no vertices");
+  if (shape == nullptr) throw InputError(who + "it is not a mesh and has no vertices");
   std::vector<Vec3> positions(shape->mesh->positions.size());
   try {
     ShapeBuilder::place_vertices(given, built, positions);

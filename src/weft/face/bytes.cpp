@@ -381,8 +381,8 @@ World World::load(std::span<const std::byte> bytes) {
   head.plain(version);
   require(magic == kMagic);
   if (version != kVersion)
-    throw InputError("these bytes are a world saved in version " + std::to_string(version) +
-                     " of the format; this library reads version " + std::to_string(kVersion));
+    throw InputError("the saved world has format version " + std::to_string(version) +
+                     "; this library reads version " + std::to_string(kVersion));
   std::uint64_t sum = 0;
   Reader(bytes.last(kChecksum)).plain(sum);
   require(sum == checksum(bytes.first(bytes.size() - kChecksum)));

@@ -52,7 +52,7 @@ std::optional<SurfacePoint> World::cast_ray(const Vec3& origin, const Vec3& dire
   check_reach(reach);
   const engine::Vec3 from = to_engine(origin), along = to_engine(direction).normalized();
   if (!from.allFinite() || !along.allFinite() || along.norm() < 0.5)
-    throw InputError("a ray needs a finite origin and a direction with a length above 0");
+    throw InputError("a ray requires a finite origin and a direction with a length above 0");
   std::optional<SurfacePoint> nearest;
   for_each_triangle(impl_->world,
                     [&](ClothId cloth, int triangle, const auto& a, const auto& b, const auto& c) {
@@ -69,7 +69,7 @@ std::optional<SurfacePoint> World::cast_ray(const Vec3& origin, const Vec3& dire
 std::optional<SurfacePoint> World::closest_point(const Vec3& point, double reach) const {
   check_reach(reach);
   const engine::Vec3 p = to_engine(point);
-  if (!p.allFinite()) throw InputError("a point must be finite numbers");
+  if (!p.allFinite()) throw InputError("a point must be finite");
   std::optional<SurfacePoint> nearest;
   for_each_triangle(
       impl_->world, [&](ClothId cloth, int triangle, const auto& a, const auto& b, const auto& c) {

@@ -26,7 +26,8 @@ engine::Grab make_soft_pin(const Pin& pin, int particle, const engine::Vec3& pos
 
 void check_pin(const Pin& pin, const std::string& owner) {
   if (!pin.stiffness) return;
-  if (!pin.motion.empty()) throw InputError(owner + "a pin with stiffness has no motion; use move_pins()");
+  if (!pin.motion.empty())
+    throw InputError(owner + "a pin with stiffness does not support motion; use move_pins()");
   for (const double number : {*pin.stiffness, pin.damping}) {
     if (!std::isfinite(number) || number < 0)
       throw InputError(owner + "a pin's stiffness and damping must be 0 or more");
@@ -181,13 +182,13 @@ void World::set_pins(ClothId cloth, const std::vector<Pin>& pins) {
 void World::move_pins(ClothId cloth, const std::vector<Vec3>& at_end) {
   const std::vector<char>& is_soft = impl_->at(cloth).is_soft;
   if (at_end.size() != is_soft.size())
-    throw InputError(who("cloth", name(cloth)) + "it has " + std::to_string(is_soft.size()) +
-                     " pinned particles, not " + std::to_string(at_end.size()));
+    throw InputError(who("cloth", name(cloth)) + "expected targets for " + std::to_string(is_soft.size()) +
+                     " pinned particles, got " + std::to_string(at_end.size()));
   std::vector<engine::Vec3> held, soft;
   for (std::size_t p = 0; p < at_end.size(); ++p) (is_soft[p] ? soft : held).push_back(to_engine(at_end[p]));
   for (const auto* targets : {&held, &soft}) {
     if (!std::ranges::all_of(*targets, [](const engine::Vec3& p) { return p.allFinite(); }))
-      throw InputError(who("cloth", name(cloth)) + "targets of pins must be finite numbers");
+      throw InputError(who("cloth", name(cloth)) + "targets of pins must be finite");
   }
   if (!held.empty()) impl_->world.move_pins(cloth, held);
   if (!soft.empty()) impl_->world.move_grabs(cloth, soft);
@@ -255,7 +256,7 @@ void World::set_wind(const Wind& wind) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (!std::isfinite(keys[k].time) || !keys[k].velocity.allFinite() ||
         (k > 0 && !(keys[k].time > keys[k - 1].time)))
-      throw InputError("the wind's keys must be finite numbers at rising times");
+      throw InputError("the wind's keys must be finite, at increasing times");
   }
   engine::Wind now{
       .velocity = to_engine(wind.velocity), .drag = wind.drag, .air = wind.air, .gusts = wind.gusts};
@@ -296,7 +297,7 @@ Snapshot World::snapshot() const {
 
 void World::restore(const Snapshot& snapshot) {
   if (snapshot.data_->world != impl_->world.id())
-    throw InputError("this snapshot is of another world, or of none");
+    throw InputError("this snapshot is empty or belongs to another world");
   impl_->world.restore(snapshot.data_->state);
   for (std::size_t c = 0; c < impl_->cloths.size(); ++c)
     impl_->cloths[c].is_soft = snapshot.data_->is_soft[c];

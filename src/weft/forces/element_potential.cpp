@@ -37,7 +37,8 @@ void ElementPotential::fit(const ClothModel& model, const PaddedRows& rows, doub
   topology_ = model.topology;
   if (!elements_) return;
   if (!elements_->hinges.empty())
-    throw InputError("newton bends by curvature stencils; build the elements with BendingModel::stencils");
+    throw InputError(
+        "newton supports curvature stencils only; build the elements with BendingModel::stencils");
   rows_ = rows;
   is_grid_ = topology_->grid.has_value();
   if (is_grid_) {

@@ -45,7 +45,8 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) 
   if (settings.is_double) {
     if (name == "implicit_euler") return make_implicit_euler_in_double(settings.implicit_euler);
     if (name == "newton") return make_newton_in_double();
-    throw InputError("integrator \"" + name + "\" has no double precision; newton and implicit_euler have");
+    throw InputError("integrator \"" + name +
+                     "\" does not support double precision; newton and implicit_euler do");
   }
   if (name == "explicit") return make_explicit(settings.explicit_euler);
   if (name == "paper") return make_paper(settings.paper);
@@ -56,7 +57,7 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) 
   if (name == "xpbd") return make_xpbd(settings.xpbd);
   std::string known;
   for (const std::string_view n : integrator_names()) known += (known.empty() ? "" : ", ") + std::string(n);
-  throw InputError("there is no integrator \"" + name + "\"; there are " + known);
+  throw InputError("unknown integrator \"" + name + "\"; available: " + known);
 }
 
 double compute_stiffness_number(const ClothModel& model, double step) {

@@ -97,7 +97,7 @@ tinygltf::Model parse(std::span<const unsigned char> bytes) {
       bytes.size() >= 12 && bytes.size() <= UINT32_MAX && is_flat_enough(bytes) && load(bytes, model, error);
   if (is_good) return model;
   const auto reason = error.substr(0, error.find('\n'));
-  fail("is no complete .glb file" + (reason.empty() ? "" : " (" + reason + ")") +
+  fail("is not a complete .glb file" + (reason.empty() ? "" : " (" + reason + ")") +
        "; expected one that weft run wrote");
 }
 
@@ -108,7 +108,7 @@ template <class Number>
 std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int component_type, int type) {
   const tinygltf::Accessor& accessor = at(model.accessors, index, "accessor");
   if (accessor.componentType != component_type || accessor.type != type || accessor.sparse.isSparse) {
-    fail("accessor " + std::to_string(index) + " holds another kind of number than Weft writes");
+    fail("accessor " + std::to_string(index) + " has a component type that Weft does not write");
   }
   const tinygltf::BufferView& view = at(model.bufferViews, accessor.bufferView, "buffer view");
   const auto& bytes = at(model.buffers, view.buffer, "buffer").data;
@@ -118,7 +118,7 @@ std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int co
   if (!is_packed || view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset ||
       accessor.byteOffset > view.byteLength ||
       accessor.count > (view.byteLength - accessor.byteOffset) / element) {
-    fail("accessor " + std::to_string(index) + " reaches beyond its data");
+    fail("accessor " + std::to_string(index) + " exceeds its data");
   }
   std::vector<Number> numbers(accessor.count * num_components);
   if (!numbers.empty()) {
@@ -131,7 +131,7 @@ std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int co
 std::vector<float> read_floats(const tinygltf::Model& model, int index, int type) {
   auto numbers = read_numbers<float>(model, index, TINYGLTF_COMPONENT_TYPE_FLOAT, type);
   if (std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); })) return numbers;
-  fail("accessor " + std::to_string(index) + " has a number that is not finite");
+  fail("accessor " + std::to_string(index) + " has a non-finite number");
 }
 
 // ---- Meshes ----
@@ -262,7 +262,7 @@ class Reader {
     for (size_t n = 0; n < model_.nodes.size(); ++n) add_node(static_cast<int>(n), animation);
     if (animation.cloths.empty() && animation.bodies.empty()) {
       fail(
-          "has no cloth: none of its nodes has Weft's mark, \"extras\": {\"weft\": {\"role\": \"cloth\"}}; "
+          "has no cloth: no node has Weft's mark, \"extras\": {\"weft\": {\"role\": \"cloth\"}}; "
           "expected a "
           "file that weft run wrote");
     }
@@ -279,7 +279,7 @@ class Reader {
       const Value& pair = list.Get(static_cast<int>(p));
       const bool is_pair =
           pair.IsArray() && pair.ArrayLen() == 2 && pair.Get(0).IsString() && pair.Get(1).IsString();
-      if (!is_pair) fail("has a pair of things that go through each other that is not two names");
+      if (!is_pair) fail("has a pair under \"passing\" that is not two names");
       pairs.push_back({pair.Get(0).Get<std::string>(), pair.Get(1).Get<std::string>()});
     }
     return pairs;
@@ -353,11 +353,13 @@ class Reader {
     for (const auto& body : animation.bodies)
       count = std::max({count, body.poses.size(), body.frames.size()});
     for (const auto& cloth : animation.cloths) {
-      if (cloth.frames.size() != count) fail("cloth '" + cloth.name + "' lacks frames");
+      if (cloth.frames.size() != count) fail("cloth '" + cloth.name + "' is missing frames");
     }
     for (const auto& body : animation.bodies) {
-      if (body.poses.size() != 1 && body.poses.size() != count) fail("body '" + body.name + "' lacks poses");
-      if (!body.frames.empty() && body.frames.size() != count) fail("body '" + body.name + "' lacks frames");
+      if (body.poses.size() != 1 && body.poses.size() != count)
+        fail("body '" + body.name + "' is missing poses");
+      if (!body.frames.empty() && body.frames.size() != count)
+        fail("body '" + body.name + "' is missing frames");
     }
   }
 

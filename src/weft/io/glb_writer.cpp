@@ -56,13 +56,12 @@ void require_count(const std::string& name, const char* what, size_t count, size
 
 void require_finite(const std::string& name, size_t frame, std::span<const float> numbers) {
   if (std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); })) return;
-  throw InputError("mesh '" + name + "' has a coordinate that is not a finite number in frame " +
-                   std::to_string(frame));
+  throw InputError("mesh '" + name + "' has a non-finite coordinate in frame " + std::to_string(frame));
 }
 
 void require_valid(const RigidMesh::Pose& pose, const std::string& name, size_t frame) {
   if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) return;
-  throw InputError("body '" + name + "' has a pose that is not finite in frame " + std::to_string(frame));
+  throw InputError("body '" + name + "' has a non-finite pose in frame " + std::to_string(frame));
 }
 
 /// Every mesh has all frames, or a body one pose.
@@ -153,7 +152,7 @@ class GlbWriter::Builder {
       : file_(file), meshes_(without_frames(meshes)), bytes_(file.file().parent_path()) {
     if (meshes_.cloths.empty() && meshes_.bodies.empty()) throw InputError("the animation has no meshes");
     if (!(meshes_.frames_per_second > 0))
-      throw InputError("the animation needs more than 0 frames per second");
+      throw InputError("the animation requires more than 0 frames per second");
     model_.asset.version = "2.0";
     model_.asset.generator = "Weft";
     model_.asset.extras = asset_extras();
@@ -257,15 +256,16 @@ class GlbWriter::Builder {
       times_ = add_floats(times, kTimes);
     }
     add_weights();
-    for (size_t b = 0; b < meshes_.bodies.size(); ++b) add_poses(meshes_in_file_[num_cloths() + b], poses_[b]);
+    for (size_t b = 0; b < meshes_.bodies.size(); ++b)
+      add_poses(meshes_in_file_[num_cloths() + b], poses_[b]);
     if (is_animated()) model_.animations.push_back(std::move(motion_));
   }
 
   /// Of morph targets, for all meshes in common: frame k shows target k − 1 and no other.
   void add_weights() {
     const size_t num_targets = num_frames_ - 1;
-    const bool has_targets =
-        std::any_of(meshes_in_file_.begin(), meshes_in_file_.end(), [](const auto& m) { return m.is_moving; });
+    const bool has_targets = std::any_of(meshes_in_file_.begin(), meshes_in_file_.end(),
+                                         [](const auto& m) { return m.is_moving; });
     if (!has_targets || !is_animated()) return;
     std::vector<float> row(num_targets);
     const size_t begin = bytes_.size();
@@ -356,8 +356,8 @@ class GlbWriter::Builder {
     model_.nodes.push_back(std::move(node));
     const int index = static_cast<int>(model_.nodes.size()) - 1;
     model_.scenes[0].nodes.push_back(index);
-    return meshes_in_file_.emplace_back(
-        MeshInFile{.mesh = static_cast<int>(model_.meshes.size()) - 1, .node = index, .base = {}, .normals = {}});
+    return meshes_in_file_.emplace_back(MeshInFile{
+        .mesh = static_cast<int>(model_.meshes.size()) - 1, .node = index, .base = {}, .normals = {}});
   }
 
   tinygltf::Primitive& primitive(const MeshInFile& own) { return model_.meshes[own.mesh].primitives[0]; }
@@ -448,8 +448,8 @@ class GlbWriter::Builder {
   SpoolFile bytes_;  // of the document's buffer
   tinygltf::Model model_;
   tinygltf::Animation motion_;
-  std::vector<MeshInFile> meshes_in_file_;             // (cloths, then bodies)
-  std::vector<std::vector<RigidMesh::Pose>> poses_;    // (bodies) of (num_frames)
+  std::vector<MeshInFile> meshes_in_file_;           // (cloths, then bodies)
+  std::vector<std::vector<RigidMesh::Pose>> poses_;  // (bodies) of (num_frames)
   size_t num_frames_ = 0;
   int times_ = -1;  // accessor of the key times
 };

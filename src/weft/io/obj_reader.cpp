@@ -18,8 +18,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "weft/error.h"
 #include "weft/core/staged_file.h"
+#include "weft/error.h"
 
 namespace weft::engine {
 namespace {
@@ -307,11 +307,11 @@ class ObjParser {
       if (result_.warnings.size() == kMostTold) {
         const size_t untold = unknown_.size() - kMostTold;
         result_.warnings.push_back(name_ + ": " + std::to_string(untold) +
-                                   " more unknown keywords were passed over");
+                                   " more unknown keywords were ignored");
         return;
       }
       result_.warnings.push_back(name_ + ":" + std::to_string(unknown.first_line) + ": unknown keyword " +
-                                 in_quotes(keyword) + " was passed over; it begins " +
+                                 in_quotes(keyword) + " was ignored; it begins " +
                                  std::to_string(unknown.num_lines) + " lines");
     }
   }

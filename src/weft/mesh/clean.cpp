@@ -125,8 +125,8 @@ double round_up(double distance) {
 void warn_about_open_seams(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   const OpenSeams open = find_open_seams(mesh, kMaxOpenSeam);
   if (open.num_seams == 0) return;
-  warnings.push_back((open.num_seams == 1 ? std::string("2 borders run ")
-                                          : number(open.num_seams) + " pairs of borders run up to ") +
+  warnings.push_back((open.num_seams == 1 ? std::string("2 borders are ")
+                                          : number(open.num_seams) + " pairs of borders are up to ") +
                      in_digits(1000 * open.gap, "%.1f") +
                      " mm apart: sew = " + in_digits(round_up(open.gap), "%g") + " would join them");
 }
@@ -134,7 +134,7 @@ void warn_about_open_seams(const TriangleMesh& mesh, std::vector<std::string>& w
 void warn_about_topology(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   const int coincident = count_moved(find_twins(mesh.positions, 0));
   if (coincident > 0) {
-    warnings.push_back(number(coincident) + " vertices lie exactly on another one: is this an unsewn seam? " +
+    warnings.push_back(number(coincident) + " vertices coincide with another one: is this an unsewn seam? " +
                        "weld = true sews it");
   }
   int non_manifold = 0;
@@ -146,7 +146,7 @@ void warn_about_topology(const TriangleMesh& mesh, std::vector<std::string>& war
   if (non_manifold > 0) {
     warnings.push_back(number(non_manifold) +
                        " edges belong to more than two triangles (non-manifold; the first is " + first +
-                       "): they stretch as usual but get no bending spring");
+                       "): they stretch as usual but have no bending spring");
   }
 }
 
@@ -174,7 +174,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
   // Drop degenerate triangles.
   const auto [flat, first_flat] = keep_triangles(result, [&](int t) { return has_area(mesh, t); });
   if (flat > 0) {
-    warnings.push_back(number(flat) + " triangles without area were dropped (the first is triangle " +
+    warnings.push_back(number(flat) + " degenerate triangles were removed (the first is triangle " +
                        number(first_flat) + ")");
   }
   std::set<Triangle> seen;
@@ -184,9 +184,9 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     return seen.insert(key).second;
   });
   if (repeated > 0) {
-    warnings.push_back(number(repeated) + " triangles that repeat another one were dropped");
+    warnings.push_back(number(repeated) + " duplicate triangles were removed");
   }
-  if (mesh.triangles.empty()) throw InputError("none of the mesh's triangles has an area");
+  if (mesh.triangles.empty()) throw InputError("all triangles of the mesh are degenerate");
 
   // Drop unused vertices, and compact the indices.
   std::vector<int> new_index(source.positions.size(), -1);
@@ -203,7 +203,7 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
       isolated += twin[v] == v;
     }
   }
-  if (isolated > 0) warnings.push_back(number(isolated) + " vertices without triangles were dropped");
+  if (isolated > 0) warnings.push_back(number(isolated) + " unused vertices were removed");
   mesh.positions = std::move(kept);
   for (Triangle& tri : mesh.triangles) {
     for (int& v : tri) v = new_index[v];

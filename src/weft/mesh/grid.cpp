@@ -11,10 +11,10 @@ void require_valid(const Grid& grid) {
     if (!std::isfinite(size) || size <= 0) throw InputError("a grid's size must be more than 0 m");
   }
   if (grid.cells_x < 1 || grid.cells_z < 1)
-    throw InputError("a grid needs one cell at least along each side");
+    throw InputError("a grid requires at least one cell along each side");
   constexpr double kMaxParticles = 1e8;
   if ((grid.cells_x + 1.0) * (grid.cells_z + 1.0) > kMaxParticles)
-    throw InputError("a grid may have 100 million particles at most");
+    throw InputError("a grid may have at most 100 million particles");
 }
 
 TriangleMesh build_grid_mesh(const Grid& grid, GridDiagonals diagonals) {

@@ -22,7 +22,7 @@ CornerUv interpolate(const CornerUv& uv, const CornerWeights& weights) {
 void require_valid(const TriangleMesh& mesh) {
   for (int v = 0; v < mesh.num_vertices(); ++v) {
     if (!mesh.positions[v].allFinite()) {
-      throw InputError("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
+      throw InputError("vertex " + std::to_string(v) + " has a non-finite coordinate");
     }
   }
   for (int t = 0; t < mesh.num_triangles(); ++t) {

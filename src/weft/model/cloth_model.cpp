@@ -19,7 +19,7 @@ void check_factors(const std::vector<double>& factors, std::size_t num_springs) 
   if (factors.empty()) return;
   if (factors.size() != num_springs)
     throw InputError("the cloth has " + std::to_string(num_springs) + " springs and " +
-                     std::to_string(factors.size()) + " spring factors; expected one for each, or none");
+                     std::to_string(factors.size()) + " spring factors; expected one per spring, or none");
   for (std::size_t s = 0; s < factors.size(); ++s) {
     if (!(factors[s] >= 0) || !std::isfinite(factors[s]))
       throw InputError("the factor of spring " + std::to_string(s) + " is " + std::to_string(factors[s]) +

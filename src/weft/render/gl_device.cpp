@@ -22,7 +22,7 @@ GLuint compile(GLenum kind, const std::string& source) {
   if (ok) return shader;
   std::array<char, 2048> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  throw GraphicsError(std::string("the graphics driver does not compile a shader: ") + log.data());
+  throw GraphicsError(std::string("shader compilation failed: ") + log.data());
 }
 
 GLuint link(const ShaderSource& source) {
@@ -37,7 +37,7 @@ GLuint link(const ShaderSource& source) {
   if (ok) return program;
   std::array<char, 2048> log{};
   glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  throw GraphicsError(std::string("the graphics driver does not link a program: ") + log.data());
+  throw GraphicsError(std::string("shader program linking failed: ") + log.data());
 }
 
 struct PixelFormat {
@@ -60,7 +60,7 @@ class GlDevice : public Device {
  public:
   GlDevice() {
     if (epoxy_gl_version() < 33) {
-      throw GraphicsError("OpenGL 3.3 or later is needed, and this is " +
+      throw GraphicsError("OpenGL 3.3 or later is required, but this is " +
                           std::to_string(epoxy_gl_version() / 10) + "." +
                           std::to_string(epoxy_gl_version() % 10) +
                           "; install a newer graphics driver, or Mesa's software one (libgl1-mesa-dri)");
@@ -258,9 +258,9 @@ class GlDevice : public Device {
       target.renderbuffers[1] = make_renderbuffer(desc, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
     }
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return target;
-    throw GraphicsError("the graphics driver refuses a picture of " + std::to_string(desc.width) + "x" +
+    throw GraphicsError("the graphics driver rejects a picture of " + std::to_string(desc.width) + "x" +
                         std::to_string(desc.height) + " pixels with " + std::to_string(desc.samples) +
-                        " samples; ask for a smaller one");
+                        " samples; use a smaller one");
   }
 
   static void drop(Target& target) {

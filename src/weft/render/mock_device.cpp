@@ -79,7 +79,7 @@ const MockDevice::Target& MockDevice::at(TargetId id) const {
 }
 
 TargetId MockDevice::target(std::string_view name, const TargetDesc& desc) {
-  require(desc.width > 0 && desc.height > 0 && desc.samples > 0, "a target needs pixels and samples");
+  require(desc.width > 0 && desc.height > 0 && desc.samples > 0, "a target requires pixels and samples");
   const auto known =
       std::find_if(targets_.begin(), targets_.end(), [&](const Target& t) { return t.name == name; });
   const int index = static_cast<int>(known - targets_.begin());
@@ -91,12 +91,12 @@ TargetId MockDevice::target(std::string_view name, const TargetDesc& desc) {
 }
 
 GeometryId MockDevice::upload(std::span<const float> vertices, std::span<const Triangle> triangles) {
-  require(vertices.size() % kFloatsPerVertex == 0, "vertices have eight floats each");
+  require(vertices.size() % kFloatsPerVertex == 0, "vertices must have eight floats each");
   require(std::all_of(vertices.begin(), vertices.end(), [](float x) { return std::isfinite(x); }),
           "a vertex is not finite");
   const int count = static_cast<int>(vertices.size()) / kFloatsPerVertex;
   for (const Triangle& triangle : triangles) {
-    for (const int v : triangle) require(v >= 0 && v < count, "a triangle uses a vertex that is not there");
+    for (const int v : triangle) require(v >= 0 && v < count, "a triangle's vertex is out of range");
   }
   geometries_.push_back(static_cast<int>(triangles.size()));
   return {static_cast<int>(geometries_.size()) - 1};
@@ -113,21 +113,21 @@ void MockDevice::check_uniforms(const DrawCall& call) const {
   for (const Uniform& uniform : call.uniforms) {
     const std::string name(uniform.name), where = std::string(to_string(call.program)) + "." + name;
     const auto declared = missing.find(name);
-    require(declared != missing.end(), where + " is no uniform, or is set twice");
+    require(declared != missing.end(), where + " is not a uniform, or is set twice");
     require(declared->second == type_name(uniform.value), where + " is a " + declared->second);
     require(is_finite(uniform.value), where + " is not finite");
     missing.erase(declared);
     const Texture* texture = std::get_if<Texture>(&uniform.value);
     if (!texture) continue;
     require(at(texture->target).desc.samples == 1, where + " has several samples");
-    require(texture->target.index != pass_, where + " is being drawn to");
+    require(texture->target.index != pass_, where + " is the current render target");
   }
   if (missing.empty()) return;
   throw std::logic_error(std::string(to_string(call.program)) + "." + missing.begin()->first + " is not set");
 }
 
 void MockDevice::draw(const DrawCall& call) {
-  require(pass_ >= 0, "nothing is being drawn to");
+  require(pass_ >= 0, "there is no current render target");
   log_.push_back(std::string("draw ") + to_string(call.program));
   check_uniforms(call);
   if (const GeometryId* id = std::get_if<GeometryId>(&call.what)) {
@@ -135,7 +135,7 @@ void MockDevice::draw(const DrawCall& call) {
     num_drawn_ += geometries_[static_cast<std::size_t>(id->index)];
   } else if (const Instances* instances = std::get_if<Instances>(&call.what)) {
     const std::size_t floats = call.program == Program::line ? 6 : 3;
-    require(instances->places.size() % floats == 0, "an instance is not whole");
+    require(instances->places.size() % floats == 0, "an instance is incomplete");
     num_drawn_ += static_cast<int>(instances->places.size() / floats);
   }
 }
@@ -157,7 +157,7 @@ Image MockDevice::read(TargetId target) {
 }
 
 void MockDevice::show(TargetId target, const WindowPart& part) {
-  require(part.size.width > 0 && part.size.height > 0, "a part of the window needs pixels");
+  require(part.size.width > 0 && part.size.height > 0, "a part of the window requires pixels");
   log_.push_back("show " + at(target).name);
 }
 

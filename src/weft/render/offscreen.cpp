@@ -6,7 +6,7 @@ namespace weft::engine {
 namespace {
 
 constexpr const char* kAdvice =
-    "; pictures need EGL and OpenGL 3.3 (on Debian and Ubuntu: apt-get install libegl1 libgl1-mesa-dri)";
+    "; pictures require EGL and OpenGL 3.3 (on Debian and Ubuntu: apt-get install libegl1 libgl1-mesa-dri)";
 
 /// An EGL display and context without a surface.
 class EglContext {
@@ -46,12 +46,13 @@ class EglContext {
   }
 
   void make_context() {
-    if (!eglBindAPI(EGL_OPENGL_API)) throw GraphicsError(std::string("EGL has no OpenGL") + kAdvice);
+    if (!eglBindAPI(EGL_OPENGL_API))
+      throw GraphicsError(std::string("EGL does not support OpenGL") + kAdvice);
     const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(display_, wanted, &config, 1, &count) || count == 0)
-      throw GraphicsError(std::string("EGL has no fitting configuration") + kAdvice);
+      throw GraphicsError(std::string("EGL has no matching configuration") + kAdvice);
     const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
                               3,
                               EGL_CONTEXT_MINOR_VERSION,
@@ -61,9 +62,9 @@ class EglContext {
                               EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
     if (context_ == EGL_NO_CONTEXT)
-      throw GraphicsError(std::string("EGL makes no context of OpenGL 3.3") + kAdvice);
+      throw GraphicsError(std::string("EGL cannot create an OpenGL 3.3 context") + kAdvice);
     if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
-      throw GraphicsError(std::string("EGL cannot draw without a window") + kAdvice);
+      throw GraphicsError(std::string("EGL does not support surfaceless contexts") + kAdvice);
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;

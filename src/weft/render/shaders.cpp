@@ -53,35 +53,35 @@ uniform sampler2DShadow shadow_compare;
 uniform sampler2D shadow_depth;
 uniform float shadow_depth_range;  // [m]
 uniform sampler2D occlusion;
-uniform vec2 pixel;           // size of one in the occlusion texture's coordinates
+uniform vec2 pixel;           // pixel size in the occlusion texture's coordinates
 uniform vec3 horizon;
-uniform vec2 fade;            // distances at which the ground begins and ends to fade into the horizon [m]
+uniform vec2 fade;            // distances where the ground's fade into the horizon begins and ends [m]
 out vec4 result;
 
-const int kFabric = 0, kSolid = 1, kGround = 2;  // what KIND is: one program each
+const int kFabric = 0, kSolid = 1, kGround = 2;  // values of KIND, one program each
 const float kSunSize = 0.06;  // the light's width as seen from its target: soft shadows
 
-// Places spread evenly over a disc.
+// Uniform samples of a disc.
 const vec2 kDisc[16] = vec2[](
     vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371),
     vec2(-0.522, -0.092), vec2(0.495, -0.315), vec2(-0.165, 0.616), vec2(-0.316, -0.608),
     vec2(0.685, 0.250), vec2(-0.712, 0.294), vec2(0.343, -0.734), vec2(0.254, 0.809),
     vec2(-0.765, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779), vec2(-0.126, -0.976));
 
-// The share of the sun's light that arrives. Loops end early where nothing, or everything, is in the way: software
-// drivers skip what a loop leaves out, but not what a branch does.
+// Sun visibility in [0, 1]. Loops end early where nothing or everything is occluded: software drivers skip
+// the rest of a loop, but execute both sides of a branch.
 float sunlight(vec3 n) {
   const int kLooks = 6, kTaps = 12;
   vec4 place = to_shadow * vec4(world + 4.0 * shadow_texel * n, 1.0);
   bool outside = any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0)));
   place.z -= shadow_texel / shadow_depth_range;
-  // Beside this place the surface goes on along its tangent plane, and must not shade itself there.
+  // Depth bias along the tangent plane, against self-shadowing.
   vec3 across = mat3(to_shadow) * n;
   vec2 slope = clamp(-across.xy / min(across.z, -1e-6), -4.0, 4.0);
-  // Another turn for each pixel: grain is less seen than bands (interleaved gradient noise, Jimenez 2014).
+  // Random rotation per pixel: grain is less visible than bands (interleaved gradient noise, Jimenez 2014).
   float angle = 6.2832 * fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
   mat2 turn = mat2(cos(angle), sin(angle), -sin(angle), cos(angle));
-  // How far in front is what casts the shadow? The farther, the softer.
+  // Blocker distance: the farther, the softer the shadow.
   float map_side = shadow_texel * shadow_size, blockers = 0.0, gap = 0.0;
   mat2 search = 0.04 / map_side * turn;
   int looks = outside || shadow_texel == 0.0 ? 0 : kLooks;
@@ -112,7 +112,7 @@ float stripe(float x, float width) {
   return (area.y - area.x) / width;
 }
 
-// Checks woven of two yarns: light, dark, and between where they cross. Close up, the yarns themselves show.
+// Checks of two yarns: light, dark, and between where they cross. Close up, the yarns are visible.
 vec3 fabric_color() {
   if (check_size == 0.0) return color;
   vec2 place = warp_weft / check_size;
@@ -129,7 +129,7 @@ vec3 film(vec3 light) {
   const float kShoulder = 0.7;
   vec3 over = max(light - kShoulder, 0.0) / (1.0 - kShoulder);
   vec3 c = min(light, kShoulder) + (1.0 - kShoulder) * over / (1.0 + over);
-  // c^(1/2.4) from square roots, within 1e-3: powers are dear in software.
+  // c^(1/2.4) from square roots, within 1e-3: pow() is expensive in software.
   vec3 r2 = sqrt(c), r4 = sqrt(r2), r8 = sqrt(r4);
   vec3 root = 0.585122381 * r2 + 0.783140355 * r4 - 0.368262736 * r8;
   return mix(12.92 * c, 1.0549 * root - 0.0549, step(0.0031308, c));
@@ -162,7 +162,7 @@ void main() {
 }
 )";
 
-// ---- The whole target ----
+// ---- Full-screen passes ----
 
 const char* const kScreenVertex = R"(
 out vec2 place;  // 0 to 1
@@ -186,7 +186,7 @@ void main() {
 }
 )";
 
-// Scalable ambient obscurance (McGuire, Mara, Luebke 2012): the share of the surroundings above each point's
+// Scalable ambient obscurance (McGuire, Mara, Luebke 2012): visibility of the hemisphere above each point's
 // tangent plane.
 const char* const kOcclusionFragment = R"(
 in vec2 place;
@@ -241,7 +241,7 @@ float depth_at(vec2 at) {
 
 void main() {
   float here = depth_at(place), sum = 0.0, weights = 0.0;
-  for (int y = -2; y < 2; ++y) {  // as wide as the pattern of turns
+  for (int y = -2; y < 2; ++y) {  // as wide as the rotation pattern
     for (int x = -2; x < 2; ++x) {
       vec2 at = place + pixel * vec2(x, y);
       float weight = exp2(-25.0 * abs(depth_at(at) / here - 1.0));

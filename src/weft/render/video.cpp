@@ -41,7 +41,7 @@ Arguments encoding(const std::filesystem::path& file) {
             "-loop", "0",
             "-f",    "gif"};
   }
-  throw InputError(file.string() + ": expected a name that ends in .mp4, .webp or .gif");
+  throw InputError(file.string() + ": expected a file name ending in .mp4, .webp or .gif");
 }
 
 Arguments command(const std::filesystem::path& file, const std::filesystem::path& part, int width, int height,
@@ -81,10 +81,9 @@ void require_ffmpeg(const std::filesystem::path& file) {
   for (std::string folder; std::getline(folders, folder, ':');) {
     if (access((std::filesystem::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return;
   }
-  throw InputError(
-      file.string() +
-      " needs the program ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt-get "
-      "install ffmpeg), or ask for .png pictures");
+  throw InputError(file.string() +
+                   " requires ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt-get "
+                   "install ffmpeg), or use .png pictures");
 }
 
 VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second)
@@ -126,7 +125,7 @@ void VideoWriter::add(const Image& image) {
   while (left > 0) {
     const ssize_t sent = send(to_ffmpeg_, bytes, left, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) fail("ffmpeg ended too early");
+    if (sent < 0) fail("ffmpeg exited early");
     bytes += sent;
     left -= static_cast<std::size_t>(sent);
   }
@@ -134,7 +133,7 @@ void VideoWriter::add(const Image& image) {
 
 void VideoWriter::finish() {
   const int status = wait();
-  if (status != 0) fail("ffmpeg ended with status " + std::to_string(status));
+  if (status != 0) fail("ffmpeg exited with status " + std::to_string(status));
   std::error_code error;
   std::filesystem::rename(part_, file_, error);
   if (error) fail(error.message());

@@ -78,7 +78,7 @@ struct Window::System {
 #ifndef _WIN32
     setenv("LP_NUM_THREADS", std::to_string(settings.software_threads).c_str(), 0);
 #endif
-    if (!glfwInit()) throw GraphicsError("there is no display to open a window on" + std::string(kAdvice));
+    if (!glfwInit()) throw GraphicsError("there is no display for a window" + std::string(kAdvice));
     open(settings);
     glfwMakeContextCurrent(window);
     driver = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -106,7 +106,7 @@ struct Window::System {
     if (window) return;
     const std::string reason = last_glfw_error();
     glfwTerminate();
-    throw GraphicsError("no window with OpenGL 3.3 can be opened here (" + reason + ")" + kAdvice);
+    throw GraphicsError("cannot open a window with OpenGL 3.3 (" + reason + ")" + kAdvice);
   }
 
   /// Callbacks only record events: the controls process them first and may consume them.

@@ -28,9 +28,9 @@ void require_room(const Animation& meshes, std::size_t num_vertices, std::size_t
     const std::size_t middle = (fits + beyond) / 2;
     (glb_size(meshes, num_vertices, middle) <= max_glb_size() ? fits : beyond) = middle;
   }
-  throw InputError(file.file().string() + ": a .glb holds 4 GiB, which " +
-                   std::to_string(fits > 0 ? fits - 1 : 0) + " frames of this scene fill, and the run has " +
-                   std::to_string(num_frames - 1) + "; give fewer --frames, or --no-glb and --obj");
+  throw InputError(file.file().string() + ": a .glb holds at most 4 GiB, or " +
+                   std::to_string(fits > 0 ? fits - 1 : 0) + " frames of this scene, but the run has " +
+                   std::to_string(num_frames - 1) + "; use fewer --frames, or --no-glb and --obj");
 }
 
 /// Letters, digits, '-', '_' and '.'; all others become '_'.

@@ -13,10 +13,11 @@ void check_start(const SceneDesc& scene, const World& world, RunReport& report) 
   const std::vector<std::string> found = check_start(world);
   report.warnings.insert(report.warnings.end(), found.begin(), found.end());
   if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return;
-  std::string all = scene.untangle ? "the start crosses, and could not be set apart:"
-                                   : "the start crosses, and solver.untangle = false leaves it so:";
+  std::string all = scene.untangle
+                        ? "intersections at the start could not be repaired:"
+                        : "intersections at the start, which solver.untangle = false does not repair:";
   for (const std::string& sentence : found) all += "\n  " + sentence;
-  throw InputError(all + "\nmove them apart, or solver.crossed_start = \"allow\" runs all the same");
+  throw InputError(all + "\nmove them apart, or set solver.crossed_start = \"allow\" to run anyway");
 }
 
 }  // namespace
@@ -32,8 +33,8 @@ void FrameChecker::begin(SceneRun& run, RunReport& report) {
     const std::vector<verify::FeaturePair> passages = watch_->advance(moment.frame);
     if (passages.empty()) return;
     if (report.passages == 0)
-      report.first_passage = "frame " + std::to_string(frame->frame() + 1) + ": " +
-                             verify::describe(moment.frame, passages[0]);
+      report.first_passage =
+          "frame " + std::to_string(frame->frame() + 1) + ": " + verify::describe(moment.frame, passages[0]);
     *report.passages += static_cast<int>(passages.size());
   });
 }
@@ -48,7 +49,7 @@ void FrameChecker::add_frame(const SceneRun&, RunReport& report) {
 
 void FrameChecker::finish(const SceneRun&, RunReport& report) {
   if (!watch_ || watch_->num_left_out() == 0) return;
-  report.warnings.push_back("passages are not counted of " + std::to_string(watch_->num_left_out()) +
+  report.warnings.push_back("passages are not counted in " + std::to_string(watch_->num_left_out()) +
                             " substeps in which cloth moved by more than its own size");
 }
 

@@ -110,7 +110,7 @@ void LiveSimulation::set_integrator(const std::string& name) {
     const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
     if (!moves_elements(name) &&
         std::any_of(start_scene_.cloths.begin(), start_scene_.cloths.end(), is_fabric)) {
-      status_.warnings = {name + " knows springs alone, and this scene has a fabric: still " +
+      status_.warnings = {name + " supports springs only, and this scene has a fabric: keeping " +
                           status_.integrator};
       return;
     }

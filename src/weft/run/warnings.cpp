@@ -23,13 +23,13 @@ std::string shorter_steps(const std::string& integrator) {
 std::string describe_cap(const StepWarning& w) {
   switch (w.fault) {
     case StepFault::stretch:
-      return "a spring gained " + number(100 * w.value) + " % in the shortest step";
+      return "a spring stretched by " + number(100 * w.value) + " % in the shortest step";
     case StepFault::collapse:
-      return "a triangle lost all but " + number(100 * w.value) + " % of its area in the shortest step";
+      return "a triangle shrank to " + number(100 * w.value) + " % of its area in the shortest step";
     case StepFault::energy:
       return "energy rose by " + number(w.value) + " J without work in the shortest step";
     case StepFault::infeasible:
-      return "the shortest step left no room between prescribed motions";
+      return "prescribed motions are infeasible in the shortest step";
     case StepFault::skipped:
     case StepFault::non_finite:
       break;
@@ -40,33 +40,33 @@ std::string describe_cap(const StepWarning& w) {
 std::string describe_what(const StepWarning& w, const std::string& advice) {
   switch (w.code) {
     case WarningCode::not_converged:
-      return "the solver ran out of iterations before it reached its tolerance; raise solver.iterations or "
+      return "the solver reached its iteration limit before its tolerance; raise solver.iterations or "
              "solver.steps_per_frame";
     case WarningCode::contact_skipped:
-      return "the cloth moved by more than its own size within a step, and contact was left out; " + advice;
+      return "the cloth moved by more than its own size within a step, and contact was skipped; " + advice;
     case WarningCode::non_finite:
-      return "the motion of particle " + std::to_string(w.particle) + " became infinite; " + advice;
+      return "the motion of particle " + std::to_string(w.particle) + " became non-finite; " + advice;
     case WarningCode::cap_reached:
       return describe_cap(w) + "; " + advice;
     case WarningCode::yarn_strain:
-      return "yarns stay " + number(100 * w.value) + " % too long at particle " + std::to_string(w.particle) +
-             "; " + advice;
+      return "yarns stay stretched by " + number(100 * w.value) + " % at particle " +
+             std::to_string(w.particle) + "; " + advice;
     case WarningCode::flat_triangle:
       return "a triangle at particle " + std::to_string(w.particle) + " has " + number(100 * w.value) +
-             " % of its area; " + advice;
+             " % of its rest area; " + advice;
     case WarningCode::energy_rise:
       return "energy rose by " + number(w.value) + " J without work; " + advice;
     case WarningCode::crossings:
       return number(w.value) +
-             " pairs of triangles cross; solver.untangle = true sets apart what crosses at the start, "
-             "and for the rest " +
+             " pairs of triangles intersect; solver.untangle = true repairs intersections at the start; "
+             "for all others " +
              advice;
     case WarningCode::passages:
-      return number(w.value) + " pairs of features went through each other; " + advice;
+      return number(w.value) + " pairs of features passed through each other; " + advice;
     case WarningCode::infeasible:
       break;
   }
-  return "prescribed motions leave no room for " + number(w.value) +
+  return "prescribed motions are infeasible for " + number(w.value) +
          " pairs; move pins and colliders apart, or slower";
 }
 

@@ -55,13 +55,13 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
   cloth.require({"grid", "mesh"}, "grid = { size = [1, 1], cells = [32, 32] } or mesh = \"file.obj\"");
   const TomlValue grid = cloth.get("grid"), mesh = cloth.get("mesh");
   if (mesh && !grid) {
-    cloth.refuse("model", "only a grid has it; a mesh's own edges are its springs");
+    cloth.refuse("model", "only a grid has it; the springs of a mesh are its edges");
     return read_mesh(cloth, folder);
   }
   read_model(cloth, model);
   const bool is_grid = grid && !mesh;
   for (const char* key : {"up", "scale", "weld", "sew"}) {
-    if (is_grid) cloth.refuse(key, "only a mesh has it; a grid is in m, and turned by \"rotation\"");
+    if (is_grid) cloth.refuse(key, "only a mesh has it; a grid is in m, rotated by \"rotation\"");
     if (!is_grid) cloth.get(key);
   }
   if (is_grid) return read_grid(cloth.table("grid"));
@@ -136,7 +136,7 @@ void read_warp(TomlTable& cloth, FabricDesc& fabric) {
 void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   if (!desc.fabric) {
     for (const char* key : {"membrane", "warp"})
-      cloth.refuse(key, "only a fabric by name, file or SI values has it; this one has spring stiffnesses");
+      cloth.refuse(key, "requires a fabric by name, file or SI values; this one has spring stiffnesses");
     return;
   }
   cloth.read_choice<Membrane>("membrane", desc.fabric->membrane,
@@ -152,7 +152,7 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   const bool is_grid = std::holds_alternative<Grid>(desc.shape);
   if (is_grid && !cloth.has("model")) desc.model = SpringModel::alternating;
   if (!is_grid && desc.fabric->membrane == Membrane::springs && f.strain_limit > 0)
-    cloth.get("membrane").expected("\"triangle\", for springs keep a strain_limit on grids alone");
+    cloth.get("membrane").expected("\"triangle\": springs support a strain_limit on grids only");
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   table.read("color", std::span<double>(cloth.color), share, "[0.7, 0.2, 0.1]");
   cloth.pins = read_pins(table, shape ? &*shape : nullptr);
   if (cloth.fabric && cloth.fabric->membrane == Membrane::triangle)
-    table.refuse("stiffen", "only springs have it: give spring stiffnesses, or membrane = \"springs\"");
+    table.refuse("stiffen", "requires springs: set spring stiffnesses, or membrane = \"springs\"");
   cloth.stiffened = read_stiffened(table, shape ? &*shape : nullptr);
   return cloth;
 }

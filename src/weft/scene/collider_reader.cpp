@@ -34,7 +34,7 @@ Plane read_plane(TomlTable& collider) {
   collider.read("point", plane.point, any_number("m"));
   if (collider.read("normal", plane.normal, any_number())) {
     if (plane.normal.norm() < 1e-12) {
-      collider.get("normal").mistake("expected a direction, found a vector without length");
+      collider.get("normal").mistake("expected a direction, found a zero vector");
     } else if (std::abs(plane.normal.squaredNorm() - 1) > kUnit) {
       plane.normal.normalize();
     }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 FabricSources make_sources(const TomlTable& table, const fs::path& file) {
   const std::string given = "given in " + file.generic_string();
-  const auto source = [&](const char* key) { return table.has(key) ? given : "default: left out"; };
+  const auto source = [&](const char* key) { return table.has(key) ? given : "default: not given"; };
   return {.density = given,
           .stretch = given,
           .shear = given,

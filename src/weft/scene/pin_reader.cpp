@@ -81,7 +81,7 @@ std::optional<ParticleSelection> read_box(TomlTable table) {
   const bool has_min = table.read("min", box.min, any_number("m"));
   const bool has_max = table.read("max", box.max, any_number("m"));
   const bool is_empty = has_min && has_max && (box.min.array() > box.max.array()).any();
-  if (is_empty) table.get("max").mistake("expected nothing below \"min\"");
+  if (is_empty) table.get("max").mistake("must not be below \"min\"");
   return box;
 }
 
@@ -97,7 +97,7 @@ std::optional<ParticleSelection> read_ball(TomlTable table) {
 std::optional<ParticleSelection> read_indices(const TomlValue& value, const Pinnable& pinnable) {
   ParticleIndices selection;
   if (!value.read(selection.indices, pinnable.index)) return {};
-  if (selection.indices.empty()) value.expected("one index at least");
+  if (selection.indices.empty()) value.expected("at least one index");
   return selection;
 }
 

@@ -61,7 +61,7 @@ class KeyTable {
   std::string to_markdown() const {
     std::string text;
     for (const auto& [path, notes] : tables_) {
-      text += "## " + (path.empty() ? "The file" : "`" + path + "`") +
+      text += "## " + (path.empty() ? "Top level" : "`" + path + "`") +
               "\n\n| key | value | unit | default |\n|---|---|---|---|\n";
       for (const KeyNote& n : notes) {
         text += "| `" + n.key + "` | " + words_about(path, n) + " | " + n.unit + " | " + default_of(path, n) +

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "weft/error.h"
 #include "weft/core/nearest_name.h"
+#include "weft/error.h"
 
 namespace weft::engine {
 namespace {
@@ -64,12 +64,12 @@ std::string find_nearest_scene(const std::string& name, const std::vector<Shippe
 
 std::string describe_missing(const std::string& name) {
   const std::vector<ShippedScene> scenes = list_scenes();
-  const std::string sentence = "there is no scene file and no shipped scene \"" + name + "\"";
+  const std::string sentence = "no scene file or shipped scene is named \"" + name + "\"";
   const std::string nearest = find_nearest_scene(name, scenes);
   if (!nearest.empty()) return sentence + "; did you mean \"" + nearest + "\"?";
   std::string known;
   for (const ShippedScene& scene : scenes) known += (known.empty() ? "" : ", ") + scene.name;
-  return sentence + "; there are " + known;
+  return sentence + "; available: " + known;
 }
 
 }  // namespace

@@ -77,10 +77,10 @@ std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const weft::Triangl
     const TriangleMesh mesh = read_in_metres(placed.frames[k], placed.source, owner).mesh;
     if (mesh.positions.size() != first.positions.size() || mesh.triangles != first.triangles) {
       throw InputError(owner + ": frame " + std::to_string(k) + " (" + placed.frames[k].filename().string() +
-                       ") has " + describe(mesh.positions.size(), mesh.triangles.size()) +
-                       ", the first one (" + placed.frames[0].filename().string() + ") " +
+                       ") has " + describe(mesh.positions.size(), mesh.triangles.size()) + ", the first (" +
+                       placed.frames[0].filename().string() + ") " +
                        describe(first.positions.size(), first.triangles.size()) +
-                       "; all frames must have the same triangles of the same vertices, in the same order");
+                       "; all frames must have the same vertices and triangles, in the same order");
     }
     frames.push_back({static_cast<double>(k) / placed.frame_rate, from_engine(mesh.positions)});
   }

@@ -68,7 +68,7 @@ void read_air(TomlTable& wind, WindDesc& desc) {
   air.read("drag", desc.air.drag, above_zero());
   desc.air.lift = std::min(desc.air.lift, desc.air.drag);
   if (air.read("lift", desc.air.lift, not_negative()) && desc.air.lift > desc.air.drag)
-    air.get("lift").mistake("must not be above drag: the air would push");
+    air.get("lift").mistake("must not exceed drag: the air would do work");
 }
 
 void read_gusts(TomlTable& wind, WindDesc& desc) {
@@ -86,8 +86,7 @@ WindDesc read_wind(TomlTable table) {
   WindDesc wind;
   if (!table.has("air")) table.require({"drag"}, "a number not below 0 in N·s/m³");
   if (table.has("air")) read_air(table, wind);
-  if (table.has("gusts") && !table.has("air"))
-    table.get("gusts").mistake("only air feels them: add air = {}");
+  if (table.has("gusts") && !table.has("air")) table.get("gusts").mistake("requires air: add air = {}");
   if (table.has("gusts")) read_gusts(table, wind);
   table.require({"velocity", "keys"},
                 "velocity = [1, 0, 0] in m/s, or keys = [{ time = 0, velocity = [1, 0, 0] }, …]");
@@ -97,7 +96,7 @@ WindDesc read_wind(TomlTable table) {
   wind.keys = read_wind_keys(table);
   if (is_steady) wind.keys = {steady};
   const TomlValue keys = table.get("keys");
-  if (keys && keys.node().is_array() && keys.node().as_array()->empty()) keys.expected("one key at least");
+  if (keys && keys.node().is_array() && keys.node().as_array()->empty()) keys.expected("at least one key");
   return wind;
 }
 
@@ -118,8 +117,7 @@ ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
   const TomlValue friction = table.get("friction");
   if (double number = 0; friction && friction.read(number, not_negative())) contact.friction = number;
   read_static_friction(table, contact.friction.value_or(0), contact.static_friction);
-  if (contact.static_friction > 0 && !friction)
-    table.get("static_friction").mistake("only together with friction");
+  if (contact.static_friction > 0 && !friction) table.get("static_friction").mistake("requires friction");
   const TomlValue between = table.get("between");
   if (!between) return contact;
   const std::vector<TomlValue> names = between.elements(kForm);
@@ -130,10 +128,10 @@ ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
   for (int n = 0; n < 2; ++n) {
     std::string& name = contact.between[n];
     if (names[n].read(name) && !has_cloth(scene, name) && !has_collider(scene, name))
-      names[n].mistake("there is neither a cloth nor a collider \"" + name + "\"");
+      names[n].mistake("no cloth or collider is named \"" + name + "\"");
   }
   if (has_collider(scene, contact.between[0]) && has_collider(scene, contact.between[1]))
-    between.mistake("one of the two must be a cloth; colliders do not touch each other");
+    between.mistake("one of the two must be a cloth; colliders do not collide with each other");
   return contact;
 }
 
@@ -147,13 +145,13 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
   if (scene.wind.air.density > 0 && !feels_air(scene.solver.integrator))
     solver.get("integrator")
-        .mistake("does not feel wind.air; use \"newton\" or \"implicit_euler\", or wind.drag alone");
+        .mistake("does not support wind.air; use \"newton\" or \"implicit_euler\", or only wind.drag");
   if (moves_elements(scene.solver.integrator)) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;
     solver.get("integrator")
-        .mistake("knows springs alone, and cloth \"" + cloth.name +
-                 "\" is of a fabric; use \"newton\", \"implicit_euler\" or \"xpbd\", or give "
+        .mistake("supports springs only, but cloth \"" + cloth.name +
+                 "\" is made of a fabric; use \"newton\", \"implicit_euler\" or \"xpbd\", or set "
                  "spring_structural, spring_shear and spring_bend instead of the fabric");
     return;
   }
@@ -177,7 +175,8 @@ void read_adaptive(TomlTable& solver, SceneDesc& scene) {
   if (!value || !value.read(is_adaptive)) return;
   scene.adaptive = is_adaptive;
   if (is_adaptive && !can_divide_steps(scene.solver.integrator))
-    value.mistake(scene.solver.integrator + " keeps its steps: only newton and implicit_euler divide theirs");
+    value.mistake(scene.solver.integrator +
+                  " does not support step division; only newton and implicit_euler do");
 }
 
 void read_solver(TomlTable table, SceneDesc& scene) {
@@ -193,7 +192,7 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
   if (solver.is_double && !has_double_precision(solver.integrator))
-    table.get("precision").mistake("\"double\" is for newton and implicit_euler alone");
+    table.get("precision").mistake("only newton and implicit_euler support \"double\"");
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);
@@ -226,7 +225,7 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
   scene.name = make_name(file);
   TomlTable root(document, &document.root(), "");
   root.require({"scene"}, "[scene] with format = 1");
-  root.require({"cloth"}, "one [[cloth]] at least");
+  root.require({"cloth"}, "at least one [[cloth]]");
   read_scene_table(root.table("scene"), scene);
   for (TomlTable& cloth : root.tables("cloth")) {
     scene.cloths.push_back(read_cloth(cloth, static_cast<int>(scene.cloths.size()) + 1, file.parent_path()));

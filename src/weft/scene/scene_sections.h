@@ -47,7 +47,7 @@ bool read_time(TomlTable& table, const std::vector<Key>& before, Key& key) {
   table.require({"time"}, "a number in s");
   if (!table.read("time", key.time, any_number("s"))) return false;
   const bool is_later = before.empty() || key.time > before.back().time;
-  if (!is_later) table.get("time").expected("a time later than that of the key frame before");
+  if (!is_later) table.get("time").expected("a time after the previous key frame");
   return is_later;
 }
 

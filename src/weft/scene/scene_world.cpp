@@ -53,7 +53,7 @@ struct Selector {
       const int particle = particle_of_vertex[index];
       if (particle < 0) {
         throw InputError("cloth \"" + cloth.name + "\": vertex " + std::to_string(index) +
-                         " cannot be pinned, for no triangle uses it");
+                         " cannot be pinned: no triangle uses it");
       }
       selected.push_back(particle);
     }
@@ -75,8 +75,9 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
   std::sort(selected.begin(), selected.end());
   selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
   if (!selected.empty()) return selected;
-  throw InputError("cloth \"" + selector.cloth.name + "\": " + what +
-                   " holds no particle; regions are in world coordinates [m], after position and rotation");
+  throw InputError(
+      "cloth \"" + selector.cloth.name + "\": " + what +
+      " contains no particle; regions are in world coordinates [m], after position and rotation");
 }
 
 /// Pins and stiffened regions, selected by where particles are at the start.
@@ -120,7 +121,7 @@ void untangle(World& world, SceneNotes& built) {
   built.untangle_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::vector<std::string>& warnings = built.warnings;
   char how[96];
-  std::snprintf(how, sizeof how, "; set apart in %d rounds, by %.3g m at most", report.rounds,
+  std::snprintf(how, sizeof how, "; repaired in %d rounds, moved by at most %.3g m", report.rounds,
                 report.farthest);
   for (const std::string& what : report.crossed)
     warnings.push_back("at the start " + what + (report.left.empty() ? how : ""));

@@ -127,14 +127,14 @@ class Walk {
     }
     if (at_->is_table()) return "";
     return walked_ +
-           (at_->is_array() ? " is a list; say which of it, as in " + walked_ + "[0]" : " is not a table");
+           (at_->is_array() ? " is a list; give an index, as in " + walked_ + "[0]" : " is not a table");
   }
 
   std::string choose(std::size_t index, bool is_end) {
     toml::array* list = at_->as_array();
     if (!list) return walked_ + " is not a list";
     if (index >= list->size()) {
-      return "there is no " + walked_ + "[" + std::to_string(index) + "], the list holds " +
+      return "there is no " + walked_ + "[" + std::to_string(index) + "], the list has " +
              std::to_string(list->size());
     }
     walked_ += "[" + std::to_string(index) + "]";

@@ -102,7 +102,7 @@ std::size_t find_tripping(std::string_view text) {
 
 std::string explain(const std::string& description) {
   const bool is_bare_word = description.find("could not determine value type") != std::string::npos;
-  return description + (is_bare_word ? "; text stands in quotes" : "");
+  return description + (is_bare_word ? "; text must be in quotes" : "");
 }
 
 }  // namespace

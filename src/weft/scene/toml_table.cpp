@@ -104,8 +104,8 @@ void TomlTable::require(std::initializer_list<std::string_view> one_of, std::str
     if (first) {
       const bool in_order = first->source().begin < key->source().begin;
       const toml::key *early = in_order ? first : key, *late = in_order ? key : first;
-      document_->add_mistake(late->source(), std::string(late->str()) + ": cannot go with " +
-                                                 quote(early->str()) + ", one must go");
+      document_->add_mistake(late->source(), std::string(late->str()) + ": cannot be combined with " +
+                                                 quote(early->str()) + "; remove one");
     }
     first = key;
   }

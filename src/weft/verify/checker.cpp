@@ -81,7 +81,7 @@ FrameCheck check_frame(const Frame& frame, int num_listed) {
 std::string describe(const Frame& frame, const Crossing& crossing) {
   const auto& [a, b] = crossing;
   const std::string other = a.surface == b.surface ? "its" : name_of(frame, b.surface);
-  return name_of(frame, a.surface) + " triangle " + std::to_string(a.triangle) + " crosses " + other +
+  return name_of(frame, a.surface) + " triangle " + std::to_string(a.triangle) + " intersects " + other +
          " triangle " + std::to_string(b.triangle);
 }
 
@@ -92,7 +92,7 @@ std::vector<std::string> describe_by_surfaces(const Frame& frame, std::span<cons
   std::vector<std::string> sentences;
   for (const auto& [surfaces, found] : counts) {
     sentences.push_back(describe(frame, *found.first) + ", the first of " + std::to_string(found.second) +
-                        (found.second == 1 ? " crossing pair" : " crossing pairs"));
+                        (found.second == 1 ? " intersecting pair" : " intersecting pairs"));
   }
   return sentences;
 }

@@ -53,12 +53,12 @@ int find_number(const Things& things, std::uint32_t number) {
 
 template <class Things, class Id>
 std::size_t index_of_id(const Things& things, Id id, std::uint32_t world, std::string_view kind) {
-  if (id.number == 0) throw InputError("this " + std::string(kind) + " is empty: it is of nothing");
-  if (id.world != world) throw InputError("this " + std::string(kind) + " is of another world");
+  if (id.number == 0) throw InputError("this " + std::string(kind) + " is empty: it refers to nothing");
+  if (id.world != world) throw InputError("this " + std::string(kind) + " belongs to another world");
   const int index = find_number(things, id.number);
   if (index >= 0) return static_cast<std::size_t>(index);
-  throw InputError("what this " + std::string(kind) + " (number " + std::to_string(id.number) +
-                   ") was of is removed");
+  throw InputError("this " + std::string(kind) + " (number " + std::to_string(id.number) +
+                   ") refers to a removed body");
 }
 
 std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key> keys) {
@@ -76,9 +76,8 @@ std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
 
 void require_points(const std::vector<Vec3>& values, std::size_t count, const std::string& what) {
   require(values.size() == count,
-          what + " must be " + std::to_string(count) + ", not " + std::to_string(values.size()));
-  require(std::ranges::all_of(values, [](const Vec3& p) { return p.allFinite(); }),
-          what + " must be finite numbers");
+          what + ": expected " + std::to_string(count) + ", got " + std::to_string(values.size()));
+  require(std::ranges::all_of(values, [](const Vec3& p) { return p.allFinite(); }), what + " must be finite");
 }
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -108,14 +107,15 @@ void PointGuide::begin_step(double time, double dt) {
 World::World() : id_(next_world_id()), integrator_(make_integrator({})), jobs_(make_serial_jobs()) {}
 
 ClothId World::cloth(int n) const {
-  require(n >= 0 && n < num_cloths(),
-          "there is no cloth " + std::to_string(n) + "; the world has " + std::to_string(num_cloths()));
+  require(n >= 0 && n < num_cloths(), "cloth index " + std::to_string(n) +
+                                          " is out of range; the world has " + std::to_string(num_cloths()));
   return {id_, cloths_[n].number};
 }
 
 ColliderId World::collider(int n) const {
-  require(n >= 0 && n < num_colliders(),
-          "there is no collider " + std::to_string(n) + "; the world has " + std::to_string(num_colliders()));
+  require(n >= 0 && n < num_colliders(), "collider index " + std::to_string(n) +
+                                             " is out of range; the world has " +
+                                             std::to_string(num_colliders()));
   return {id_, guides_[n].number};
 }
 
@@ -157,7 +157,7 @@ ClothId World::add_cloth(const ClothParts& given) {
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
   require(find_non_finite(cloth.state) < 0,
-          "cloth \"" + desc.name + "\" has a position or a velocity that is not a finite number");
+          "cloth \"" + desc.name + "\" has a non-finite position or velocity");
   cloth.is_pinned.assign(positions.size(), 0);
   cloth.number = ++last_number_;
   last_step_ = 0;
@@ -216,12 +216,12 @@ MeshShape& World::mesh_of(ColliderId id, const std::vector<Vec3>& positions) {
   Collider& collider = colliders_[index_of(id)];
   const std::string who = "collider \"" + collider.name + "\": ";
   MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
-  require(shape != nullptr, who + "it is no mesh, and has no vertices");
+  require(shape != nullptr, who + "it is not a mesh and has no vertices");
   require(static_cast<int>(positions.size()) == shape->mesh->num_vertices(),
-          who + "it has " + std::to_string(shape->mesh->num_vertices()) + " vertices, not " +
+          who + "expected " + std::to_string(shape->mesh->num_vertices()) + " vertices, got " +
               std::to_string(positions.size()));
   require(std::ranges::all_of(positions, [](const Vec3& p) { return p.allFinite(); }),
-          who + "a vertex has a coordinate that is not a finite number");
+          who + "a vertex has a non-finite coordinate");
   return *shape;
 }
 
@@ -271,12 +271,12 @@ void World::guide_colliders(double dt) {
 }
 
 void World::set_gravity(const Vec3& gravity) {
-  require(gravity.allFinite(), "gravity must be finite numbers");
+  require(gravity.allFinite(), "gravity must be finite");
   gravity_ = gravity;
 }
 
 void World::set_jobs(std::shared_ptr<JobSystem> jobs) {
-  require(jobs != nullptr, "a world needs a job system; make_serial_jobs() makes one without threads");
+  require(jobs != nullptr, "a world requires a job system; make_serial_jobs() makes one without threads");
   jobs_ = std::move(jobs);
 }
 
@@ -343,7 +343,7 @@ void World::set_grab_target(ClothId id, int grab, const Vec3& target) {
   Cloth& cloth = at(id);
   if (grab < 0 || grab >= cloth.hands.size())
     throw InputError("cloth \"" + cloth.name + "\" has no grab " + std::to_string(grab));
-  if (!target.allFinite()) throw InputError("a grab's target must be finite numbers");
+  if (!target.allFinite()) throw InputError("a grab's target must be finite");
   cloth.hands.set_target(grab, target);
   cloth.grab_guide = {};
 }
@@ -378,7 +378,7 @@ void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
               "cloth \"" + cloth.name + "\" has no particle " + std::to_string(i) + " to grab");
     }
     require(grab.shares.size() == grab.particles.size() && grab.offsets.size() == grab.particles.size(),
-            "a grab needs a share and an offset for each particle");
+            "a grab requires one share and one offset per particle");
     require(std::isfinite(grab.stiffness) && grab.stiffness >= 0 && std::isfinite(grab.damping) &&
                 grab.damping >= 0,
             "a grab's stiffness and damping must be 0 or more");
@@ -449,9 +449,9 @@ ContactSystem::Place World::find_place(const std::string& name) const {
   for (int c = 0; c < num_colliders(); ++c) {
     if (colliders_[c].name == name) found.push_back({-1, c, 0});
   }
-  require(!found.empty(), "there is neither a cloth nor a collider \"" + name + "\"");
-  require(found.size() == 1, "there are " + std::to_string(found.size()) + " things named \"" + name +
-                                 "\"; give them names that differ");
+  require(!found.empty(), "no cloth or collider is named \"" + name + "\"");
+  require(found.size() == 1,
+          std::to_string(found.size()) + " bodies are named \"" + name + "\"; names must be unique");
   return found[0];
 }
 
@@ -464,7 +464,7 @@ ContactRule& World::rule_for(ContactSystem::Place cloth, ContactSystem::Place ot
   if (cloth.cloth < 0) std::swap(cloth, other);
   require(cloth.cloth >= 0,
           name_of(cloth) + " and " + name_of(other) +
-              " are both colliders, which do not touch each other; one of the two must be a cloth");
+              " are both colliders, which do not collide with each other; one of the two must be a cloth");
   if (other.cloth > cloth.cloth) std::swap(cloth, other);
   const auto is_theirs = [&](const ContactRule& r) {
     return r.cloth == cloth.cloth && r.other_cloth == other.cloth && r.collider == other.collider;
@@ -644,15 +644,15 @@ std::vector<std::string> World::describe(const Knots& knots) const {
     const auto [i, j] = contact_system_.surface().edges[p.edge];
     const ContactSystem::Place edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
                                triangle = contact_system_.place_of_triangle(p.triangle);
-    add("edges of " + name_of(edge) + " run through triangles of " + name_of(triangle), [&] {
-      return ", the first one between " + std::to_string(edge.index) + " and " + std::to_string(other.index) +
-             " through triangle " + std::to_string(triangle.index);
+    add("edges of " + name_of(edge) + " intersect triangles of " + name_of(triangle), [&] {
+      return ", first edge " + std::to_string(edge.index) + "-" + std::to_string(other.index) +
+             " with triangle " + std::to_string(triangle.index);
     });
   }
   for (const Inside& inside : knots.inside) {
     const ContactSystem::Place place = contact_system_.place_of(inside.vertex);
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
-        [&] { return ", the first one " + std::to_string(place.index); });
+        [&] { return ", first particle " + std::to_string(place.index); });
   }
   std::vector<std::string> sentences;
   for (const auto& [what, count] : counts) sentences.push_back(std::to_string(count) + ' ' + what);
@@ -667,8 +667,9 @@ std::vector<ContactPoint> World::contact_points() const {
 void World::set_division(const StepDivision& division) {
   require(std::isfinite(division.shortest) && division.shortest > 0,
           "the shortest part of a step must be more than 0 s");
-  require(!division.enabled.value_or(false) || can_divide_steps(integrator_settings_.integrator),
-          integrator_settings_.integrator + " keeps its steps; only newton and implicit_euler divide theirs");
+  require(
+      !division.enabled.value_or(false) || can_divide_steps(integrator_settings_.integrator),
+      integrator_settings_.integrator + " does not support step division; only newton and implicit_euler do");
   division_ = division;
 }
 
@@ -868,13 +869,13 @@ void World::hold(Held held, Cloth& cloth) {
 
 void World::restore(const Snapshot& snapshot) {
   require(snapshot.states.size() == cloths_.size(),
-          "the snapshot has another number of cloths than the world");
+          "the snapshot and the world have different numbers of cloths");
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     require(snapshot.states[c].x.size() == cloths_[c].state.x.size(),
-            "the snapshot's cloth \"" + cloths_[c].name + "\" has another number of particles");
+            "the snapshot's cloth \"" + cloths_[c].name + "\" has a different number of particles");
   }
   require(snapshot.guides.empty() || snapshot.guides.size() == guides_.size(),
-          "the snapshot has another number of colliders than the world");
+          "the snapshot and the world have different numbers of colliders");
   time_ = snapshot.time;
   part_ = snapshot.part;
   calm_ = snapshot.calm;

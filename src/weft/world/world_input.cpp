@@ -30,14 +30,14 @@ struct ShapeJudge {
   std::string who;
 
   void finite(const Vec3& p, const char* what) const {
-    require(p.allFinite(), who + what + " must be finite numbers, not " + in_words(p));
+    require(p.allFinite(), who + what + " must be finite, not " + in_words(p));
   }
   void positive(double value, const char* what) const {
     require(std::isfinite(value) && value > 0, who + what + " must be more than 0 m, not " + in_words(value));
   }
   void rotation(const Mat3& r) const {
     require(is_rotation(r), who +
-                                "its rotation is no rotation: columns must be perpendicular unit vectors, "
+                                "its rotation is invalid: columns must be perpendicular unit vectors, "
                                 "right-handed");
   }
 
@@ -48,7 +48,7 @@ struct ShapeJudge {
   void operator()(const Plane& p) const {
     finite(p.point, "its point");
     require(std::abs(p.normal.norm() - 1) < kRounding,
-            who + "its normal must have length 1, and is " + in_words(p.normal));
+            who + "its normal must have length 1, but is " + in_words(p.normal));
   }
   void operator()(const Capsule& c) const {
     finite(c.a, "its end a");
@@ -70,7 +70,7 @@ struct ShapeJudge {
     rotation(m.rotation);
     finite(m.translation, "its translation");
     require(!m.sequence || m.sequence->num_vertices() == m.mesh->num_vertices(),
-            who + "its sequence has another number of vertices than its mesh");
+            who + "its sequence and its mesh have different numbers of vertices");
   }
 };
 
@@ -100,18 +100,18 @@ void require_valid(const ClothTopology& topology, const std::string& cloth) {
     throw InputError(who + error.what());
   }
   const int n = topology.num_particles();
-  require(static_cast<int>(topology.area.size()) == n, who + "its topology has an area for " +
-                                                           std::to_string(topology.area.size()) + " of " +
-                                                           std::to_string(n) + " particles");
+  require(static_cast<int>(topology.area.size()) == n, who + "its topology has " +
+                                                           std::to_string(topology.area.size()) +
+                                                           " areas for " + std::to_string(n) + " particles");
   for (int i = 0; i < n; ++i) {
     require(std::isfinite(topology.area[i]) && topology.area[i] > 0,
             who + "particle " + std::to_string(i) +
-                " stands for no area: is it in no triangle? clean_mesh() drops such vertices");
+                " has no area: is it in no triangle? clean_mesh() removes such vertices");
   }
   for (const Spring& s : topology.springs) {
     require(s.i >= 0 && s.i < n && s.j >= 0 && s.j < n && s.i != s.j,
-            who + "a spring joins particles " + std::to_string(s.i) + " and " + std::to_string(s.j) + " of " +
-                std::to_string(n));
+            who + "a spring joins particles " + std::to_string(s.i) + " and " + std::to_string(s.j) +
+                ", but there are " + std::to_string(n));
   }
 }
 
@@ -130,20 +130,20 @@ void require_valid(const Pose& pose, const std::string& thing) {
 
 void require_valid(const Wind& wind, const std::string& integrator) {
   require(wind.velocity.allFinite() && std::isfinite(wind.drag) && wind.drag >= 0,
-          "the wind's velocity must be finite numbers, and its drag 0 or more");
+          "the wind's velocity must be finite, and its drag 0 or more");
   if (wind.air.density == 0) return;
   require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
           "the air's density and drag must be above 0, and its lift from 0 to its drag");
-  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts need a length and a time above 0");
-  require(feels_air(integrator), integrator + " does not feel the air's drag and lift; use newton or " +
-                                     "implicit_euler, or the wind's drag alone");
+  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts require a length and a time above 0");
+  require(feels_air(integrator), integrator + " does not support aerodynamic drag and lift; use newton or " +
+                                     "implicit_euler, or only the wind's drag");
 }
 
 void require_elements_move(const std::string& integrator, const std::string& cloth) {
   require(moves_elements(integrator),
-          "cloth \"" + cloth + "\" is of a fabric, which " + integrator +
-              " cannot move, for it knows springs alone; use newton, "
-              "implicit_euler or xpbd, or give spring_structural, spring_shear and "
+          "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
+              " supports springs only; use newton, "
+              "implicit_euler or xpbd, or set spring_structural, spring_shear and "
               "spring_bend instead of the fabric");
 }
 
