@@ -2,10 +2,11 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help demo test scenes pictures videos study docs build asan tsan fuzz format clean
+.PHONY: help program lab build demo test scenes pictures videos study docs build asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
+	@echo "make lab     build weft-lab, which runs weft study and weft bench"
 	@echo "make test    install what is missing, build, run all tests"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
@@ -17,12 +18,13 @@ help:
 	@echo "make fuzz    fuzz the readers of scenes, OBJ, .glb and saved worlds, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
 
-build:
+# The program weft; with the laboratory weft-lab; everything.
+program lab build:
 	@tools/install_deps.sh
 	@cmake --preset release > /dev/null
-	@cmake --build --preset release -j $(JOBS)
+	@cmake --build --preset release -j $(JOBS) $(if $(filter program,$@),--target weft_app) $(if $(filter lab,$@),--target weft_lab_app --target weft_app)
 
-demo: build
+demo: program
 	@build/release/bin/weft demo
 
 test: build
@@ -31,13 +33,13 @@ test: build
 scenes: build
 	@tools/check_scenes.sh build/release/bin/weft
 
-pictures: build
+pictures: program
 	@tools/make_pictures.sh build/release/bin/weft docs/images
 
-videos: build
+videos: program
 	@tools/make_videos.sh build/release/bin/weft out/videos
 
-study: build
+study: lab
 	@tools/make_study.sh build/release/bin/weft docs/study
 
 docs:

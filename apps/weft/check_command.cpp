@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "commands.h"
-#include "common.h"
+#include "apps/common/command_line.h"
 #include "weft/error.h"
 #include "weft/run/start_check.h"
 #include "weft/scene/scene_library.h"

@@ -3,10 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
-namespace weft::engine::app {
+#include "apps/common/program.h"
 
-/// Exit codes of the program.
-enum ExitCode { kDone = 0, kSimulationFailed = 1, kNotClean = 1, kBadInput = 2, kInterrupted = 130 };
+namespace weft::engine::app {
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
@@ -15,9 +14,12 @@ void add_view_command(CLI::App& app, int& exit_code);
 void add_scenes_command(CLI::App& app, int& exit_code);
 void add_fabrics_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
-void add_study_command(CLI::App& app, int& exit_code);
-void add_chapter_commands(CLI::App& studies);  // of `weft study`
 void add_verify_command(CLI::App& app, int& exit_code);
-void add_bench_command(CLI::App& app, int& exit_code);
+
+/// `weft study` and `weft bench`, which the program weft-lab runs: run_laboratory() becomes it, and returns only
+/// where it is missing. The subcommands stand for the help text.
+bool is_laboratory_command(int argc, char** argv);
+int run_laboratory(char** argv);
+void add_laboratory_commands(CLI::App& app);
 
 }  // namespace weft::engine::app

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "painter.h"
-#include "progress.h"
+#include "weft/pictures/painter.h"
+#include "apps/common/progress.h"
 #include "run_command.h"
 #include "summary.h"
 #include "view_command.h"
@@ -31,7 +31,7 @@ void paint(const Animation& animation, const fs::path& folder) {
   painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
   const fs::path video = folder / "video.mp4";
   require_ffmpeg(video);
-  painter.write_video(video, kEvery);
+  painter.write_video(video, kEvery, interrupted);
 }
 
 /// Optional pictures: a failure is reported once and does not stop the demo.

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "commands.h"
-#include "common.h"
-#include "painter.h"
-#include "progress.h"
+#include "apps/common/command_line.h"
+#include "weft/pictures/painter.h"
+#include "apps/common/progress.h"
 #include "run_command.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
@@ -131,7 +131,8 @@ RunOutcome render(const RenderRequest& request) {
   settings.style.springs = source.springs();
   Painter painter(animation, settings, std::move(device));
   if (is_video(request.out)) {
-    painter.write_video(request.out, request.every);
+    const bool was_interrupted = interrupted();  // while simulating
+    painter.write_video(request.out, request.every, [&] { return interrupted() != was_interrupted; });
   } else {
     const std::vector<int> frames = choose_frames(request.frames, outcome, painter.last_frame());
     painter.write_pictures(request.out, frames, request.columns);

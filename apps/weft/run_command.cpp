@@ -6,8 +6,8 @@
 #include <regex>
 
 #include "commands.h"
-#include "common.h"
-#include "progress.h"
+#include "apps/common/command_line.h"
+#include "apps/common/progress.h"
 #include "summary.h"
 #include "weft/core/staged_file.h"
 #include "weft/run/file_sinks.h"

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "common.h"
-#include "progress.h"
+#include "apps/common/command_line.h"
+#include "apps/common/progress.h"
 #include "viewer.h"
 #include "weft/core/staged_file.h"
 #include "weft/scene/scene_library.h"

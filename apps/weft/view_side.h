@@ -1,7 +1,7 @@
 #pragma once
 /// One simulation in the window: the only one, or one of two.
 
-#include "weft/lab/scene_picture.h"
+#include "weft/pictures/scene_picture.h"
 #include "weft/render/pick.h"
 #include "weft/run/live.h"
 

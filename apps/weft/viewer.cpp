@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "progress.h"
+#include "apps/common/progress.h"
 #include "view_panel.h"
 #include "view_report.h"
 #include "weft/error.h"

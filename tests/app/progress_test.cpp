@@ -1,4 +1,4 @@
-#include "apps/weft/progress.h"
+#include "apps/common/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -40,9 +40,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"core", "geometry", "mesh", "fabric", "model", "forces", "solvers", "animation", "contact",
       "integrators", "world", "face", "verify", "io", "scene"}},
     {"render", {"core", "geometry", "mesh"}},
-    {"lab",
-     {"core", "geometry", "mesh", "fabric", "model", "forces", "solvers", "animation", "contact",
-      "integrators", "world", "face", "verify", "io", "scene", "run", "render"}},
+    {"pictures", {"core", "geometry", "mesh", "model", "io", "render"}},
 };
 
 /// Folders of weft that a file includes from.

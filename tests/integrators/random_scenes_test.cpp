@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bench/random_scene.h"
+#include "lab/benchmarks/random_scene.h"
 #include "tests/support.h"
 
 namespace weft::engine {

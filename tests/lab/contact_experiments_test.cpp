@@ -1,13 +1,13 @@
 /// Contact obeys the laws that have formulas; `weft bench contact` has the same experiments finer and longer.
 
-#include "weft/lab/contact_experiments.h"
+#include "lab/contact/contact_experiments.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-namespace weft::engine {
+namespace weft::engine::lab {
 namespace {
 
 TEST(ContactExperiments, OnAnInclineNewtonSlidesAsCoulombSays) {
@@ -110,4 +110,4 @@ TEST(ContactExperiments, ASheetComesToRestOnAFloorAndIsBorneByIt) {
 }
 
 }  // namespace
-}  // namespace weft::engine
+}  // namespace weft::engine::lab

@@ -1,0 +1,42 @@
+#pragma once
+/// The sections of the study: each tests the hypotheses of one subject and tells what came out. Whoever runs them
+/// fills in version, is_quick and seconds.
+
+#include <functional>
+#include <memory>
+
+#include "weft/io/animation.h"
+#include "lab/report/report.h"
+#include "weft/model/cloth_model.h"
+
+namespace weft::engine::lab {
+
+struct SectionOptions {
+  bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
+  int threads = 1;                              // of simulations that are not timed [1]
+  std::filesystem::path cache;                  // for references; empty: default_cache_folder()
+  std::function<void(const std::string&)> say;  // told what is being done; may be empty
+  /// Paints frames of an animation, side by side, into a file of the report's folder; its first cloth as
+  /// springs, from above, if a topology is given. Empty: no pictures.
+  std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames,
+                     std::shared_ptr<const ClothTopology> springs)>
+      paint;
+
+  void tell(const std::string& what) const {
+    if (say) say(what);
+  }
+};
+
+/// The claims of the paper, and its omissions.
+Section study_paper(const SectionOptions& options);
+
+/// How right every integrator is, for how much time; convergence, energy, frequencies.
+Section study_accuracy(const SectionOptions& options);
+
+/// What contact holds, and at what cost.
+Section study_contact(const SectionOptions& options);
+
+/// One fabric on many meshes and at many steps.
+Section study_fabric(const SectionOptions& options);
+
+}  // namespace weft::engine::lab

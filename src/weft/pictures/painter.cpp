@@ -1,0 +1,57 @@
+#include "weft/pictures/painter.h"
+
+#include <algorithm>
+
+#include "weft/error.h"
+#include "weft/render/video.h"
+
+namespace weft::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSheetGap = 6;  // between the pictures of a contact sheet [pixels]
+constexpr int kMostColumns = 4;
+
+}  // namespace
+
+void require_picture(const fs::path& file) {
+  if (is_picture(file) || is_video(file)) return;
+  throw InputError(file.string() + ": expected a file name ending in .png, .jpg, .mp4, .webp or .gif");
+}
+
+Painter::Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device)
+    : animation_(animation),
+      size_(settings.size),
+      renderer_(std::move(device)),
+      pictures_(animation, settings.style),
+      last_(num_frames(animation) - 1) {
+  if (last_ < 0) throw InputError("there is no cloth to draw");
+  camera_ = frame_scene(animation, 0, last_, settings.view, size_.aspect());
+  camera_.zoom(1 / settings.zoom);
+}
+
+Image Painter::draw(int frame) { return renderer_.draw(pictures_.at(frame, camera_), size_); }
+
+void Painter::write_pictures(const fs::path& file, const std::vector<int>& frames, int columns) {
+  std::vector<Image> images;
+  for (const int frame : frames) {
+    if (frame > last_)
+      throw InputError("there is no frame " + std::to_string(frame) + "; the last one is " +
+                       std::to_string(last_));
+    images.push_back(draw(frame));
+  }
+  if (columns == 0) columns = std::min(kMostColumns, static_cast<int>(images.size()));
+  write_image(file, images.size() == 1 ? images[0] : make_contact_sheet(images, columns, kSheetGap));
+}
+
+void Painter::write_video(const fs::path& file, int every, const std::function<bool()>& is_stopped) {
+  VideoWriter video(file, size_.width, size_.height, animation_.frames_per_second / every);
+  for (int frame = 0; frame <= last_; frame += every) {
+    video.add(draw(frame));
+    if (is_stopped && is_stopped()) break;
+  }
+  video.finish();
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,72 @@
+#include "weft/pictures/scene_picture.h"
+
+#include <gtest/gtest.h>
+
+#include "weft/run/film.h"
+#include "weft/run/scene_run.h"
+#include "weft/scene/scene_library.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
+
+namespace weft::engine {
+namespace {
+
+Animation simulate(const char* scene, int frames) {
+  const SceneDesc desc =
+      read_scene(find_scene(scene),
+                 {"cloth[0].grid.cells=[6, 6]", "solver.steps_per_frame=2", "solver.integrator=paper_fixed"});
+  FilmSink film;
+  run_scene(desc, {.frames = frames}, {&film});
+  return film.animation();
+}
+
+TEST(ScenePictures, ShowClothAndBodies) {
+  const Animation animation = simulate("paper/fig6_ball", 2);
+  const Picture picture = ScenePictures(animation).at(1, {});
+  ASSERT_EQ(picture.meshes.size(), 2u);
+  EXPECT_EQ(picture.meshes[0].look.kind, Look::Kind::fabric);
+  EXPECT_EQ(picture.meshes[0].positions, animation.cloths[0].frames[1]);
+  EXPECT_EQ(picture.meshes[0].fabric_coordinates.size(), 2u * 49);
+  EXPECT_EQ(picture.meshes[1].look.kind, Look::Kind::solid);
+  ASSERT_TRUE(picture.ground);
+  EXPECT_LT(*picture.ground, 0.1) << "below the ball";
+}
+
+TEST(ScenePictures, DrawALevelPlaneAsGroundAtItsHeight) {
+  const Animation animation = simulate("contact/rotating_ball", 1);
+  const Picture picture = ScenePictures(animation).at(0, {});
+  const Plane* floor = nullptr;
+  for (const RigidMesh& body : animation.bodies) {
+    if (body.shape && std::holds_alternative<Plane>(*body.shape)) floor = &std::get<Plane>(*body.shape);
+  }
+  ASSERT_NE(floor, nullptr) << "the scene has a floor";
+  EXPECT_EQ(picture.meshes.size(), animation.cloths.size() + animation.bodies.size() - 1);
+}
+
+TEST(ScenePictures, DrawEverySpringAsAskedFor) {
+  const Animation animation = simulate("paper/fig3_horizontal", 1);
+  const auto topology =
+      build_grid_topology({.size_x = 1, .size_z = 1, .cells_x = 6, .cells_z = 6}, SpringModel::simplified);
+  const Picture picture =
+      ScenePictures(animation, {.transparent = true, .ground = {}, .springs = {{0, topology}}}).at(0, {});
+  EXPECT_TRUE(picture.meshes.empty());
+  ASSERT_EQ(picture.lines.size(), 3u);
+  const auto count = [&](SpringKind kind) {
+    return static_cast<std::size_t>(std::count_if(topology->springs.begin(), topology->springs.end(),
+                                                  [&](const Spring& s) { return s.kind == kind; }));
+  };
+  EXPECT_EQ(picture.lines[0].ends.size() % count(SpringKind::bend), 0u);
+  EXPECT_EQ(picture.lines[1].ends.size(), 2 * count(SpringKind::shear));
+  EXPECT_EQ(picture.lines[2].ends.size(), 2 * count(SpringKind::structural));
+  EXPECT_EQ(picture.dots[0].positions.size(), 49u);
+}
+
+TEST(FrameScene, HoldsTheWholeMotion) {
+  const Animation animation = simulate("paper/fig5_falling", 30);
+  const Camera whole = frame_scene(animation, 0, 30, {}, 1.5), start = frame_scene(animation, 0, 0, {}, 1.5);
+  EXPECT_GT(whole.distance, start.distance);
+  EXPECT_LT(whole.target.y(), start.target.y());
+}
+
+}  // namespace
+}  // namespace weft::engine
