@@ -23,32 +23,44 @@ void require_picture(const fs::path& file) {
 Painter::Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device)
     : animation_(animation),
       size_(settings.size),
+      view_(settings.view),
+      zoom_(settings.zoom),
       renderer_(std::move(device)),
       pictures_(animation, settings.style),
       last_(num_frames(animation) - 1) {
   if (last_ < 0) throw InputError("there is no cloth to draw");
-  camera_ = frame_scene(animation, 0, last_, settings.view, size_.aspect());
-  camera_.zoom(1 / settings.zoom);
 }
 
-Image Painter::draw(int frame) { return renderer_.draw(pictures_.at(frame, camera_), size_); }
+Camera Painter::frame(const std::vector<int>& frames) const {
+  Camera camera = frame_scene(animation_, frames, view_, size_.aspect());
+  camera.zoom(1 / zoom_);
+  return camera;
+}
+
+Image Painter::draw(int frame, const Camera& camera) {
+  return renderer_.draw(pictures_.at(frame, camera), size_);
+}
 
 void Painter::write_pictures(const fs::path& file, const std::vector<int>& frames, int columns) {
-  std::vector<Image> images;
   for (const int frame : frames) {
     if (frame > last_)
       throw InputError("there is no frame " + std::to_string(frame) + "; the last one is " +
                        std::to_string(last_));
-    images.push_back(draw(frame));
   }
+  const Camera camera = this->frame(frames);
+  std::vector<Image> images;
+  for (const int frame : frames) images.push_back(draw(frame, camera));
   if (columns == 0) columns = std::min(kMostColumns, static_cast<int>(images.size()));
   write_image(file, images.size() == 1 ? images[0] : make_contact_sheet(images, columns, kSheetGap));
 }
 
 void Painter::write_video(const fs::path& file, int every, const std::function<bool()>& is_stopped) {
   VideoWriter video(file, size_.width, size_.height, animation_.frames_per_second / every);
-  for (int frame = 0; frame <= last_; frame += every) {
-    video.add(draw(frame));
+  std::vector<int> frames;
+  for (int frame = 0; frame <= last_; frame += every) frames.push_back(frame);
+  const Camera camera = this->frame(frames);
+  for (const int frame : frames) {
+    video.add(draw(frame, camera));
     if (is_stopped && is_stopped()) break;
   }
   video.finish();

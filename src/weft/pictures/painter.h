@@ -21,7 +21,8 @@ struct PaintSettings {
   SceneStyle style;
 };
 
-/// Draws the frames of an animation, which must outlive this, with one camera that frames all of them.
+/// Draws frames of an animation, which must outlive this: all that go to one file with one camera, which shows
+/// everything in these frames.
 class Painter {
  public:
   /// Throws GraphicsError without graphics, InputError for an animation without cloth.
@@ -37,14 +38,16 @@ class Painter {
   int last_frame() const { return last_; }
 
  private:
-  Image draw(int frame);
+  Camera frame(const std::vector<int>& frames) const;
+  Image draw(int frame, const Camera& camera);
 
   const Animation& animation_;
   PictureSize size_;
+  Camera view_;
+  double zoom_;
   Renderer renderer_;
   ScenePictures pictures_;
   int last_;
-  Camera camera_;
 };
 
 }  // namespace weft::engine

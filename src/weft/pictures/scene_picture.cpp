@@ -145,9 +145,10 @@ Picture ScenePictures::at(int frame, const Camera& camera) const {
   return picture;
 }
 
-Camera frame_scene(const Animation& animation, int first, int last, const Camera& like, double aspect) {
+Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
+                   double aspect) {
   std::vector<Vec3> points;
-  for (int frame = first; frame <= last; ++frame) add_points(animation, frame, points);
+  for (const int frame : frames) add_points(animation, frame, points);
   return frame_points(like, points, aspect);
 }
 

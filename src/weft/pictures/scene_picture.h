@@ -35,8 +35,9 @@ class ScenePictures {
   SceneStyle style_;
 };
 
-/// The camera turned as `like`, from where all that the frames `first` to `last` show is in the picture.
-Camera frame_scene(const Animation& animation, int first, int last, const Camera& like, double aspect);
+/// The camera turned as `like`, at the distance from which everything in these frames is in the picture.
+Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
+                   double aspect);
 
 int num_frames(const Animation& animation);
 
