@@ -14,7 +14,7 @@ TEST(Newton, StaysFiniteAndGainsNoEnergyInRandomScenes) {
   constexpr int kScenes = 150, kSteps = 40;
   std::vector<std::uint64_t> gaining;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
-    bench::RandomScene scene = bench::make_random_scene(seed);
+    lab::RandomScene scene = lab::make_random_scene(seed);
     const ClothModel& model = *scene.cloth.model;
     const auto integrator = test::integrator("newton");
     const double start = scene.energy();
