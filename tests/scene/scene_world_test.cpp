@@ -278,5 +278,65 @@ TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
   }
 }
 
+class Settle : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+
+  SceneWorld build(const std::string& settle, const std::string& collider) const {
+    return build_world(parse_scene("[scene]\nformat = 1\n" + settle + R"(
+[[cloth]]
+name = "sheet"
+grid = { size = [1, 1], cells = [16, 16] }
+fabric = "silk"
+position = [-0.5, 0.25, -0.5]
+)" + collider,
+                                   folder_ / "scene.toml"),
+                       make_serial_jobs());
+  }
+
+  /// Of the sheet's middle.
+  static double height(const World& world) { return world.state(world.cloth(0)).position(8 * 17 + 8).y(); }
+
+  const std::filesystem::path folder_ = std::filesystem::path(WEFT_OUTPUT_DIR) / "settle";
+};
+
+TEST_F(Settle, LaysClothOnABodyThatStandsStillBeforeFrameZero) {
+  const std::string ball = R"([[collider]]
+name = "ball"
+shape = "sphere"
+center = [0, 0, 0]
+radius = 0.2
+motion = [{ time = 0 }, { time = 1, position = [5, 0, 0] }]
+)";
+  const SceneWorld before = build("", ball), after = build("settle = 1", ball);
+  EXPECT_EQ(before.world.time(), 0);
+  EXPECT_EQ(after.world.time(), 0);
+  EXPECT_EQ(height(before.world), 0.25);
+  EXPECT_NEAR(height(after.world), 0.2, 0.002) << "it lies on the ball, by half its thickness";
+  const ClothState& state = after.world.state(after.world.cloth(0));
+  EXPECT_LT(state.position(0).y(), 0) << "its corners hang";
+  for (std::size_t i = 0; i < state.v.size(); ++i) ASSERT_EQ(state.v.get(i), Vec3(Vec3::Zero()));
+}
+
+TEST_F(Settle, TakesABodyFromItsRestPoseToItsFirstPose) {
+  // The body's first pose goes through the sheet; its rest pose lies below.
+  write_obj(folder_ / "first.obj", make_sphere_mesh({0, 0, 0}, 0.3, 16));
+  write_obj(folder_ / "rest.obj", make_sphere_mesh({0, 0, 0}, 0.2, 16));
+  const std::string body = "[[collider]]\nname = \"body\"\nshape = \"mesh\"\nfile = \"first.obj\"\n";
+  const SceneWorld built = build("settle = 0.5", body + "rest = \"rest.obj\"\n");
+  EXPECT_TRUE(built.warnings.empty()) << testing::PrintToString(built.warnings);
+  EXPECT_NEAR(height(built.world), 0.3, 0.004);
+}
+
+TEST_F(Settle, OfARestPoseNeedsItsTime) {
+  write_obj(folder_ / "first.obj", make_sphere_mesh({0, 0, 0}, 0.2, 8));
+  try {
+    build("", "[[collider]]\nshape = \"mesh\"\nfile = \"first.obj\"\nrest = \"first.obj\"\n");
+    FAIL() << "no mistake";
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("rest: needs scene.settle"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace weft::engine

@@ -78,6 +78,7 @@ description = "quotes \" and \\ and\ta tab"
 gravity = [0.1, -9, 0.3333333333333333]
 fps = 50
 duration = 0.7
+settle = 0.25
 [[cloth]]
 grid = { size = [1.5, 2], cells = [4, 5] }
 model = "basic"
@@ -135,6 +136,7 @@ name = "body"
 shape = "mesh"
 frames = "b_*.obj"
 frame_rate = 12
+rest = "a.obj"
 up = "z"
 scale = 2
 position = [0, 1, 0]

@@ -157,16 +157,21 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
 
 }  // namespace
 
-MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder) {
-  MeshSource mesh;
+std::filesystem::path read_file_name(TomlTable& owner, std::string_view key,
+                                     const std::filesystem::path& folder) {
   std::string name;
   std::error_code unreadable;
   const TomlValue value = owner.get(key);
-  if (value && value.read(name)) {
-    mesh.file = folder / name;
-    const bool exists = std::filesystem::is_regular_file(mesh.file, unreadable);
-    if (!exists) value.mistake("there is no file " + quote(mesh.file.generic_string(), 1000));
-  }
+  if (!value || !value.read(name)) return {};
+  const std::filesystem::path file = folder / name;
+  const bool exists = std::filesystem::is_regular_file(file, unreadable);
+  if (!exists) value.mistake("there is no file " + quote(file.generic_string(), 1000));
+  return file;
+}
+
+MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder) {
+  MeshSource mesh;
+  mesh.file = read_file_name(owner, key, folder);
   owner.read_choice<bool>("up", mesh.up_is_z, {{"y", false}, {"z", true}});
   owner.read("scale", mesh.scale, above_zero("m per unit of the file"));
   return mesh;

@@ -14,7 +14,8 @@ constexpr double kUnit = 1e-15;  // of |n|² from 1: the direction is normalised
 /// Keys of a mesh, on a shape that is given by keys of its own: refused with the reason, rather than being
 /// unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
-  for (const std::string_view key : {"file", "frames", "frame_rate", "up", "scale", "position", "rotation"}) {
+  for (const std::string_view key : {"file", "frames", "frame_rate", "rest", "up", "scale", "position",
+                                     "rotation"}) {
     const bool is_own = has_rotation && key == "rotation";
     if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
   }
@@ -91,6 +92,7 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   } else {
     collider.refuse("frame_rate", "only a mesh with \"frames\" has it");
   }
+  mesh.rest = read_file_name(collider, "rest", folder);
   mesh.source.weld = true;
   mesh.source.weld_distance = 0;
   collider.refuse("weld", "a collider has no seams; its vertices are always sewn where they coincide");

@@ -66,6 +66,7 @@ struct PlacedMesh {
   std::vector<std::filesystem::path> frames;  // of a sequence, in order, the first one too; empty: none
   std::vector<std::vector<Vec3>> frame_positions;  // likewise in memory, of (num_vertices) each; in the
                                                    // source's unit and axes [m]
+  std::filesystem::path rest;                 // pose before SceneDesc::settle; empty: that of the start
   double frame_rate = 30;                     // of a sequence, > 0 [1/s]
   Vec3 position = Vec3::Zero();               // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the mesh's own origin [degrees]
@@ -143,6 +144,9 @@ struct SceneDesc {
   std::string description;       // one line
   Vec3 gravity = {0, -9.81, 0};  // [m/s²]
   double fps = 60;               // frames per second, > 0
+  /// Time that is simulated before frame 0, at which cloth is then at rest: it settles on bodies that stand as
+  /// they do at the start, and meshes with a rest pose move from it to there; >= 0 [s].
+  double settle = 0;
   double duration = 3;           // [s], > 0
   std::vector<ClothSceneDesc> cloths;  // at least one
   std::vector<ColliderSceneDesc> colliders;

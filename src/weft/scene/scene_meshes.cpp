@@ -87,7 +87,22 @@ std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const weft::Triangl
   return frames;
 }
 
+/// From the rest pose to the first pose, where the mesh stands still for the rest of `settle` [s].
+void prepend_rest(const PlacedMesh& placed, double settle, const weft::TriangleMesh& first,
+                  const std::string& owner, std::vector<MeshFrame>& frames) {
+  constexpr double kStill = 0.4;  // share of the time, at its end
+  const TriangleMesh rest = read_in_metres(placed.rest, placed.source, owner).mesh;
+  if (rest.positions.size() != first.positions.size() || rest.triangles != first.triangles)
+    throw InputError(owner + ": its rest pose (" + placed.rest.filename().string() + ") has " +
+                     describe(rest.positions.size(), rest.triangles.size()) + ", the mesh " +
+                     describe(first.positions.size(), first.triangles.size()) +
+                     "; both must have the same triangles of the same vertices, in the same order");
+  frames.insert(frames.begin(),
+                {{-settle, from_engine(rest.positions)}, {-kStill * settle, first.positions}});
+}
+
 struct ShapeDescriber {
+  double settle;  // SceneDesc::settle [s]
   const std::string& owner;
   std::vector<std::string>& warnings;
   ColliderDesc& desc;
@@ -106,6 +121,7 @@ struct ShapeDescriber {
   void operator()(const PlacedMesh& placed) const {
     weft::TriangleMesh mesh = read_mesh(placed.source, owner, warnings);
     desc.frames = read_frames(placed, mesh, owner);
+    if (!placed.rest.empty()) prepend_rest(placed, settle, mesh, owner, desc.frames);
     desc.pose = make_pose(placed.position, placed.rotation_deg);
     desc.source = placed.source.file.filename().string();
     desc.shape = std::move(mesh);
@@ -147,9 +163,10 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
   return cloth;
 }
 
-ColliderDesc describe_collider(const ColliderSceneDesc& desc, std::vector<std::string>& warnings) {
+ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
+                               std::vector<std::string>& warnings) {
   ColliderDesc collider{.name = desc.name};
-  std::visit(ShapeDescriber{"collider \"" + desc.name + '"', warnings, collider}, desc.shape);
+  std::visit(ShapeDescriber{settle, "collider \"" + desc.name + '"', warnings, collider}, desc.shape);
   collider.motion = from_engine(desc.motion.keys());
   collider.friction = desc.friction;
   collider.static_friction = desc.static_friction;

@@ -16,7 +16,8 @@ namespace weft::engine {
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings);
 
 /// Likewise.
-ColliderDesc describe_collider(const ColliderSceneDesc& desc, std::vector<std::string>& warnings);
+ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
+                               std::vector<std::string>& warnings);
 
 /// How many of the points are inside the shape. Nothing is inside an open mesh.
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points);

@@ -43,6 +43,7 @@ void read_scene_table(TomlTable table, SceneDesc& scene) {
   table.read("gravity", scene.gravity, any_number("m/s²"), "[0, -9.81, 0]");
   table.read("fps", scene.fps, above_zero("frames per second"));
   table.read("duration", scene.duration, above_zero("s"));
+  table.read("settle", scene.settle, not_negative("s"));
   if (scene.duration * scene.fps > kMaxFrames) {
     const TomlValue duration = table.get("duration"), fps = table.get("fps");
     (duration ? duration : fps).mistake("duration times fps is more than 10 million frames");
@@ -233,6 +234,9 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
   for (TomlTable& collider : root.tables("collider")) {
     scene.colliders.push_back(
         read_collider(collider, static_cast<int>(scene.colliders.size()) + 1, file.parent_path()));
+    const PlacedMesh* mesh = std::get_if<PlacedMesh>(&scene.colliders.back().shape);
+    if (mesh && !mesh->rest.empty() && scene.settle == 0)
+      collider.get("rest").mistake("needs scene.settle, the time in which the mesh moves from there to its first pose");
   }
   for (TomlTable& contact : root.tables("contact")) scene.contacts.push_back(read_contact(contact, scene));
   scene.wind = read_wind(root.table("wind"));

@@ -35,6 +35,10 @@ std::vector<std::filesystem::path> find_frame_files(const std::filesystem::path&
 /// damping and what follows it may be.
 Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base = {});
 
+/// A file, named by `key`, which exists; empty if it is missing.
+std::filesystem::path read_file_name(TomlTable& owner, std::string_view key,
+                                     const std::filesystem::path& folder);
+
 /// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
 MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
 

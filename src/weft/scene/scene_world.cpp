@@ -105,7 +105,7 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
     for (const Collider& collider : world.colliders()) {
       const std::array<std::string, 2> pair{cloth, collider.name};
       if (std::find(passing.begin(), passing.end(), pair) != passing.end()) continue;
-      const int inside = count_inside(shape_at(collider, 0), positions);
+      const int inside = count_inside(shape_at(collider, world.time()), positions);
       if (inside == 0) continue;
       warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
                          (inside == 1 ? " particle" : " particles") + " inside collider \"" + collider.name +
@@ -129,6 +129,23 @@ void untangle(World& world, SceneNotes& built) {
     warnings.push_back("could not be untangled: " + what + "; move them apart");
 }
 
+/// Steps up to time 0, and stops the cloth there.
+void settle(const SceneDesc& scene, PublicScene& built) {
+  const int steps = std::max(1, static_cast<int>(std::ceil(scene.settle / scene.step_length() - 1e-9)));
+  for (int s = 0; s < steps; ++s) {
+    const StepReport done = built.world.step(scene.settle / steps);
+    if (!done.ok)
+      throw InputError("scene.settle: the simulation failed in step " + std::to_string(s + 1) + " of " +
+                       std::to_string(steps) + "; a lower value, or 0, starts without it");
+  }
+  World& world = WorldAccess::engine(built.world);
+  world.set_time(0);
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothId cloth = world.cloth(c);
+    world.set_velocities(cloth, std::vector<Vec3>(world.state(cloth).x.size(), Vec3::Zero()));
+  }
+}
+
 void append(const std::vector<std::string>& sentences, std::vector<std::string>& to) {
   to.insert(to.end(), sentences.begin(), sentences.end());
 }
@@ -142,13 +159,14 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs)
   PublicScene result;
   World& world = WorldAccess::engine(result.world);
   world.set_jobs(std::move(jobs));
+  world.set_time(-scene.settle);
   world.set_gravity(scene.gravity);
   world.set_integrator(scene.solver);
   world.set_division({scene.adaptive, 1 / (scene.fps * scene.max_steps_per_frame)});
   result.world.set_wind(describe_wind(scene.wind));
   world.set_contact(scene.contact);
   for (const ColliderSceneDesc& desc : scene.colliders) {
-    const ColliderId id = result.world.add_collider(describe_collider(desc, result.warnings));
+    const ColliderId id = result.world.add_collider(describe_collider(desc, scene.settle, result.warnings));
     append(result.world.warnings(id), result.warnings);
   }
   for (const ClothSceneDesc& desc : scene.cloths) {
@@ -164,6 +182,7 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs)
   }
   const bool is_repaired = scene.untangle && scene.contact;
   is_repaired ? untangle(world, result) : warn_about_start(world, result.warnings);
+  if (scene.settle > 0) settle(scene, result);
   return result;
 }
 

@@ -106,6 +106,11 @@ class MeshFiles {
   explicit MeshFiles(const fs::path& scene_file)
       : folder_(scene_file.parent_path()), stem_(scene_file.stem().string()) {}
 
+  std::string relative(const fs::path& file) const {
+    const fs::path name = fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
+    return (name.empty() ? fs::absolute(file) : name).generic_string();
+  }
+
   std::string name_of(const MeshSource& source, const std::string& owner) const {
     if (!source.mesh) return relative(source.file);
     const std::string name = stem_ + "_" + file_stem(owner) + ".obj";
@@ -128,11 +133,6 @@ class MeshFiles {
   }
 
  private:
-  std::string relative(const fs::path& file) const {
-    const fs::path name = fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
-    return (name.empty() ? fs::absolute(file) : name).generic_string();
-  }
-
   static std::string file_stem(std::string name) {
     for (char& c : name) {
       if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
@@ -306,6 +306,7 @@ struct ShapeKeys {
       table.add("file", files.name_of(m.source, owner));
     else
       table.add("frames", files.name_of_frames(m, owner)).add("frame_rate", m.frame_rate);
+    if (!m.rest.empty()) table.add("rest", files.relative(m.rest));
     add_mesh_keys(m.source, table);
     table.add("position", m.position, PlacedMesh().position)
         .add("rotation", m.rotation_deg, PlacedMesh().rotation_deg);
@@ -390,7 +391,8 @@ std::string scene_text(const SceneDesc& scene, const MeshFiles& files) {
       .add("description", scene.description, std::string())
       .add("gravity", scene.gravity)
       .add("fps", scene.fps)
-      .add("duration", scene.duration);
+      .add("duration", scene.duration)
+      .add("settle", scene.settle, SceneDesc().settle);
   std::string text = "[scene]\n" + head.lines();
   for (const ClothSceneDesc& cloth : scene.cloths) text += cloth_text(cloth, files);
   for (const ColliderSceneDesc& collider : scene.colliders) text += collider_text(collider, files);

@@ -150,6 +150,9 @@ class World {
   void set_observer(std::function<void(double time)> after_substep) { observer_ = std::move(after_substep); }
 
   double time() const { return time_; }  // [s]
+
+  /// Sets the clock, at which motions by key frames and mesh sequences are evaluated; finite [s].
+  void set_time(double time) { time_ = time; }
   int num_cloths() const { return static_cast<int>(cloths_.size()); }
   int num_colliders() const { return static_cast<int>(colliders_.size()); }
   ClothId cloth(int n) const;        // the n-th, in the order of addition
