@@ -10,6 +10,7 @@
 #include "tests/app/background.h"
 #include "tests/app/program.h"
 #include "weft/io/animation.h"
+#include "weft/io/glb_writer.h"
 
 namespace weft::engine {
 namespace {
