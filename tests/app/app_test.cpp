@@ -405,7 +405,7 @@ TEST_F(App, VerifyTellsWhatMayHavePassedAndFailsWhereAsked) {
   const Finished run = shell(ribbons);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(contains(run.out, "crossings    0")) << run.out;
-  EXPECT_TRUE(contains(run.out, ", the first in frame 2")) << run.out;
+  EXPECT_TRUE(contains(run.out, ", first in frame 2")) << run.out;
   const Finished done = shell("weft verify results");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(contains(done.out, "on linear paths: possible tunnelling of ")) << done.out;

@@ -19,10 +19,11 @@ Section example() {
                     .source = "nobody",
                     .verdict = Verdict::holds_in_part,
                     .text = {"With `code` and **weight** & <care>."},
-                    .figures = {{"stretch", 0.1234567, "m", "0", 0.01}, {"count", 3, "1", "", 0}},
-                    .tables = {{{"cloth", "mm"}, {{"silk", "1.5"}, {"denim", "2.5"}}}},
-                    .pictures = {{"plot.svg", "A plot.", "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>"},
-                                 {"photo.jpg", "A picture.", ""}}};
+                    .found = {.metrics = {{"stretch", 0.1234567, "m", "0", 0.01}, {"count", 3, "1", "", 0}},
+                              .tables = {{{"cloth", "mm"}, {{"silk", "1.5"}, {"denim", "2.5"}}}},
+                              .pictures = {{"plot.svg", "A plot.",
+                                            "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>"},
+                                           {"photo.jpg", "A picture.", ""}}}};
   return {.name = "example",
           .title = "An example",
           .introduction = "Of a chapter.",
@@ -37,8 +38,8 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 TEST(Metric, IsAsExpectedWithinItsTolerance) {
-  EXPECT_TRUE((Metric{"a", 1.5, "%", 0, 2}.is_as_expected()));
-  EXPECT_FALSE((Metric{"a", -2.5, "%", 0, 2}.is_as_expected()));
+  EXPECT_TRUE(expect("a", 1.5, "%", 0, 2).is_as_expected());
+  EXPECT_FALSE(expect("a", -2.5, "%", 0, 2).is_as_expected());
   EXPECT_TRUE((Metric{"a", 7, "%"}.is_as_expected())) << "nothing is expected";
 }
 
@@ -46,8 +47,8 @@ TEST(Section, ComesBackFromJsonAsItWas) {
   const Section back = section_from_json(to_json(example()), "example.json");
   EXPECT_EQ(to_json(back), to_json(example()));
   EXPECT_EQ(back.hypotheses.at(0).verdict, Verdict::holds_in_part);
-  EXPECT_EQ(back.hypotheses.at(0).figures.at(0).value, 0.1234567);
-  EXPECT_EQ(back.hypotheses.at(0).tables.at(0).rows.at(1).at(1), "2.5");
+  EXPECT_EQ(back.hypotheses.at(0).found.metrics.at(0).value, 0.1234567);
+  EXPECT_EQ(back.hypotheses.at(0).found.tables.at(0).rows.at(1).at(1), "2.5");
 }
 
 TEST(Section, RefusesWhatIsNoChapterByItsName) {

@@ -23,7 +23,7 @@ namespace {
 constexpr double kCoarse = 0.02;  // [m]
 
 TEST(Wardrobe, TheFigureIsClosedAndItsHairCoversItsHead) {
-  const Metric figure = make_figure(kCoarse);
+  const Figure figure = make_figure(kCoarse);
   EXPECT_TRUE(is_closed(count_surface_edges(figure.mesh)));
   TriangleMesh mesh = figure.mesh;
   const Shells shells = turn_shells_outwards(mesh);
@@ -35,7 +35,7 @@ TEST(Wardrobe, TheFigureIsClosedAndItsHairCoversItsHead) {
 }
 
 TEST(Wardrobe, EveryMotionStartsAtRestAndTheKickReachesFifteenMetresPerSecond) {
-  const Metric figure = make_figure(kCoarse);
+  const Figure figure = make_figure(kCoarse);
   for (const std::string& motion : motion_names()) {
     const std::vector<Vec3> start = pose_figure(figure, pose_at(motion, 0));
     for (std::size_t v = 0; v < start.size(); ++v)
@@ -55,7 +55,7 @@ TEST(Wardrobe, EveryMotionStartsAtRestAndTheKickReachesFifteenMetresPerSecond) {
 }
 
 TEST(Wardrobe, AShirtThatStartsThroughTheArmsIsPutOn) {
-  const Metric figure = make_figure(kCoarse);
+  const Figure figure = make_figure(kCoarse);
   const TriangleMesh shirt = make_shirt(kCoarse, 4);
   const Fabric fabric = find_fabric("cotton_shirting");
   World world;

@@ -16,10 +16,9 @@
 namespace weft::engine {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& folder) {
+[[noreturn]] void fail(const std::filesystem::path& target) {
   const int reason = errno != 0 ? errno : EIO;
-  throw InputError("a temporary file in " + folder.string() +
-                   " cannot be written: " + std::generic_category().message(reason));
+  throw InputError(target.string() + " cannot be written: " + std::generic_category().message(reason));
 }
 
 /// nullptr where the folder does not allow it.
@@ -38,30 +37,28 @@ std::FILE* open_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
-SpoolFile::SpoolFile(const std::filesystem::path& folder) : folder_(folder.empty() ? "." : folder) {
+SpoolFile::SpoolFile(const std::filesystem::path& target) : target_(target) {
   errno = 0;
-  file_.reset(open_in(folder_));
-  if (!file_) {
-    folder_ = std::filesystem::temp_directory_path();
-    file_.reset(open_in(folder_));
-  }
-  if (!file_) fail(folder_);
+  const std::filesystem::path folder = target.parent_path();
+  file_.reset(open_in(folder.empty() ? "." : folder));
+  if (!file_) file_.reset(open_in(std::filesystem::temp_directory_path()));
+  if (!file_) fail(target_);
 }
 
 void SpoolFile::append(const void* bytes, std::size_t count) {
   if (count == 0) return;
   errno = 0;
-  if (std::fwrite(bytes, 1, count, file_.get()) != count) fail(folder_);
+  if (std::fwrite(bytes, 1, count, file_.get()) != count) fail(target_);
   size_ += count;
 }
 
 void SpoolFile::copy_to(std::ostream& out) {
   errno = 0;
-  if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) fail(folder_);
+  if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) fail(target_);
   std::array<char, 1 << 16> buffer;
   for (std::size_t left = size_; left > 0;) {
     const std::size_t count = std::fread(buffer.data(), 1, std::min(left, buffer.size()), file_.get());
-    if (count == 0) fail(folder_);
+    if (count == 0) fail(target_);
     out.write(buffer.data(), static_cast<std::streamsize>(count));
     left -= count;
   }

@@ -10,11 +10,11 @@
 namespace weft::engine {
 
 /// A temporary file without a name: it is gone when this, or the process, ends. Every error is an InputError
-/// with the folder's name and the system's reason.
+/// with the name of the file that the bytes are for, and the system's reason.
 class SpoolFile {
  public:
-  /// In `folder`, or in the system's folder for temporary files where that cannot be written.
-  explicit SpoolFile(const std::filesystem::path& folder);
+  /// Beside `target`, or in the system's folder for temporary files where that cannot be written.
+  explicit SpoolFile(const std::filesystem::path& target);
 
   void append(const void* bytes, std::size_t count);
   std::size_t size() const { return size_; }  // [bytes]
@@ -27,7 +27,7 @@ class SpoolFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
-  std::filesystem::path folder_;
+  std::filesystem::path target_;
   std::unique_ptr<std::FILE, Close> file_;
   std::size_t size_ = 0;
 };

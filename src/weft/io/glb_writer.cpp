@@ -149,7 +149,7 @@ tinygltf::Value extras_of(const RigidMesh& body) {
 class GlbWriter::Builder {
  public:
   Builder(StagedFile& file, const Animation& meshes)
-      : file_(file), meshes_(without_frames(meshes)), bytes_(file.file().parent_path()) {
+      : file_(file), meshes_(without_frames(meshes)), bytes_(file.file()) {
     if (meshes_.cloths.empty() && meshes_.bodies.empty()) throw InputError("the animation has no meshes");
     if (!(meshes_.frames_per_second > 0))
       throw InputError("the animation requires more than 0 frames per second");

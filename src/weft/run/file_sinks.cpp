@@ -20,17 +20,14 @@ std::size_t count_vertices(const AnimationFrame& frame) {
   return count;
 }
 
-void require_room(const Animation& meshes, std::size_t num_vertices, std::size_t num_frames,
-                  const StagedFile& file) {
-  if (glb_size(meshes, num_vertices, num_frames) <= max_glb_size()) return;
-  std::size_t fits = 0, beyond = num_frames;
+/// How many frames a .glb of these meshes can hold.
+std::size_t count_fitting(const Animation& meshes, std::size_t num_vertices) {
+  std::size_t fits = 0, beyond = std::size_t{1} << 31;
   while (beyond - fits > 1) {
     const std::size_t middle = (fits + beyond) / 2;
     (glb_size(meshes, num_vertices, middle) <= max_glb_size() ? fits : beyond) = middle;
   }
-  throw InputError(file.file().string() + ": a .glb holds at most 4 GiB, or " +
-                   std::to_string(fits > 0 ? fits - 1 : 0) + " frames of this scene, but the run has " +
-                   std::to_string(num_frames - 1) + "; use fewer --frames, or --no-glb and --obj");
+  return fits;
 }
 
 /// Letters, digits, '-', '_' and '.'; all others become '_'.
@@ -43,15 +40,21 @@ std::string file_name(std::string name) {
 
 }  // namespace
 
-void GlbSink::begin(SceneRun& run, RunReport&) {
+void GlbSink::begin(SceneRun& run, RunReport& report) {
   const Animation meshes = make_animation(run.scene(), run.world());
   const AnimationFrame start = capture_frame(run.world());
-  require_room(meshes, count_vertices(start), static_cast<std::size_t>(run.num_frames()) + 1, file_);
+  room_ = static_cast<int>(count_fitting(meshes, count_vertices(start)));
+  if (run.num_frames() + 1 > room_)
+    report.warnings.push_back(file_.file().filename().string() + " will hold the first " +
+                              std::to_string(room_ - 1) + " of " + std::to_string(run.num_frames()) +
+                              " frames: a .glb is limited to 4 GiB; --obj writes all");
   writer_.emplace(file_, meshes);
   writer_->add_frame(start);
 }
 
-void GlbSink::add_frame(const SceneRun& run, RunReport&) { writer_->add_frame(capture_frame(run.world())); }
+void GlbSink::add_frame(const SceneRun& run, RunReport&) {
+  if (run.frame() < room_) writer_->add_frame(capture_frame(run.world()));
+}
 
 void GlbSink::finish(const SceneRun&, RunReport&) { writer_->finish(); }
 

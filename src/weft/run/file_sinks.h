@@ -12,8 +12,8 @@
 
 namespace weft::engine {
 
-/// Writes a .glb, up to StagedFile::finish(); replace() is left to the caller. Refuses a run that is too long
-/// for one (io/glb_writer.h) before it starts.
+/// Writes a .glb, up to StagedFile::finish(); replace() is left to the caller. A run that is too long for one
+/// (io/glb_writer.h) gets a warning at its start; the file then has its first frames.
 class GlbSink : public FrameSink {
  public:
   explicit GlbSink(StagedFile& file) : file_(file) {}
@@ -25,6 +25,7 @@ class GlbSink : public FrameSink {
  private:
   StagedFile& file_;
   std::optional<GlbWriter> writer_;
+  int room_ = 0;  // for so many frames, the start included
 };
 
 /// Writes a sequence of OBJ files, one per cloth and frame: `FOLDER/sheet_0000.obj` is the start of cloth
