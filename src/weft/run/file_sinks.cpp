@@ -33,7 +33,7 @@ void require_room(const Animation& meshes, std::size_t num_vertices, std::size_t
                    std::to_string(num_frames - 1) + "; use fewer --frames, or --no-glb and --obj");
 }
 
-/// Letters, digits, '-', '_' and '.'; all others become '_'.
+/// Keeps letters, digits, '-', '_' and '.'; replaces other characters by '_'.
 std::string file_name(std::string name) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.') c = '_';

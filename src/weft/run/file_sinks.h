@@ -1,5 +1,5 @@
 #pragma once
-/// Frames to files, as they are made.
+/// Frame sinks that write files during the run.
 
 #include <filesystem>
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace weft::engine {
 
-/// Writes a .glb, up to StagedFile::finish(); replace() is left to the caller. Refuses a run that is too long
-/// for one (io/glb_writer.h) before it starts.
+/// Writes a .glb, up to StagedFile::finish(); the caller calls replace(). begin() throws InputError if the
+/// run is too long for one (io/glb_writer.h).
 class GlbSink : public FrameSink {
  public:
   explicit GlbSink(StagedFile& file) : file_(file) {}
@@ -31,7 +31,7 @@ class GlbSink : public FrameSink {
 /// "sheet". Vertices are the cloth's particles, in their order.
 class ObjSink : public FrameSink {
  public:
-  /// The folder exists.
+  /// The folder must exist.
   explicit ObjSink(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void begin(SceneRun& run, RunReport& report) override;
