@@ -17,8 +17,8 @@
 namespace weft::engine::lab {
 namespace {
 
-/// Second criterion of equal quality: maximum spring strain, as a multiple of the reference's [1]. Cloth with a
-/// small mean error may still have a spike.
+/// Second criterion of equal quality: maximum spring strain, as a multiple of the reference's [1]. Cloth with
+/// a small mean error may still have a spike.
 constexpr double kEqualStrain = 1.5;
 
 std::unique_ptr<Method> make_contestant(const MethodSettings& entry, const HungCloth& cloth) {
