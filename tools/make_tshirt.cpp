@@ -13,17 +13,14 @@
 //    x = 0
 //
 // 1. Each patch interpolates between its four sides (a Coons patch). The sides are divided into pieces of
-// equal
-//    length; torso and sleeve share the points of the armhole S–U.
+//    equal length; torso and sleeve share the points of the armhole S–U.
 // 2. Quads are cut along the shorter diagonal, alternately where both are about equal.
 // 3. The half is mirrored and welded at x = 0: a flat panel.
-// 4. The panel is inflated like a pillow that is held along the seams. With u from the Poisson equation -Δu =
-// 1,
-//    u = 0 on the seams, the height is sqrt(u), scaled; across a strip that is an ellipse. The open edges
-//    (neck, hem, cuffs) are free.
+// 4. The panel is inflated like a pillow that is held along the seams. With u from the Poisson equation
+//    -Δu = 1, u = 0 on the seams, the height is sqrt(u), scaled; across a strip that is an ellipse. The open
+//    edges (neck, hem, cuffs) are free.
 // 5. The vertices are moved within the plane until the inflated edges have about equal lengths. After each
-// move
-//    the panel is inflated again.
+//    move the panel is inflated again.
 //
 // Front and back differ in the depth of the neck and in the side to which they bulge. Their vertices on the
 // seams (N–S–C, U–D, U–H) have equal coordinates but are separate: welding sews them.

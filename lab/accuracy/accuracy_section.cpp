@@ -227,8 +227,7 @@ Hypothesis energy_over_time(const SectionOptions& options) {
 
 // ---- frequencies
 
-/// Frequency of a hanging chain of 100 links in the mode of this zero of J0, from the zero crossings of its
-/// tip [Hz].
+/// Frequency of a hanging chain of 100 links in the mode of this zero of J0, from the tip's crossings [Hz].
 double chain_frequency(double bessel_zero, double step, NewtonQuality quality) {
   constexpr int kLinks = 100;
   constexpr double kAmplitude = 2e-3, kMass = 1e-3, kStiffness = 1e5, kSeconds = 4;

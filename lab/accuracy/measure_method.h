@@ -26,8 +26,7 @@ struct MethodResult {
 
 using MakeMethod = std::function<std::unique_ptr<Method>()>;
 
-/// Runs all frames of the reference. The time is that of the fastest of a few runs, because of other
-/// processes.
+/// Runs all frames of the reference. The fastest of a few runs counts, because of other processes.
 MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry,
                                  const HungCloth& cloth, const Reference& reference);
 

@@ -70,8 +70,7 @@ double mean_over(const std::vector<Frame>& frames, const Value& value) {
 
 // ---- stability
 
-/// Whether a sheet at rest, without gravity, with random velocities of 0.1 m/s, stays within a few metres for
-/// 300 steps.
+/// Whether a sheet without gravity, with random velocities of 0.1 m/s, stays within 10 m for 300 steps.
 bool is_stable(const IntegratorSettings& settings, const HungCloth& start, double step) {
   constexpr double kTremble = 0.1, kFar = 10;
   constexpr int kSteps = 300;

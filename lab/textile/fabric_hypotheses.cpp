@@ -39,8 +39,7 @@ std::vector<MeshCase> five_meshes(bool quick) {
           {"random, fine", 48, SpecimenMesh::random}};
 }
 
-/// Rings of a disc with about as many vertices as a grid of cells × cells; at most 45, to avoid minutes of
-/// run time.
+/// Rings of a disc with about as many vertices as a grid of cells × cells; at most 45, to limit run time.
 int rings_like(int cells) { return std::min(45, static_cast<int>(std::lround(cells / std::sqrt(3.0)))); }
 
 Specimen settle_hammock(const Fabric& fabric, const MeshCase& mesh, Findings& result) {

@@ -15,8 +15,7 @@ inline constexpr double kHammockSag = 0.8 * 0.331797;  // length over span: 1.25
 /// Depth of the lowest point below y = 0 [m].
 double measure_sag(const Specimen& specimen);
 
-/// Frequency of the first mode of a chain, for a strip of a metre, hung by its upper end: (j₀₁/4π) √(g/L)
-/// [1/s].
+/// Frequency of a chain's first mode, for a strip of a metre, hung by its upper end: (j₀₁/4π) √(g/L) [1/s].
 inline constexpr double kSwingFrequency = 0.59940;
 
 /// Period of the first mode of a strip of 1 m × 0.25 m, hung by its upper end, with `newton` at a hundred

@@ -51,8 +51,7 @@ TEST(ContactExperiments, ATurntableTakesTheSheetAlongUntilFrictionIsAllUsedUp) {
     const Turntable fast = turn_table(setup, 0.1, 20);
     EXPECT_NEAR(fast.expected, 0.1 * 9.81 * (std::sqrt(2.0) + std::asinh(1.0)) / 0.3, 0.02 * fast.expected)
         << "of a square of 0.3 m; of 12 cells its inertia is 2/12² more";
-    // Implicit Euler, with contact in the solve, loses (ω h)² of a rotating body's momentum per step: 1 % in
-    // total.
+    // Implicit Euler, with contact in the solve, loses (ω h)² of angular momentum per step: 1 % in total.
     EXPECT_NEAR(fast.acceleration, fast.expected, 0.025 * fast.expected) << integrator;
     EXPECT_NEAR(fast.torque, 1, 0.025) << integrator;
     EXPECT_NEAR(fast.friction.torque, fast.friction.torque_limit, 0.02 * fast.friction.torque_limit)

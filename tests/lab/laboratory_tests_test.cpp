@@ -47,8 +47,7 @@ TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
   EXPECT_NEAR(figure(test_tensile(fabric, settings), "c11") / fabric.c11, 1, 0.01);
   EXPECT_NEAR(figure(test_tensile(fabric, settings), "c22") / fabric.c22, 1, 0.01);
   EXPECT_NEAR(figure(test_shear(fabric, settings), "g") / fabric.g, 1, 0.01);
-  // Limit of springs on random meshes: edges in all directions cannot be stiff along the threads and soft in
-  // shear.
+  // A limit of springs: edges in all directions cannot be stiff along the threads and soft in shear.
   settings.mesh = SpecimenMesh::random;
   const double c11 = figure(test_tensile(fabric, settings), "c11") / fabric.c11;
   EXPECT_GT(c11, 0.3);

@@ -49,8 +49,7 @@ factor = 2
                InputError);
 }
 
-/// A tube with cells of about 1 cm, 10 cm wide and 12 cm high; if `hem` > 0, with a hem of this height below
-/// [m].
+/// A tube of cells of about 1 cm, 10 cm wide and 12 cm high, with a hem of height `hem` below; 0: none [m].
 TriangleMesh make_tube(double hem) {
   constexpr int kAround = 30, kRows = 12;
   std::vector<double> heights;

@@ -1,5 +1,4 @@
-/// Written scenes are read back equal, and check_scene gives the reader's messages for scenes made by a
-/// program.
+/// Written scenes are read back equal, and check_scene gives the reader's messages.
 
 #include "weft/scene/scene_writer.h"
 

@@ -1,6 +1,5 @@
 #pragma once
-/// A human figure for garments: a mesh of smoothly joined round cones, hair as a separate shell, and a
-/// skeleton.
+/// A human figure for garments: a mesh of smoothly joined round cones, a shell of hair, and a skeleton.
 ///
 /// At rest the arms are 30 degrees below the horizontal, y is up, the face points along z, the feet are on y
 /// = 0. Vertices follow nearby bones (linear blend skinning). The skin therefore intersects itself at

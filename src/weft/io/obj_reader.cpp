@@ -138,8 +138,7 @@ bool is_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const V
   return true;
 }
 
-/// The ear with the shortest cut. Polygons without an ear (self-intersecting or without area): the second
-/// corner.
+/// The ear with the shortest cut; the second corner of a polygon without ears (self-intersecting, no area).
 size_t find_best_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal) {
   size_t best = 1;
   double shortest_sq = std::numeric_limits<double>::infinity();

@@ -282,8 +282,7 @@ void LiveSimulation::change_model(SpringModel model) {
   SceneDesc scene = scene_now();
   scene.solver = solver_;
   for (ClothSceneDesc& cloth : scene.cloths) cloth.model = model;
-  // Pins depend on initial positions: the new world is built at the start, then restored to the current
-  // state.
+  // Pins depend on initial positions: build the new world at the start, then restore the current state.
   const World::Snapshot now = world().snapshot();
   run_ = std::make_unique<SceneRun>(std::move(scene), jobs_);
   world().restore(now);

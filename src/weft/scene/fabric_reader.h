@@ -1,6 +1,5 @@
 #pragma once
-/// Reader for fabric files (TOML): reports every mistake with line and column. Lookup of fabrics by name or
-/// file.
+/// Reader for fabric files (TOML), reports every mistake with line and column. Fabrics by name or file.
 ///
 ///     density   = 0.324      # mass per area [kg/m²]
 ///     c11       = 410.7      # stretching along warp [N/m]

@@ -16,8 +16,7 @@ namespace weft::engine {
 void write_scene(const std::filesystem::path& file, const SceneDesc& scene);
 
 /// Validates a scene that a program built. The messages are the reader's for the same scene in a file. Each
-/// begins with section and key, as in "cloth[0].scale: expected …". Empty: read_scene() would accept the
-/// scene.
+/// begins with section and key, as in "cloth[0].scale: expected …". Empty: the scene is valid.
 std::vector<std::string> check_scene(const SceneDesc& scene);
 
 }  // namespace weft::engine

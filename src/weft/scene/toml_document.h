@@ -1,6 +1,5 @@
 #pragma once
-/// Private to scene/: a TOML text, the queries of its readers, and every mistake found. Independent of
-/// scenes.
+/// Private to scene/: a TOML text, the queries of its readers, and the mistakes found. Independent of scenes.
 
 #include <deque>
 #include <string>
