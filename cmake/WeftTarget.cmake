@@ -1,4 +1,4 @@
-# What all of Weft's own targets share: C++20, the sources' own headers, warnings as errors, and arithmetic with the same
+# Settings of all targets of Weft: C++20, the include path of the sources, warnings as errors, and arithmetic with the same
 # bits everywhere.
 
 function(weft_target target)
@@ -21,8 +21,8 @@ function(weft_target target)
     target_compile_options(${target} PRIVATE -fsanitize=${WEFT_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
     target_link_options(${target} PUBLIC -fsanitize=${WEFT_SANITIZE})
-    # What the sanitizers add to the code raises false alarms: loops that are not vectorised (clang), and variables
-    # of std::regex that seem not to be set (GCC bug 105562).
+    # Instrumentation by the sanitizers causes false warnings: loops that are not vectorised (clang), and variables of
+    # std::regex that seem uninitialised (GCC bug 105562).
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-pass-failed>
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     get_target_property(type ${target} TYPE)

@@ -31,5 +31,5 @@ check contact/stack 0.000001 40
 "$weft" run garment --frames 30 --out "$out/garment"
 "$weft" verify "$out/garment" || echo "garment: reported only"
 
-# Typical input: garments that start through the figure, in pieces, in another unit.
+# Typical input: garments that intersect the figure at the start, in several pieces, in another unit.
 "$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 30 --cell 0.012 --out "$out/garments"

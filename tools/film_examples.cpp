@@ -1,4 +1,5 @@
-/// Films the examples, for pictures of the docs: each as it stands in examples/, with a World that records its steps.
+/// Records the examples for pictures of the docs: unchanged sources of examples/, with a World that records
+/// its steps.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@
 
 namespace {
 
-/// Of one example: the first world that it steps.
+/// Records the first world that an example steps.
 class Recorder {
  public:
   void record(const weft::World& world) {
@@ -63,7 +64,7 @@ class RecordedBatch : public weft::WorldBatch {
 
 }  // namespace
 
-// In each namespace `weft` is Weft with these two in place of its own.
+// In each namespace, `weft` is Weft with World and WorldBatch replaced by the recording ones.
 #define WEFT_EXAMPLE(name)          \
   namespace name::weft {            \
   using namespace ::weft;           \

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # fuzz.sh SECONDS: builds the fuzz targets with clang and runs each for so long. Fails on the first input that crashes,
-# hangs or breaks a sanitizer's rule; that input is kept in build/fuzz/found. What was learnt stays in build/fuzz/corpus.
+# hangs or breaks a sanitizer's rule; that input is kept in build/fuzz/found. The corpus is kept in build/fuzz/corpus.
 set -euo pipefail
 seconds=${1:?usage: tools/fuzz.sh SECONDS}
 cd "$(dirname "$0")/.."

@@ -1,20 +1,19 @@
 #!/usr/bin/env bash
-# Installs the Debian/Ubuntu packages that Weft needs and that are missing. --fuzz adds those for `make fuzz`,
-# --bench what `weft bench frontier` compares with, --docs what `make docs` makes the site with.
-# Does nothing, and needs no rights, where nothing is missing.
+# Installs the missing Debian/Ubuntu packages of Weft. --fuzz adds those for `make fuzz`, --bench the other engine of
+# `weft bench frontier`, --docs the site generator of `make docs`. No-op, without root rights, if none is missing.
 set -euo pipefail
 
 packages=(
   cmake g++ make          # building
   libeigen3-dev           # small vectors and matrices, sparse Cholesky
   libtbb-dev              # threads
-  libtinygltf-dev         # glTF out
+  libtinygltf-dev         # glTF files
   libtomlplusplus-dev     # scene files
-  libfmt-dev              # words
+  libfmt-dev              # text formatting
   nlohmann-json3-dev      # reports
   libcli11-dev            # the command line
-  pkg-config libepoxy-dev libegl-dev          # pictures: building …
-  libegl1 libgl1-mesa-dri                     # … and drawing, in software where there is no graphics card
+  pkg-config libepoxy-dev libegl-dev          # pictures: for the build
+  libegl1 libgl1-mesa-dri                     # pictures: at run time, in software without a graphics card
   libstb-dev              # PNG
   libglfw3-dev libimgui-dev                   # the window
   ffmpeg                  # videos

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of the README and of docs/ (in docs/images) from the scenes that ship.
+# Makes the pictures of the README and of docs/ (in docs/images) from the shipped scenes.
 #   tools/make_pictures.sh PROGRAM FOLDER
 set -euo pipefail
 weft=$1
@@ -22,10 +22,10 @@ done
 "$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
-# A cloth on a ball that turns, moving.
+# Cloth on a rotating ball, as a video.
 "$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22 --out "$images/weft.webp"
 
-# Garments on a figure, as people bring them: a start as it is, put on, and on its way; then the README's first picture.
+# Typical user garments on a figure: input, repaired start, during the motion; then the README's first picture.
 wardrobe=$(mktemp -d)
 trap 'rm -rf "$wardrobe"' EXIT
 "$(dirname "$weft")/../tools/make_wardrobe" "$wardrobe" > "$wardrobe/list"

@@ -1,7 +1,7 @@
 // Makes the meshes of the contact scenes: make_surfaces FOLDER writes folded_sheet.obj, tube.obj, funnel.obj
 // and legs_0.obj to legs_6.obj, frames of one mesh.
 //
-// Each is a polyline that is swept: along z (a sheet), or round an axis (a tube, a funnel).
+// Each is a swept polyline: along z (a sheet), or around an axis (a tube, a funnel).
 
 #include <cstdio>
 #include <exception>
@@ -14,7 +14,7 @@ namespace {
 
 using Polyline = std::vector<Vec3>;  // in the plane z = 0
 
-/// Coordinates are whole micrometres: the files are short (adding 0 turns -0 into 0).
+/// Rounds to whole micrometres, for short files (adding 0 turns -0 into 0).
 Vec3 rounded(const Vec3& x) { return (x * 1e6).array().round() / 1e6 + 0.0; }
 
 Mat3 rotation_about(const Vec3& axis, double angle_deg) {
@@ -36,7 +36,7 @@ TriangleMesh join(const std::vector<Polyline>& copies, bool closed) {
     for (int j = 0; j + 1 < length; ++j) {
       const int a = i * length + j, b = a + 1;
       const int c = (i + 1) % num_copies * length + j, d = c + 1;
-      if ((i + j) % 2 == 0) {  // diagonals in turn, so that no direction is stiffer
+      if ((i + j) % 2 == 0) {  // alternating diagonals: equal stiffness in both directions
         mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {a, d, c}});
       } else {
         mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {b, d, c}});
@@ -69,7 +69,7 @@ void add_line(Polyline& line, const Vec3& from, const Vec3& to, int num_cells) {
   for (int k = 0; k < num_cells; ++k) line.push_back(from + (to - from) * k / num_cells);
 }
 
-/// Points along half a circle that goes up from `from` by `height`, bulging to `side` (±1), without its end.
+/// Points along half a circle from `from` up by `height`, bulging to `side` (±1), without its end.
 void add_fold(Polyline& line, const Vec3& from, double height, double side, int num_cells) {
   const double radius = height / 2;
   for (int k = 0; k < num_cells; ++k) {
@@ -106,8 +106,8 @@ TriangleMesh make_funnel() {
   return turn({{0.5, 1.4, 0}, {0.3, 1.2, 0}, {0.1, 1.0, 0}, {0.1, 0.85, 0}}, {0, 1, 0}, 32);
 }
 
-/// Frame `k` of a body whose two legs swing through each other: capsules along z whose middles are
-/// `kApart[k]` from the plane x = 0, and which grow a little thicker on the way.
+/// Frame `k` of a body whose two legs swing through each other. The legs are capsules along z, at a distance
+/// of `kApart[k]` from the plane x = 0, slightly thicker with every frame.
 constexpr double kApart[] = {0.1, 0.1, 0.075, 0.05, 0.05, 0.075, 0.1};
 
 TriangleMesh make_legs(int k) {

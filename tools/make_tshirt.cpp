@@ -12,18 +12,18 @@
 //    |______hem_____H
 //    x = 0
 //
-// 1. Each patch interpolates between its four sides (a Coons patch); the sides are cut into pieces of equal
-//    length, and torso and sleeve have the points of the armhole S–U in common.
-// 2. Quads are cut along the shorter diagonal, alternately where the two are about as long.
+// 1. Each patch interpolates between its four sides (a Coons patch). The sides are divided into pieces of
+//    equal length; torso and sleeve share the points of the armhole S–U.
+// 2. Quads are cut along the shorter diagonal, alternately where both are about equal.
 // 3. The half is mirrored and welded at x = 0: a flat panel.
-// 4. It is inflated like a pillow that is held along the seams: with u from the Poisson equation -Δu = 1,
-//    u = 0 on the seams, the height is sqrt(u), scaled; across a strip that is an ellipse. The open edges
-//    (neck, hem, cuffs) are free.
-// 5. The vertices are moved within the plane until the inflated edges are about as long as each other; after
-//    each move the panel is inflated anew.
+// 4. The panel is inflated like a pillow that is held along the seams. With u from the Poisson equation
+//    -Δu = 1, u = 0 on the seams, the height is sqrt(u), scaled; across a strip that is an ellipse. The open
+//    edges (neck, hem, cuffs) are free.
+// 5. The vertices are moved within the plane until the inflated edges have about equal lengths. After each
+//    move the panel is inflated again.
 //
-// Front and back differ in the depth of the neck and in the side they bulge to. Their vertices on the seams
-// (N–S–C, U–D, U–H) have the same coordinates but belong to each panel apart: welding sews them.
+// Front and back differ in the depth of the neck and in the side to which they bulge. Their vertices on the
+// seams (N–S–C, U–D, U–H) have equal coordinates but are separate: welding sews them.
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -55,24 +55,24 @@ constexpr double kCuffWidth = 0.165;
 constexpr double kSleeveSlope_deg = 15;  // below the horizontal
 constexpr double kChestHeight = 0.1;     // of the bulge
 
-/// Quads along the sides.
+/// Numbers of quads along the sides.
 struct Cells {
   int shoulder, neck, side, armhole, sleeve;  // neck: of the half
 
   int hem() const { return neck + shoulder; }
 };
 
-/// Edges of about 0.02 m, a little longer once inflated; or so many times finer.
+/// For edges of about 0.02 m, slightly longer after inflation, divided by `fineness`.
 Cells make_cells(double fineness) {
   const auto times = [fineness](int cells) { return static_cast<int>(std::lround(fineness * cells)); };
   return {
       .shoulder = times(7), .neck = times(7), .side = times(18), .armhole = times(11), .sleeve = times(10)};
 }
 
-constexpr int kRelaxations = 60;  // more changes angles by less than a degree
+constexpr int kRelaxations = 60;  // further ones change angles by less than a degree
 
-/// Coordinates are whole micrometres: the file is short, and equal points are equal in every bit (adding 0
-/// turns -0 into 0).
+/// Rounds to whole micrometres: the file is short, and equal points are equal in every bit (adding 0 turns -0
+/// into 0).
 Vec3 rounded(const Vec3& x) { return (x * 1e6).array().round() / 1e6 + 0.0; }
 
 /// The quadratic Bézier curve from a to c that starts and ends towards b.
@@ -111,7 +111,7 @@ Curve join(Curve first, const Curve& second) {
 
 // ---- Patches ----
 
-/// True if the quad a b c d is better cut along a–c than along b–d.
+/// Whether to cut the quad a b c d along a–c, not along b–d.
 bool cut_first_diagonal(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, bool if_alike) {
   constexpr double kAlike = 1.15;
   const double ac = (c - a).norm(), bd = (d - b).norm();
@@ -119,7 +119,7 @@ bool cut_first_diagonal(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return ac < bd;
 }
 
-/// A patch between four sides: bottom and top run right, left and right run up, and they meet in the corners.
+/// A patch between four sides: bottom and top point right, left and right point up, and corners coincide.
 TriangleMesh make_patch(const Curve& bottom, const Curve& top, const Curve& left, const Curve& right) {
   const int columns = static_cast<int>(bottom.size()), rows = static_cast<int>(left.size());
   TriangleMesh patch;
@@ -213,8 +213,8 @@ std::vector<bool> find_points(const TriangleMesh& panel, const std::vector<Curve
 
 // ---- Inflation ----
 
-/// Solves -Δu = 1, u = 0 where held, with linear finite elements: each triangle gives the edge a–b half the
-/// cotangent of the angle opposite to it.
+/// Solves -Δu = 1, u = 0 where held, with linear finite elements (cotangent weights: half the cotangent of
+/// the angle opposite to an edge, per triangle).
 Eigen::VectorXd solve_poisson(const TriangleMesh& mesh, const std::vector<bool>& held) {
   const int n = mesh.num_vertices();
   const auto& x = mesh.positions;
@@ -259,8 +259,8 @@ void flatten(TriangleMesh& panel) {
   for (Vec3& x : panel.positions) x.z() = 0;
 }
 
-/// Pulls each vertex towards its neighbours, in the plane with the force of springs as long as the inflated
-/// edges: in balance these are even. Vertices of open edges slide along them; those that are held stay.
+/// One relaxation of springs in the plane, with forces from the lengths of the inflated edges; in equilibrium
+/// these are equal. Vertices of open edges slide along them; held vertices stay.
 void relax_once(TriangleMesh& panel, const std::vector<bool>& held) {
   const auto edges = build_edges(panel);
   std::vector<bool> on_border(held.size(), false);
@@ -306,7 +306,7 @@ TriangleMesh make_front(double neck_depth, const Cells& cells) {
 
 TriangleMesh make_back(double neck_depth, const Cells& cells) {
   TriangleMesh panel = make_front(neck_depth, cells);
-  for (Vec3& x : panel.positions) x.z() = 0.0 - x.z();  // unlike -z, leaves 0 without a sign
+  for (Vec3& x : panel.positions) x.z() = 0.0 - x.z();  // unlike -z, gives no negative zero
   turn_over(panel);
   return panel;
 }
@@ -331,7 +331,7 @@ Quality measure(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const Vec3& x = mesh.positions[triangle[k]];
       const Vec3 e = mesh.positions[triangle[(k + 1) % 3]] - x, f = mesh.positions[triangle[(k + 2) % 3]] - x;
-      // the C library's angle is good enough to print
+      // For printing only, so the C library's angle is sufficient.
       const double angle = std::atan2(e.cross(f).norm(), e.dot(f)) * 57.29577951308232;
       quality.min_angle_deg = std::min(quality.min_angle_deg, angle);
     }

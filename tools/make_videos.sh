@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a video of every scene of contact/, to be watched: nothing should stick, buzz or snap.
+# Makes a video of every scene of contact/ for visual checks: nothing should stick, jitter or snap.
 #   tools/make_videos.sh PROGRAM FOLDER
 set -euo pipefail
 weft=$1
@@ -18,6 +18,6 @@ for scene in needle knife_edge crossed_strips bullet wall funnel table_cloth squ
   video "$scene"
 done
 video crumple --camera 25,62
-# Of those that take long, the beginning.
+# Long scenes: the beginning only.
 video stack --frame 40
 video twisted_tube --frame 300

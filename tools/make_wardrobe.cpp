@@ -1,6 +1,6 @@
-// Makes garments, a figure that moves and scenes of both: make_wardrobe FOLDER [CELL]
+// Makes garments, a moving figure and scenes of both: make_wardrobe FOLDER [CELL]
 //
-// They are what `weft bench garments` runs (tools/wardrobe/wardrobe.h).
+// `weft bench garments` runs these scenes (tools/wardrobe/wardrobe.h).
 
 #include <cstdio>
 #include <cstdlib>

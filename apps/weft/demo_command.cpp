@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The paper's figures, each with a version in real fabric.
+/// Scenes of the paper's Figures 3 to 6, each with a version in real fabric.
 const std::vector<std::string> kScenes = {
     "paper/fig3_horizontal", "paper/fig3_horizontal_real", "paper/fig4_vertical", "paper/fig4_vertical_real",
     "paper/fig5_falling",    "paper/fig5_falling_real",    "paper/fig6_ball",     "paper/fig6_ball_real",

@@ -34,7 +34,7 @@ bool is_obj_frame(const fs::path& file) {
   return std::regex_match(file.filename().string(), kName);
 }
 
-/// The frames of a run on their way to files. Those of an earlier run stay until replace().
+/// Files for the frames of a run. Those of an earlier run stay until replace().
 class FrameFiles {
  public:
   FrameFiles(const fs::path& folder, const RunRequest& request)
@@ -56,7 +56,7 @@ class FrameFiles {
     if (obj_sink_) sinks.push_back(&*obj_sink_);
   }
 
-  /// Without glb an earlier animation goes too: it would not be this report's.
+  /// Without glb an earlier animation is removed too, because it does not belong to this report.
   void replace() {
     std::error_code ignored;
     glb_ ? glb_->file.replace() : void(fs::remove(glb_file_, ignored));

@@ -1,5 +1,5 @@
 #pragma once
-/// One scene from file to files; also used by `weft demo`, eight times.
+/// One scene from file to result files; `weft demo` uses it eight times.
 
 #include <filesystem>
 #include <optional>
@@ -25,12 +25,12 @@ struct RunRequest {
 
 struct FinishedRun {
   RunReport report;
-  std::vector<std::filesystem::path> files;  // that were written, the report last
+  std::vector<std::filesystem::path> files;  // written ones, the report last
 };
 
-/// Reads, simulates with a progress bar, replaces the results of an earlier run. Throws InputError for bad
-/// input and unwritable places, before simulating where it can; then the earlier results stay.
-/// `sinks` get the frames too.
+/// Reads, simulates with a progress bar, and replaces the results of an earlier run. `sinks` receive the
+/// frames too. Throws InputError for bad input and unwritable folders, if possible before the simulation; the
+/// earlier results then stay.
 FinishedRun run_to_files(const RunRequest& request, const std::vector<FrameSink*>& sinks = {});
 
 /// Exit code of an outcome.

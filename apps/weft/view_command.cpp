@@ -39,7 +39,7 @@ std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, Sc
   std::vector<std::unique_ptr<ViewSide>> sides;
   for (const std::string& name : integrators) {
     scene.solver.integrator = name;
-    make_integrator(scene.solver);  // throws before anything is built
+    make_integrator(scene.solver);  // throws before a scene is built
     sides.push_back(std::make_unique<ViewSide>(scene, threads));
   }
   return sides;

@@ -1,4 +1,4 @@
-/// How right every integrator is, for how much time.
+/// Section "accuracy": error against time of every integrator; convergence, energy, frequencies.
 
 #include <fmt/core.h>
 
@@ -99,7 +99,7 @@ Hypothesis error_against_time(const SectionOptions& options) {
 
 using Frame = std::vector<Vec3>;  // (num_particles) [m]
 
-/// Half a second of a strip, which swings without buckling, cut into equal steps.
+/// Half a second of a strip that swings without buckling, in equal steps.
 Frame swing_strip(const IntegratorSettings& settings, int steps) {
   HungCloth strip = make_hung_strip(2, 16, {.structural = 200, .shear = 100, .bend = 2});
   const auto integrator = make_integrator(settings);
@@ -109,8 +109,7 @@ Frame swing_strip(const IntegratorSettings& settings, int steps) {
   return positions_of(strip.state);
 }
 
-/// By `explicit`, whose error goes with the step: twice as many steps and the difference once more
-/// (Richardson).
+/// Reference by `explicit`, which is of first order: Richardson extrapolation from two step sizes.
 Frame swing_strip_exactly() {
   constexpr int kSteps = 20000;
   const Frame coarse = swing_strip({.integrator = "explicit"}, kSteps);
@@ -228,17 +227,16 @@ Hypothesis energy_over_time(const SectionOptions& options) {
 
 // ---- frequencies
 
-/// Frequency of a hanging chain of 100 links in the mode of that zero of J0, from the zeros of its tip's
-/// swing [Hz].
+/// Frequency of a hanging chain of 100 links in the mode of this zero of J0, from the tip's crossings [Hz].
 double chain_frequency(double bessel_zero, double step, NewtonQuality quality) {
   constexpr int kLinks = 100;
   constexpr double kAmplitude = 2e-3, kMass = 1e-3, kStiffness = 1e5, kSeconds = 4;
   std::vector<Vec3> places;
   double y = 0;
   for (int i = 0; i <= kLinks; ++i) {
-    const double s = 1 - static_cast<double>(i) / kLinks;  // height over the free end
+    const double s = 1 - static_cast<double>(i) / kLinks;  // height above the free end
     places.push_back({kAmplitude * std::cyl_bessel_j(0.0, bessel_zero * std::sqrt(s)), y, 0});
-    y -= 1.0 / kLinks + (kLinks - i) * kMass * kGravity / kStiffness;  // hanging at rest
+    y -= 1.0 / kLinks + (kLinks - i) * kMass * kGravity / kStiffness;  // equilibrium length
   }
   HungCloth chain = make_chain(places, kMass, 1.0 / kLinks, kStiffness);
   chain.environment.pins = {{0}, {places[0]}};

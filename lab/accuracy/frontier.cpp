@@ -17,8 +17,8 @@
 namespace weft::engine::lab {
 namespace {
 
-/// Cloth may be where it should and yet show a spike: the largest strain that a spring may have had, as a
-/// multiple of the largest in the reference [1].
+/// Second criterion of equal quality: maximum spring strain, as a multiple of the reference's [1]. Cloth with
+/// a small mean error may still have a spike.
 constexpr double kEqualStrain = 1.5;
 
 std::unique_ptr<Method> make_contestant(const MethodSettings& entry, const HungCloth& cloth) {
@@ -39,7 +39,7 @@ std::vector<MethodSettings> choose_entries(const std::vector<std::string>& metho
     if (chosen.size() == before && method == "Bullet")
       throw InputError("this program was built without Bullet; install libbullet-dev and build it again");
     if (chosen.size() == before)
-      make_integrator({.integrator = method});  // throws, and names those there are
+      make_integrator({.integrator = method});  // throws, with the list of integrators
   }
   return chosen;
 }
@@ -63,7 +63,7 @@ void print(const MethodResult& r) {
   std::fflush(stdout);
 }
 
-/// CPU time at equal quality: of newton, of xpbd, and how many times as much that is.
+/// CPU time at equal quality of newton and xpbd, and the ratio.
 void print_comparison(const HungCloth& cloth, const std::string& quality,
                       const std::vector<MethodResult>& results, const Objective& objective) {
   const auto newton = find_time("newton", results, objective), xpbd = find_time("xpbd", results, objective);

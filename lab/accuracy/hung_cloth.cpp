@@ -30,7 +30,7 @@ std::shared_ptr<const ClothTopology> build_topology(const Grid& grid, const std:
   throw InputError("--model must be basic, simplified, alternating or mesh, not " + springs);
 }
 
-/// Ring r > 0 has 6 r particles; this is the first of them.
+/// The first particle of ring r > 0, which has 6 r.
 int first_of_ring(int r) { return 1 + 3 * r * (r - 1); }
 
 /// The k-th particle of ring r, counted around.

@@ -1,5 +1,5 @@
 #pragma once
-/// The cloths that integrators are measured on: flat and horizontal at rest, hung by two points, let go.
+/// Test cloths for integrators: flat and horizontal at the start, hung by two points.
 
 #include <memory>
 #include <string>
@@ -19,22 +19,21 @@ struct HungCloth {
 /// for the same cloth as a triangle mesh; throws InputError for another name.
 HungCloth make_hung_sheet(int particles_per_side, const std::string& springs, const ClothMaterial& material);
 
-/// A strip 1 m long with that many cells, hung by its whole first row, which is short; `width` [m], 0: square
-/// cells.
+/// A strip 1 m long with so many cells, hung by its first row, the short edge; `width` [m], 0: square cells.
 HungCloth make_hung_strip(int cells_across, int cells_along, const ClothMaterial& material, double width = 0);
 
-/// A disc of 1 m as a mesh of rings of 6, 12, 18, … particles around one, hung by two points of its rim a
-/// quarter of it apart.
+/// A disc of 1 m as a mesh of rings with 6, 12, 18, … particles around the centre, hung by two points of its
+/// rim. They are a quarter of the rim apart.
 HungCloth make_hung_disc(int num_rings, const ClothMaterial& material);
 
-/// Particles at the given places [m], each of the given mass [kg], joined in a row by structural springs of
-/// the given rest length [m] and stiffness [N/m]; nothing holds it.
+/// A free chain: particles at these positions [m], each of this mass [kg]. Structural springs of this rest
+/// length [m] and stiffness [N/m] join neighbours.
 HungCloth make_chain(const std::vector<Vec3>& places, double mass, double rest_length, double stiffness);
 
-/// Where the particles are (num_particles) [m].
+/// The particles' positions (num_particles) [m].
 std::vector<Vec3> positions_of(const ClothState& state);
 
-/// Root mean square distance of as many places [m].
+/// Root mean square distance of two sets of positions of equal size [m].
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 
 }  // namespace weft::engine::lab

@@ -9,8 +9,8 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr int kMostRuns = 3;   // of which the fastest counts: others may be using the machine …
-constexpr double kEnough = 3;  // … but none after so much time [s]
+constexpr int kMostRuns = 3;   // the fastest counts, because of other processes
+constexpr double kEnough = 3;  // no further run after this time [s]
 
 /// One run of all frames.
 MethodResult run_once(const MakeMethod& make, const MethodSettings& entry, const HungCloth& cloth,
@@ -34,7 +34,7 @@ MethodResult run_once(const MakeMethod& make, const MethodSettings& entry, const
   return result;
 }
 
-/// The results of a method that no cheaper one of it beats, by ascending time.
+/// Pareto frontier of a method, by ascending time: results better than all cheaper ones.
 std::vector<MethodResult> frontier_of(const std::string& method, std::vector<MethodResult> results,
                                        const Objective& objective) {
   std::erase_if(results, [&](const MethodResult& r) { return r.method != method || !r.ok; });

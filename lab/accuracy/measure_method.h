@@ -1,5 +1,5 @@
 #pragma once
-/// How right a method moves a hung cloth, and for how much processor time.
+/// Error and processor time of a method for a hung cloth.
 
 #include <functional>
 #include <optional>
@@ -10,35 +10,35 @@
 
 namespace weft::engine::lab {
 
-/// At which methods are compared: 4 cm in a swing of a metre is hard to see [m].
+/// Error at which methods are compared: 4 cm in a swing of a metre is hard to see [m].
 inline constexpr double kEqualError = 0.045;
 
-/// From the reference in any frame: the cloth has flown apart [m].
+/// Distance from the reference in a frame at which a method has diverged [m].
 inline constexpr double kLargeError = 10;
 
 struct MethodResult {
   std::string method, setting;
   double cpu_ms = 0;  // per frame
   double error = 0;   // mean over the frames of the RMS distance from the reference [m]
-  double strain = 0;  // the largest of all frames [1]
-  bool ok = true;     // false: it flew apart
+  double strain = 0;  // maximum over all frames [1]
+  bool ok = true;     // false: it diverged
 };
 
 using MakeMethod = std::function<std::unique_ptr<Method>()>;
 
-/// Runs all frames of the reference; the fastest of a few runs counts, for others may be using the machine.
+/// Runs all frames of the reference. The fastest of a few runs counts, because of other processes.
 MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry,
                                  const HungCloth& cloth, const Reference& reference);
 
-/// How far a result is from what is asked for: 1 is just as good.
+/// Ratio of a result to the required quality: at most 1 meets it.
 using Objective = std::function<double(const MethodResult&)>;
 
-/// The processor time at which a method is just as good as asked for, between two settings by straight lines
-/// on logarithmic axes; that of its cheapest setting if even this is better; empty if none is as good [ms].
+/// The processor time at which a method meets the objective exactly, by log-log interpolation between two
+/// settings. If its cheapest setting is better, that setting's time; empty if no setting meets it [ms].
 std::optional<double> find_time(const std::string& method, const std::vector<MethodResult>& results,
                                 const Objective& objective);
 
-/// Error against time, a series per method; what flew apart is left out.
+/// Error against time, a series per method, without diverged results.
 PlotPanel make_panel(const std::string& title, const std::vector<MethodResult>& results);
 
 }  // namespace weft::engine::lab

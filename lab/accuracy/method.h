@@ -1,5 +1,5 @@
 #pragma once
-/// What the frontier compares: something that moves a hung cloth, frame by frame.
+/// A method of the comparisons: simulates a hung cloth frame by frame.
 
 #include <memory>
 #include <string>
@@ -13,23 +13,23 @@ class Method {
  public:
   virtual ~Method() = default;
 
-  /// Moves by a sixtieth of a second: this is what is timed.
+  /// Advances by a sixtieth of a second; only this is timed.
   virtual void advance_frame() = 0;
 
-  /// Where the cloth is.
+  /// The current state of the cloth.
   virtual const ClothState& state() = 0;
 };
 
 /// A method with one of its settings.
 struct MethodSettings {
-  std::string method;   // an integrator's name, or another engine's
-  std::string setting;  // what was chosen, in words
+  std::string method;   // name of an integrator or another engine
+  std::string setting;  // as text
   IntegratorSettings settings;
   int steps_per_frame = 1;
-  int most_particles = 1 << 20;  // larger cloth would take hours
+  int most_particles = 1 << 20;  // larger cloth takes hours
 };
 
-/// Every integrator at several settings, from cheap to good.
+/// Every integrator at several settings, from cheap to accurate.
 std::vector<MethodSettings> list_integrator_entries();
 
 /// On one thread.

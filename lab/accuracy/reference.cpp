@@ -13,8 +13,8 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr int kVersion = 1;             // of the method: to be raised with every change of its results
-constexpr double kShareOfLimit = 0.25;  // a step's, of what is stable
+constexpr int kVersion = 1;             // of the method: raise it with every change of the results
+constexpr double kShareOfLimit = 0.25;  // step, as a share of the stability limit
 
 std::uint64_t hash_of(const HungCloth& cloth, int num_frames, int substeps) {
   Hash hash;
@@ -58,7 +58,7 @@ Reference compute_reference(const HungCloth& cloth, int num_frames, int substeps
   return reference;
 }
 
-// A file of this machine for this machine: error, strain, and all frames as they are in memory.
+// Binary file in the format of this machine: error, strain, and all frames as in memory.
 
 bool read(const std::filesystem::path& file, std::size_t num_frames, std::size_t frame_size,
           Reference& reference) {
@@ -73,7 +73,7 @@ bool read(const std::filesystem::path& file, std::size_t num_frames, std::size_t
 
 void write(const Reference& reference, const std::filesystem::path& file) {
   std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path part = file.string() + ".part";  // so that a file is whole, or not there
+  const std::filesystem::path part = file.string() + ".part";  // atomic: a file is complete or missing
   std::ofstream out(part, std::ios::binary);
   out.write(reinterpret_cast<const char*>(&reference.error), sizeof reference.error);
   out.write(reinterpret_cast<const char*>(&reference.strain), sizeof reference.strain);

@@ -14,12 +14,12 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr int kStepsBefore = 3;  // which allocate, and hang the cloth up
+constexpr int kStepsBefore = 3;  // warm-up: allocations, and cloth starts to hang
 
 struct Cost {
   double particles = 0;
   std::vector<double> ms;  // median step for each number of threads
-  double bytes = 0;        // of memory that cloth and integrator hold; 0 where it cannot be told
+  double bytes = 0;        // memory of cloth and integrator; 0: not available
 };
 
 double median(std::vector<double> values) {
@@ -53,12 +53,12 @@ Cost measure(int size, const ScalingBenchOptions& options) {
   return cost;
 }
 
-/// Where a sheet is, frame by frame of a second.
+/// Positions of a sheet in the frames of a second.
 struct Motion {
   int size = 0;                           // particles per side
   std::vector<std::vector<Vec3>> frames;  // (size², row by row) [m]
 
-  /// At the shares (u, v) of the sheet's width and length.
+  /// Position at (u, v) in [0, 1]² of the sheet, bilinear.
   Vec3 at(std::size_t frame, double u, double v) const {
     const double x = u * (size - 1), z = v * (size - 1);
     const int i = std::min(static_cast<int>(x), size - 2), j = std::min(static_cast<int>(z), size - 2);

@@ -34,7 +34,7 @@ double mean(const std::vector<int>& values) {
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-/// Returns whether nothing crossed.
+/// Returns whether there are no intersections.
 bool add_row(const std::string& name, const std::filesystem::path& file, const GarmentBenchOptions& options) {
   RunReport report;
   try {

@@ -13,8 +13,8 @@
 namespace weft::engine::lab {
 namespace {
 
-/// Bytes that a step must move between memory and registers per particle if every array is touched once per
-/// pass; empty for the solvers with a factorised matrix.
+/// Bytes per particle that a step moves between memory and registers if every array is accessed once per
+/// pass. Empty for solvers with a factorised matrix.
 std::optional<double> bytes_per_particle(const std::string& integrator) {
   // Pass 1 reads x, v, m, w and writes u; pass 2 reads u, x, v (and w) and writes x, v.
   const int shared = (8 + 3) + (9 + 6);
@@ -23,14 +23,14 @@ std::optional<double> bytes_per_particle(const std::string& integrator) {
   return std::nullopt;
 }
 
-/// The largest cloth for which the integrator takes less than a few seconds a step.
+/// Maximum particles per side for which a step takes less than a few seconds.
 int largest_size(const std::string& integrator) {
   if (integrator == "implicit_euler") return 64;
   if (integrator == "desbrun") return 256;
   return 1 << 20;
 }
 
-/// What a step is for the integrator [s].
+/// Typical step length of the integrator [s].
 double usual_step(const std::string& integrator, const ClothModel& model) {
   if (integrator == "desbrun" || integrator == "implicit_euler" || integrator == "newton") return 1.0 / 60;
   if (integrator == "xpbd") return 1.0 / 60 / XpbdSettings{}.substeps;

@@ -1,5 +1,5 @@
 #pragma once
-/// `weft bench integrators`: what a step costs, for each integrator and size.
+/// `weft bench integrators`: time of a step for each integrator and size.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ struct IntegratorBenchOptions {
   std::vector<int> sizes = {32, 64, 128, 256, 512};  // particles per side
   std::vector<int> threads = {1, 2};
   std::string model = "simplified";  // of springs; "mesh": the same cloth as a triangle mesh
-  double seconds = 0.5;              // per measurement, at least [s]
+  double seconds = 0.5;              // per measurement, minimum [s]
 };
 
 /// Prints a table to standard output. Throws InputError for names that do not exist.

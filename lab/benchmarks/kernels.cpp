@@ -15,8 +15,8 @@
 namespace weft::engine::lab {
 namespace {
 
-/// Per particle. Bytes: every array that is read or written once; floats loaded: those of neighbours again;
-/// operations: additions, multiplications, comparisons; slow: square roots and divisions.
+/// Counts per particle. Bytes: every array is read or written once. Loads: floats, with repeated loads for
+/// neighbours. Operations: additions, multiplications, comparisons. Slow: square roots and divisions.
 struct Counts {
   double bytes = 0, loads = 0, operations = 0, slow = 0;
 };
@@ -24,8 +24,8 @@ struct Counts {
 constexpr double kFloat = sizeof(float);
 constexpr double kSprings = 5;  // per particle, `simplified`
 
-/// x = y + e; each spring's ends, then its Hessian (4) and slope; forces gather 5 slopes and places at both
-/// sides.
+/// x = y + e; each spring's ends, then its Hessian (4) and slope; forces gather 5 slopes and positions at
+/// both sides.
 constexpr Counts kLinearise = {
     .bytes = kFloat * ((6 + 3) + (3 + 5 * kSprings) + (3 + 1) + (5 + 3 + 3 + 1 + 3)),
     .loads = 6 + kSprings * 6 + 4 + 3 * (2 + 4 * kSprings),
@@ -43,8 +43,8 @@ constexpr Counts kMultiply = {.bytes = kFloat * (3 + 1 + 4 * kSprings + 3),
                               .loads = 4 + 2 * kSprings * (4 + 3),
                               .operations = 3 + 2 * kSprings * (3 + 5 + 12) + 6};
 
-/// Finest grid: smoothing from zero, residual, restriction, prolongation, smoothing; the coarser ones, with
-/// two couplings more, take a third of that again.
+/// Finest grid: smoothing from zero, residual, restriction, prolongation, smoothing. The coarser grids, with
+/// two more couplings, add a third of that.
 constexpr Counts kFinest = {.bytes = kFloat * (7 + 10.75 + 6.75 + 14),
                             .loads = 4 + (7 + 3 * 8) + 9 + 6 + (8 + 3 * 8),
                             .operations = 3 + 3 * 14 + 17 + 9 + 3 * 16 + 6};
@@ -107,7 +107,7 @@ class Kernels {
     row("energy alone", kEnergy, [&] { potential_.energy(offset_, *jobs_); });
     row("product with the Hessian", kMultiply, [&] { potential_.multiply(force_, *jobs_, product_); });
     row("V-cycle", kVCycle, [&] { preconditioner_.apply(force_, *jobs_, product_); });
-    // Ten iterations of a solver whose matrix and preconditioner cost nothing.
+    // Ten iterations of a solver with free matrix and preconditioner.
     const auto nothing = [](const Vec3Array&, Vec3Array&) { return 1.0; };
     row(
         "vectors of one CG iteration", kVectors,

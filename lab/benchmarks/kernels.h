@@ -1,5 +1,5 @@
 #pragma once
-/// `weft bench kernels`: how far each kernel of `newton` on grids runs from what the machine allows.
+/// `weft bench kernels`: time of each kernel of `newton` on grids against the limits of the machine.
 
 #include <vector>
 
@@ -11,9 +11,8 @@ struct KernelBenchOptions {
   double seconds = 0.3;  // per measurement
 };
 
-/// Prints for every kernel its nanoseconds per particle and three bounds: the bytes that it must move, its
-/// vector loads and its arithmetic, counted by hand, over what the machine was measured to do in the same
-/// run.
+/// Prints for every kernel its nanoseconds per particle and three lower bounds: bytes moved, vector loads and
+/// arithmetic. The counts are made by hand; the machine's rates are measured in the same run.
 void bench_kernels(const KernelBenchOptions& options);
 
 }  // namespace weft::engine::lab

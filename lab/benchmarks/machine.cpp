@@ -24,7 +24,7 @@ WEFT_MULTIVERSION(stream, (float* x, int count), (x, count))
 
 constexpr int kLoaded = 2048;  // floats, in the first-level cache
 
-/// The largest in each lane, in four chains: as many loads as comparisons.
+/// The maximum in each lane, in four chains: as many loads as comparisons.
 template <int W>
 WEFT_ALWAYS_INLINE void load_many_body(const float* values, int rounds, float* sum) {
   for (int round = 0; round < rounds; ++round) {
@@ -41,7 +41,7 @@ WEFT_ALWAYS_INLINE void load_many_body(const float* values, int rounds, float* s
 
 WEFT_MULTIVERSION_PACKS(load_many, (const float* values, int rounds, float* sum), (values, rounds, sum))
 
-constexpr int kChains = 10;  // of operations that wait for each other
+constexpr int kChains = 10;  // of dependent operations
 
 template <int W>
 WEFT_ALWAYS_INLINE void compute_many_body(float* values, int rounds) {
@@ -96,7 +96,7 @@ double measure_loads() {
 
 namespace {
 
-/// Of a kernel that does two operations to each chain in every round.
+/// Operations per second of a kernel with two operations per chain and round.
 template <class Run>
 double operations_per_second(const Run& run, int rounds) {
   std::vector<float> values(kChains * kPackLanes, 0.5f);
@@ -121,7 +121,7 @@ double seconds_now() {
 
 double resident_bytes() {
 #ifdef __linux__
-  // In pages: the program's size, and what of it is in memory.
+  // In pages: program size, resident set size.
   std::ifstream statm("/proc/self/statm");
   double size = 0, resident = 0;
   statm >> size >> resident;
@@ -160,7 +160,7 @@ double measure_clock() {
           "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
           "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
           : "+r"(x)
-          : "r"(1ul));  // from a register: some processors add constants for nothing
+          : "r"(1ul));  // from a register: some processors add constants at no cost
     }
     best = std::max(best, static_cast<double>(x) / (seconds_now() - begin));
   }

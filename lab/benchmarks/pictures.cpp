@@ -13,7 +13,7 @@
 namespace weft::engine::lab {
 namespace {
 
-/// A sheet over a ball, without physics: it lies where it is over the ball, and hangs in waves around it.
+/// A sheet over a ball, without simulation: lies on the ball, and hangs in waves around it.
 DrawnMesh make_draped_sheet(int num_triangles) {
   const int cells = std::max(1, static_cast<int>(std::lround(std::sqrt(num_triangles / 2.0))));
   const Grid grid{.size_x = 1, .size_z = 1, .cells_x = cells, .cells_z = cells};

@@ -1,5 +1,5 @@
 #pragma once
-/// `weft bench pictures`: what it costs to draw.
+/// `weft bench pictures`: time of drawing.
 
 #include <vector>
 
@@ -10,11 +10,11 @@ namespace weft::engine::lab {
 struct PictureBenchOptions {
   std::vector<int> triangles = {8192, 32768, 131072};  // about
   PictureSize size;
-  int repeats = 9;  // median of so many
+  int repeats = 9;  // for the median
 };
 
-/// Prints a table to standard output: a sheet on a ball, with everything, and with each thing left out.
-/// Throws GraphicsError where nothing can be drawn.
+/// Prints a table to standard output: a sheet on a ball, complete, and without each part of the picture.
+/// Throws GraphicsError without graphics.
 void bench_pictures(const PictureBenchOptions& options);
 
 }  // namespace weft::engine::lab

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes that nobody would make, for integrators to survive.
+/// Extreme random scenes for robustness tests of integrators.
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 namespace weft::engine::lab {
 
-/// Stiffness 1 to 10⁶ N/m, 0.01 to 10 kg/m², steps of 1/1000 to 1/15 s, all by their logarithms; 1 to 20
-/// cells each way as a grid of any model or a mesh; damping in half the scenes; noise of up to 0.3 cells in
-/// half of them; 0 to 3 pinned particles. The same for the same seed, everywhere.
+/// Stiffness 1 to 10⁶ N/m, 0.01 to 10 kg/m², steps of 1/1000 to 1/15 s, all log-uniform. 1 to 20 cells each
+/// way, as a grid of any model or a mesh. Damping in half of the scenes, noise of up to 0.3 cells in half of
+/// them. 0 to 3 pinned particles. A seed gives the same scene on every machine.
 struct RandomScene {
   HungCloth cloth;
   double step = 0;  // [s]

@@ -12,19 +12,19 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr double kMostOfOneStep = 0.1, kMostOfTenSteps = 0.01;  // gain of energy, as a share of what moves
+constexpr double kMostOfOneStep = 0.1, kMostOfTenSteps = 0.01;  // energy gain, share of energy in motion
 constexpr double kMostOfSpeed = 0.01;                           // of free fall
 constexpr int kWindow = 10;                                     // steps
 
-/// The worst of a scene.
+/// Maxima over the steps of a scene.
 struct Outcome {
   bool is_finite = true;
-  double gain = 0;              // of one step, as a share of what is in motion [1]
+  double gain = 0;              // of one step, as a share of the energy in motion [1]
   double mean_gain = 0;         // of ten steps [1]
   std::optional<double> speed;  // error of free fall, as a share [1]
 };
 
-/// What rounding to floats, 1e-7 m, means to the energy of stiff springs [J].
+/// Energy error of stiff springs by rounding to floats, 1e-7 m [J].
 double energy_noise(const RandomScene& scene) { return 1e-9 * scene.cloth.model->material.structural; }
 
 double mean_of_last(const std::vector<double>& values, int count) {

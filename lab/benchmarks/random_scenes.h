@@ -1,6 +1,5 @@
 #pragma once
-/// `weft bench random`: does an integrator stay finite, and keep energy and momentum, in scenes that nobody
-/// would make?
+/// `weft bench random`: robustness, energy and momentum of an integrator in extreme random scenes.
 
 #include <string>
 
@@ -14,13 +13,11 @@ struct RandomBenchOptions {
 };
 
 /// Runs the scenes of the seeds from first_seed on and lists, with their seeds, those in which
-///   - something becomes infinite,
-///   - the energy of a step is above that of the start by a tenth of what is in motion, or the mean of any
-///   ten
-///     steps by a hundredth: what is in motion is what the cloth had at the start, and what gravity has
-///     given up to then,
+///   - a value becomes infinite,
+///   - the energy gain since the start exceeds a tenth of the energy in motion in a step, or a hundredth on
+///     average over ten steps; energy in motion: that of the start plus the work of gravity so far,
 ///   - cloth without pins falls faster or slower than g t by more than a hundredth.
-/// Returns whether all stayed finite and fell as they should. Throws InputError for an unknown integrator.
+/// Returns whether all stayed finite and fell correctly. Throws InputError for an unknown integrator.
 bool bench_random(const RandomBenchOptions& options);
 
 }  // namespace weft::engine::lab

@@ -1,5 +1,5 @@
 #pragma once
-/// One hung cloth moved by many engines, a row of a table for each setting.
+/// Comparison of engines on one hung cloth: a table with a row for each setting.
 
 #include <functional>
 #include <string>
@@ -14,41 +14,41 @@ namespace weft::engine::lab {
 
 inline constexpr int kComparedFrames = 60;
 
-/// One setting of an engine that a script drives.
+/// One setting of an engine that a script runs.
 struct PeerSetting {
-  std::string solver;     // of several that the engine has; empty: it has one
-  std::string words;      // the setting
+  std::string solver;     // empty: the engine has one solver
+  std::string words;      // the setting as text
   std::string arguments;  // of the script
-  std::string how;        // the cloth is given, and what the engine cannot do
+  std::string how;        // model of the cloth in the engine, and missing features
 };
 
 struct Peer {
   std::string engine;
   Interpreter interpreter = Interpreter::python;
   std::string script;   // in tools/peers
-  std::string install;  // how
+  std::string install;  // installation command
   std::vector<PeerSetting> settings;
 };
 
 class Comparison {
  public:
-  /// All three must outlive it; the reference has kComparedFrames.
+  /// All three must outlive this; the reference has kComparedFrames.
   Comparison(const SectionOptions& options, const HungCloth& cloth, const Reference& reference);
 
   using Make = std::function<std::unique_ptr<Method>(const MethodSettings&, const HungCloth&)>;
 
-  /// `engine` and `how` as the table says them.
+  /// `engine` and `how` are cells of the table.
   void add(const MethodSettings& entry, const std::string& engine, const std::string& how,
            const Make& make);
 
-  /// One row that says so if it does not run.
+  /// Adds a row per setting, or one row for an engine that does not run.
   void add(const Peer& peer);
 
   void add_absence(const std::string& engine, const std::string& why);
 
-  /// How many times as long as `newton` the methods take to be as right, as key figures of the given names
-  /// and in words; of those that are as right at any setting. Then the table. A method is called as its
-  /// entry calls it, or "Engine", or "Engine's solver".
+  /// Adds the time at equal error as a multiple of `newton`'s, for methods that reach it: as metrics with the
+  /// given names, and as text. Then adds the table. The name of a method is that of its entry, "Engine", or
+  /// "Engine's solver".
   void tell(const std::vector<std::pair<std::string, std::string>>& figure_of_method, Hypothesis& hypothesis) const;
 
  private:

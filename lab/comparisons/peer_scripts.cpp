@@ -35,7 +35,7 @@ std::string command_of(const PeerScript& script) {
          " --background --factory-startup --threads 1 --python-exit-code 1 --python " + file + " --";
 }
 
-/// What it prints; empty if it fails.
+/// Standard output of the command; empty if it fails.
 std::optional<std::string> run(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return std::nullopt;
@@ -45,7 +45,7 @@ std::optional<std::string> run(const std::string& command) {
   return pclose(pipe) == 0 ? std::optional(printed) : std::nullopt;
 }
 
-/// The line that is an object: some engines greet and take their leave.
+/// The line that is a JSON object; some engines print other lines before and after it.
 nlohmann::json find_object(const std::string& printed) {
   std::istringstream lines(printed);
   for (std::string line; std::getline(lines, line);) {
@@ -55,7 +55,7 @@ nlohmann::json find_object(const std::string& printed) {
   return {};
 }
 
-/// Empty if there are not as many.
+/// Empty if the file is too short.
 std::vector<std::vector<float>> read_frames(const fs::path& file, int num_particles, int num_frames) {
   std::vector<std::vector<float>> frames(num_frames,
                                          std::vector<float>(3 * static_cast<std::size_t>(num_particles)));
@@ -71,7 +71,7 @@ std::vector<std::vector<float>> read_frames(const fs::path& file, int num_partic
 
 std::optional<PeerRun> run_peer(const PeerScript& script, int num_particles, int num_frames) {
   const fs::path file = fs::temp_directory_path() / fmt::format("weft-peer-{}.f32", getpid());
-  // OpenMP's idle threads would be counted as busy.
+  // One thread, because idle threads of OpenMP count as busy.
   const auto printed = run(fmt::format("OMP_NUM_THREADS=1 {} {} {} {} 2>/dev/null", command_of(script),
                                        script.arguments, num_frames, quote(file.string())));
   const nlohmann::json told = find_object(printed.value_or(""));

@@ -1,5 +1,5 @@
 #pragma once
-/// Other engines through tools/peers: scripts that move a hung sheet and leave its frames in a file.
+/// Other engines through tools/peers: scripts that simulate a hung sheet and write its frames to a file.
 
 #include <optional>
 #include <string>
@@ -15,16 +15,16 @@ enum class Interpreter {
 struct PeerScript {
   Interpreter interpreter = Interpreter::python;
   std::string file;       // in tools/peers
-  std::string arguments;  // before the number of frames and the file, as the script says
+  std::string arguments;  // before the number of frames and the file; documented in the script
 };
 
 struct PeerRun {
   std::string engine;                      // with its version
   double cpu_ms = 0;                       // per frame, the fastest of up to three runs
-  std::vector<std::vector<float>> frames;  // as those of a Reference
+  std::vector<std::vector<float>> frames;  // as in Reference
 };
 
-/// On one thread. Empty if the script fails, as it does where its engine is not installed.
+/// Runs the script on one thread. Empty if it fails, for example because its engine is not installed.
 std::optional<PeerRun> run_peer(const PeerScript& script, int num_particles, int num_frames);
 
 }  // namespace weft::engine::lab

@@ -36,7 +36,7 @@ Reference find_explicit_reference(const HungCloth& cloth, const SectionOptions& 
 
 struct NewtonSolver {
   const char* name;
-  const char *argument, *cloth;  // as newton_sheet.py calls them
+  const char *argument, *cloth;  // arguments of newton_sheet.py
   const char* how;
 };
 
@@ -138,7 +138,7 @@ HungCloth make_hung_membrane(int side) {
   return cloth;
 }
 
-/// By newton in short steps: of second order, so that half as many show four thirds of its error.
+/// By newton in short steps, of second order: the error with half as many is four thirds of their distance.
 Reference make_membrane_reference(const HungCloth& cloth) {
   constexpr int kSteps = 64;
   Reference reference;
@@ -199,9 +199,9 @@ Hypothesis compare_membranes(const SectionOptions& options) {
   return hypothesis;
 }
 
-// ---- springs that are all the same
+// ---- equal springs
 
-/// Every particle weighs the same, and every edge, also a diagonal, is a spring of 2000 N/m.
+/// All particles have the same mass; every edge, including diagonals, is a spring of 2000 N/m.
 HungCloth make_even_sheet(int side) {
   HungCloth cloth = make_hung_sheet(side, "simplified", {});
   ClothTopology topology = *cloth.model->topology;

@@ -5,9 +5,9 @@
 
 namespace weft::engine::lab {
 
-/// Bullet where it was there when Weft was built; MuJoCo and Newton through Python where they are installed
-/// ($WEFT_PYTHON, else python3); Blender's cloth where Blender is ($WEFT_BLENDER, else blender). What is
-/// missing is said in its row.
+/// Bullet if Weft was built with it. MuJoCo and Newton through Python if installed ($WEFT_PYTHON, else
+/// python3); Blender's cloth if Blender is installed ($WEFT_BLENDER, else blender). A missing engine has a
+/// row that says so.
 Section study_peers(const SectionOptions& options);
 
 }  // namespace weft::engine::lab

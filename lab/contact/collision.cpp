@@ -20,11 +20,11 @@ namespace {
 
 constexpr double kSpacing = 0.01;    // of particles: about an edge [m]
 constexpr double kLayerGap = 0.003;  // [m]
-constexpr double kMargin = 0.002;    // around triangles: half of 1 mm of cloth, and the slack of contact [m]
+constexpr double kMargin = 0.002;    // around triangles: half a thickness of 1 mm, plus the Verlet slack [m]
 constexpr double kCell = 2 * kSpacing;
 constexpr double kTurn = 6.283185307179586;
 
-/// Sheets are seen in two poses by turns, so that no query meets the same boxes twice running.
+/// A sheet in two alternating poses, so that consecutive queries have different boxes.
 struct Shape {
   std::string name;
   std::vector<Triangle> triangles;
@@ -42,11 +42,11 @@ Vec3 folded_place(double x, double z, double width, int pose) {
   const double length = width / kLayers;
   const int layer = std::min(static_cast<int>(x / length), kLayers - 1);
   const double along = layer % 2 == 0 ? x - layer * length : (layer + 1) * length - x;
-  const double shift = 0.37 * kSpacing * layer;  // so that no particles lie over each other
+  const double shift = 0.37 * kSpacing * layer;  // so that particles of different layers are not aligned
   return rest_place(along, z + shift, pose) + Vec3(0, kLayerGap * layer, 0);
 }
 
-/// Waves of random directions, as big as the sheet when it is crumpled into a ball.
+/// A crumpled sheet: waves of random directions, with the size of the sheet crumpled into a ball.
 class Crumple {
  public:
   explicit Crumple(double width) {
@@ -132,7 +132,7 @@ struct TreeTimes {
   double build = 0, refit = 0, query = 0, both = 0;  // [s]
 };
 
-/// Positions to boxes around vertices to boxes around triangles to the tree.
+/// Refits the tree: positions → boxes of vertices → boxes of triangles → tree.
 void refit(const Shape& shape, int pose, JobSystem& jobs, std::vector<Aabb>& vertex_boxes, AabbTree& tree) {
   constexpr int kGrain = 4096;
   const std::vector<Vec3>& x = shape.poses[pose];
@@ -143,7 +143,7 @@ void refit(const Shape& shape, int pose, JobSystem& jobs, std::vector<Aabb>& ver
   tree.refit([&](int t) { return merged(vertex_boxes, shape.triangles[t]); }, jobs);
 }
 
-/// Leaves the tree in pose 0, and its pairs in `search`.
+/// At return the tree is in pose 0, and `search` has its pairs.
 TreeTimes time_tree(const Shape& shape, JobSystem& jobs, double seconds, AabbTree& tree, PairSearch& search) {
   TreeTimes times;
   std::vector<Aabb> vertex_boxes = triangle_boxes(shape, 0);
@@ -169,7 +169,7 @@ TreeTimes time_tree(const Shape& shape, JobSystem& jobs, double seconds, AabbTre
   return times;
 }
 
-/// How many numbers are compared when the tree compares a box with a box: counted one by one [1].
+/// Number of scalar comparisons per comparison of two boxes in the tree, counted exactly [1].
 double comparisons_per_box_pair(const AabbTree& tree, JobSystem& jobs) {
   PairSearch search;
   search.counts_comparisons = true;
@@ -234,7 +234,7 @@ bool bench_shape(const std::string& name, int size, const CollisionBenchOptions&
     PairSearch search;
     const TreeTimes times = time_tree(shape, *jobs, options.seconds, tree, search);
     if (first.empty()) first = search.pairs;
-    is_right &= search.pairs == first;  // in the same order too
+    is_right &= search.pairs == first;  // also in the same order
     const double found = static_cast<double>(search.pairs.size());
     const double tested = static_cast<double>(search.num_box_pairs);
     fmt::print(

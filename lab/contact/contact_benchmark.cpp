@@ -21,7 +21,7 @@ namespace weft::engine::lab {
 namespace {
 
 constexpr int kQuickFrames = 20;
-constexpr int kFineSteps = 16;  // per frame, for strains to compare with
+constexpr int kFineSteps = 16;  // per frame, for reference strains
 constexpr double kTableFriction = 0.1, kSheetFriction = 0.3;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
@@ -61,7 +61,7 @@ RunReport bench_scene(const std::string& name, int frames, int threads) {
   return report;
 }
 
-/// A row of shares of the time of steps, by kinds of work, and of counts.
+/// A row with shares of the time of steps by kind of work, and counts.
 void print_work(const RunReport& report) {
   const WorkTimes& w = report.work;
   fmt::print("| {} | {} | {:.2f} |", report.scene, report.threads, 1000 * w.total / report.frames);
@@ -89,7 +89,7 @@ void print_where_frames_go(const std::vector<RunReport>& reports) {
   fmt::print("\n");
 }
 
-/// Returns whether nothing crossed, and nothing passed through anything.
+/// Returns whether there are no intersections and no passages.
 bool bench_scenes(const ContactBenchOptions& options) {
   fmt::print(
       "## Scenes\n\n"
@@ -109,14 +109,14 @@ bool bench_scenes(const ContactBenchOptions& options) {
   });
 }
 
-/// Sheets that lie on each other and on a floor.
+/// Cost of a stack of sheets on a floor.
 struct LayerCost {
   double ms = 0, ms_without = 0;  // per step, with contact and without
-  double contacts = 0;            // that bear something
-  double speed = 0;               // at which they tremble (RMS) [m/s]
+  double contacts = 0;            // number with a force
+  double speed = 0;               // residual jitter (RMS) [m/s]
 };
 
-/// RMS over all particles, by mass [m/s].
+/// RMS speed over all particles, weighted by mass [m/s].
 double speed_of(const World& world) {
   double kinetic = 0, mass = 0;
   for (int c = 0; c < world.num_cloths(); ++c) {
@@ -184,7 +184,7 @@ void bench_layers(bool quick) {
   fmt::print("\n");
 }
 
-/// What contact costs a sheet with which nothing collides: wall time per step over that without contact.
+/// Overhead of contact for a sheet without collisions: wall time per step over that without contact.
 double measure_nothing_near(int cells) {
   constexpr int kRuns = 5, kSettle = 10, kSteps = 40;
   double fastest[2] = {kForever, kForever};  // without contact, with it [s]
@@ -206,7 +206,7 @@ double measure_nothing_near(int cells) {
   return fastest[true] / fastest[false];
 }
 
-/// Memory per particle that contact/ball_and_floor has taken after a second [bytes].
+/// Memory per particle of contact/ball_and_floor after a second [bytes].
 double measure_memory(int cells) {
   SceneDesc scene = read_scene(find_scene("contact/ball_and_floor"));
   Grid& grid = std::get<Grid>(scene.cloths.at(0).shape);
@@ -326,10 +326,10 @@ void bench_momentum(const ContactExperiment& setup) {
       100 * std::abs(fall.worst_gain - 1), collision.contacts, collision.momentum_change);
 }
 
-/// The largest rise of energy in a frame of a scene in which nothing is driven, the first frame left out.
+/// Maximum rise of energy in a frame of a scene without external drive, except for the first frame.
 struct EnergyRise {
   double rise = 0;    // [J]
-  int frame = 0;      // in which; 0: there is none
+  int frame = 0;      // of the rise; 0: there is none
   double fallen = 0;  // gravitational energy lost until then [J]
 };
 
@@ -379,7 +379,7 @@ void bench_energy(bool quick) {
 }  // namespace
 
 bool bench_contact(const ContactBenchOptions& options) {
-  bench_overhead(options.quick);  // first: memory that others have given back would not count
+  bench_overhead(options.quick);  // first, because memory that other benchmarks have freed does not count
   const bool is_clean = bench_scenes(options);
   const ContactExperiment setup{.cells = options.quick ? 16 : 32};
   bench_layers(options.quick);

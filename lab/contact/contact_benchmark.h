@@ -1,5 +1,5 @@
 #pragma once
-/// `weft bench contact`: what contact holds, and at what cost.
+/// `weft bench contact`: accuracy and cost of contact.
 
 #include <string>
 #include <vector>
@@ -7,13 +7,13 @@
 namespace weft::engine::lab {
 
 struct ContactBenchOptions {
-  std::vector<std::string> scenes;  // empty: all that ship in contact/
+  std::vector<std::string> scenes;  // empty: all shipped ones in contact/
   std::vector<int> threads = {1, 2};
   int frames = 0;      // of each scene; 0: all
   bool quick = false;  // the beginning of each scene, one thread, coarse sheets
 };
 
-/// Prints tables in Markdown to standard output. Returns false if cloth crossed anything in any frame.
+/// Prints tables in Markdown to standard output. Returns false if cloth intersects anything in any frame.
 bool bench_contact(const ContactBenchOptions& options);
 
 }  // namespace weft::engine::lab

@@ -11,7 +11,7 @@ namespace weft::engine::lab {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kSliding = 5e-3;  // what is slower may stick [m/s]
+constexpr double kSliding = 5e-3;  // slower contacts may stick [m/s]
 constexpr double kPi = 3.14159265358979323846;
 const ClothMaterial kSoft{.structural = 100, .shear = 30, .bend = 0.2, .damping = 1e-3, .friction = 0.3};
 
@@ -24,7 +24,7 @@ World make_world(const ContactExperiment& setup) {
   return world;
 }
 
-/// The sheet's middle at the origin, then turned and moved.
+/// Adds a sheet with its middle at the origin, then rotates it and moves it to `middle`.
 ClothId add_sheet(World& world, const std::string& name, int cells, double size, const Mat3& turn,
                   const Vec3& middle, const ClothMaterial& material = kSoft,
                   const Vec3& velocity = Vec3::Zero()) {
@@ -44,7 +44,7 @@ Vec3 middle_of(const World& world, ClothId cloth) {
   return compute_center_of_mass(world.model(cloth), world.state(cloth));
 }
 
-/// About the vertical through the origin [kg·m²/s].
+/// Angular momentum about the vertical through the origin [kg·m²/s].
 double angular_momentum_of(const World& world, ClothId cloth) {
   return compute_angular_momentum(world.model(cloth), world.state(cloth), Vec3::Zero()).y();
 }
@@ -58,8 +58,8 @@ double mass_of(const World& world, ClothId cloth) {
 /// ⟨r⟩/⟨r²⟩ of a square about its middle: a (√2 + asinh 1)/6 over a²/6 [1/m].
 double square_lever(double size) { return (std::sqrt(2.0) + std::asinh(1.0)) / size; }
 
-/// From rest at `start`, with constant acceleration as implicit Euler has it: a h² n (n + 1)/2 after n steps.
-/// pose_at(way) is the key frame, without its time.
+/// Constant acceleration from rest at `start`, as by implicit Euler: a h² n (n + 1)/2 after n steps.
+/// pose_at(distance) is the key frame, without its time.
 template <class PoseAt>
 RigidMotion accelerate(const ContactExperiment& setup, double start, double seconds, double acceleration,
                        const PoseAt& pose_at) {
@@ -73,7 +73,7 @@ RigidMotion accelerate(const ContactExperiment& setup, double start, double seco
   return RigidMotion(keys);
 }
 
-/// Of what a contact is with, where it is [m/s].
+/// Velocity of the other body at a contact [m/s].
 Vec3 other_velocity(const World& world, const ContactPoint& contact, double step) {
   if (contact.other_cloth >= 0)
     return world.state(world.cloth(contact.other_cloth)).v.get(contact.other_vertex);
@@ -122,8 +122,8 @@ FrictionAudit audit_friction(const World& world, double step, double friction, c
 
 namespace {
 
-/// Runs and audits a sheet that something turns about the vertical through the origin; returns the torque
-/// that its angular momentum tells of, over the audit's limit, 0 where nothing slides [1].
+/// Runs and audits a sheet that friction turns about the vertical through the origin. Returns the torque from
+/// its angular momentum, over the audit's limit; 0 if nothing slides [1].
 template <class AfterStep>
 double watch_turning(World& world, const ContactExperiment& setup, double seconds, ClothId sheet,
                      double friction, FrictionAudit& audit, const AfterStep& after_step) {
@@ -183,7 +183,7 @@ Capstan pull_over_drum(const ContactExperiment& setup, double friction) {
     ends.particles.push_back(grid.index(grid.cells_x, j));
   }
   world.set_pins(strip, {ends});
-  // The tension that springs carry from one column of particles to the next.
+  // Tension of the springs between two columns of particles.
   const auto tension = [&](int column) {
     Vec3 sum = Vec3::Zero();
     const ClothModel& model = world.model(strip);
@@ -241,7 +241,7 @@ RestingSheet rest_on(const ContactExperiment& setup, Support support, double sec
 
 Spin spin_ball(const ContactExperiment& setup, double friction) {
   constexpr double kRadius = 0.3, kSize = 0.4, kTurns_deg = 180;
-  // A second to come to rest, then key frames every twentieth of one.
+  // A second to come to rest, then key frames every twentieth of a second.
   std::vector<KeyFrame> keys;
   const auto angle_at = [](double t) { return 0.5 * kTurns_deg * t * t; };
   for (int k = 0; k <= 20; ++k)

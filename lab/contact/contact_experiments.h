@@ -1,6 +1,6 @@
 #pragma once
-/// Small experiments with contact whose outcome a formula tells: each builds its world, runs it and measures.
-/// `weft bench contact` prints them, tests hold them to their tolerances.
+/// Small contact experiments with a known analytic result: each builds its world, runs it and measures.
+/// `weft bench contact` prints them, tests check their tolerances.
 
 #include <string>
 
@@ -17,7 +17,7 @@ struct ContactExperiment {
   int steps_per_second = 60;  // [1/s]
 };
 
-/// Coulomb's law over the contacts that slide, faster than 5 mm/s: of one step, or summed over several.
+/// Coulomb's law over the sliding contacts, faster than 5 mm/s, of one step or summed over several.
 struct FrictionAudit {
   int sliding = 0;          // contacts [1]
   double tangential = 0;    // Σ |T| [N]
@@ -34,19 +34,19 @@ struct Axis {
   Vec3 direction = Vec3::UnitY();  // unit length
 };
 
-/// Of the contacts that a world tracked in its last step, of length `step` [s], all of the same coefficient
-/// of friction [1]. Cloth's velocity is that of the nearest particle. What the solver has left over at a
-/// particle counts as its contacts' force, so that Σ |T| also tells how far the solve was from its end.
+/// Audit of the contacts that a world tracked in its last step, of length `step` [s], all with the same
+/// coefficient of friction [1]. The velocity of cloth is that of the nearest particle. The solver's residual
+/// at a particle counts as force of its contacts, so that Σ |T| also measures the convergence of the solve.
 FrictionAudit audit_friction(const World& world, double step, double friction, const Axis& axis = {});
 
 /// A sheet that starts at rest on a slope.
 struct Slide {
-  double acceleration = 0;  // down the slope, from the way in 0.4 s [m/s²]
-  double expected = 0;      // g (sin α − µ cos α), or 0 where friction holds it [m/s²]
+  double acceleration = 0;  // down the slope, from the distance in 0.4 s [m/s²]
+  double expected = 0;      // g (sin α − µ cos α), or 0 if it sticks [m/s²]
 };
 Slide slide_on_incline(const ContactExperiment& setup, double angle_deg, double friction);
 
-/// A strip over a drum that turns under it, half a turn round, held at both ends:
+/// Capstan experiment: a strip over half a turn of a rotating drum, held at both ends.
 ///
 ///          ___
 ///        /  ↻  \          T_tight / T_slack = e^{µ θ},  θ = π
@@ -58,56 +58,57 @@ struct Capstan {
 };
 Capstan pull_over_drum(const ContactExperiment& setup, double friction);
 
-/// A sheet that lies on something for a while.
+/// A sheet at rest on a support.
 struct RestingSheet {
-  double kinetic = 0;  // the most in the second half of the time [J/kg]
+  double kinetic = 0;  // maximum in the second half of the time [J/kg]
   double drift = 0;    // of the middle in the second half [m]
-  double rise = 0;     // the most that the middle ever rose by from one step to the next [m]
+  double rise = 0;     // maximum rise of the middle in a step, over the whole time [m]
   double force = 0;    // of all contacts over the weight, mean of the second half [1]
 };
 enum class Support { ball, floor };
 RestingSheet rest_on(const ContactExperiment& setup, Support support, double seconds);
 
-/// A sheet on a ball that is spun up to half a turn per second within a second. Not longer: on a smooth ball
-/// no sheet stays.
+/// A sheet on a ball that is spun up to half a turn per second within a second. Not longer, because every
+/// sheet slides off a smooth ball.
 struct Spin {
-  double turned_ball = 0, turned_sheet = 0;  // after that second [rad]
+  double turned_ball = 0, turned_sheet = 0;  // rotation after that second [rad]
   double expected = 0;     // of a rigid flat sheet: µ g ⟨r⟩/(2⟨r²⟩), or the ball's [rad]
   FrictionAudit friction;  // over that second
-  double torque = 0;       // by the sheet's angular momentum, over the audit's limit [1]
+  double torque = 0;       // from the sheet's angular momentum, over the audit's limit [1]
 };
 Spin spin_ball(const ContactExperiment& setup, double friction);
 
-/// A square sheet on a floor that turns under it, about the vertical through its middle, faster and faster
-/// from rest on.
+/// A square sheet on a turntable: the floor rotates about the vertical through its middle, with constant
+/// angular acceleration from rest.
 struct Turntable {
   double acceleration = 0;  // of the sheet's mean angular velocity in 0.3 s [rad/s²]
-  /// The floor's, or a rigid sheet's µ g ⟨r⟩/⟨r²⟩ if that is less, of its particles: of many (√2 + asinh 1) µ
-  /// g over the side [rad/s²].
+  /// The smaller of the floor's and a rigid sheet's µ g ⟨r⟩/⟨r²⟩ over its particles. For many particles the
+  /// latter is (√2 + asinh 1) µ g over the side [rad/s²].
   double expected = 0;
   FrictionAudit friction;
   double torque = 0;  // as in Spin [1]
 };
 Turntable turn_table(const ContactExperiment& setup, double friction, double floor_acceleration);
 
-/// A sheet on a larger one that is pinned everywhere and moves sideways, faster and faster from rest on.
+/// A sheet on a larger one, all of whose particles are pinned and move sideways with constant acceleration
+/// from rest.
 struct CarriedSheet {
   double acceleration = 0;  // of its mean velocity in 0.3 s [m/s²]
-  double expected = 0;      // the lower one's, or µ g if that is less [m/s²]
+  double expected = 0;      // the smaller of the lower one's and µ g [m/s²]
   FrictionAudit friction;
 };
 CarriedSheet carry_sheet(const ContactExperiment& setup, double friction, double lower_acceleration);
 
-/// A sheet folded in two that falls freely, its halves within reach of each other.
+/// A sheet folded in two in free fall, its halves within contact distance of each other.
 struct FoldedFall {
-  double worst_gain = 0;  // of mean velocity in a step, over g h, the farthest from 1 [1]
+  double worst_gain = 0;  // of mean velocity in a step, over g h; the value farthest from 1 [1]
 };
 FoldedFall drop_fold(const ContactExperiment& setup, double seconds);
 
-/// Two free sheets that fly into each other.
+/// Two free sheets that collide.
 struct Collision {
-  double momentum_change = 0;  // over one sheet's momentum, at most [1]
-  int contacts = 0;            // at the most [1]
+  double momentum_change = 0;  // maximum, over one sheet's momentum [1]
+  int contacts = 0;            // maximum [1]
 };
 Collision collide_sheets(const ContactExperiment& setup, double seconds);
 

@@ -1,4 +1,4 @@
-/// What contact holds, and at what cost.
+/// Section "contact": intersections, friction, rest and momentum.
 
 #include <fmt/core.h>
 

@@ -14,11 +14,11 @@ namespace weft::engine::lab {
 namespace {
 
 constexpr double kThickness = 1e-3;              // [m]
-constexpr double kLayerGap = 1.02 * kThickness;  // so that only neighbours are near each other [m]
+constexpr double kLayerGap = 1.02 * kThickness;  // only neighbouring sheets are close [m]
 constexpr double kSpacing = 0.01;                // of the sheets' particles [m]
 constexpr double kStep = 1.0 / 240;              // [s]
 
-/// Sheets of 1 mm that lie on each other and on the floor, each turned against the one below.
+/// A stack of sheets of 1 mm on the floor, each rotated against the one below.
 struct Stack {
   std::shared_ptr<const ClothModel> model;
   std::vector<ClothState> states;
@@ -28,7 +28,7 @@ struct Stack {
   ContactSystem contact;
 };
 
-/// Layer `layer` of a stack; `stretch` is 1, or another width, so that everything has moved.
+/// Layer `layer` of a stack; another `stretch` than 1 changes the width, so that everything has moved.
 ClothState make_layer(const ClothTopology& topology, int layer, double stretch) {
   constexpr double kTurn_deg = 17;
   const auto [s, c] = sin_cos_deg(kTurn_deg * layer);
@@ -51,7 +51,7 @@ void build_stack(int layers, int cells, Stack& stack) {
   stack.is_pinned.assign(stack.model->num_particles(), 0);
 }
 
-/// One step under gravity without springs: what contact alone takes [s].
+/// Time of a step under gravity without springs: contact only [s].
 double time_step(Stack& stack, double stretch) {
   std::vector<ContactCloth> cloths;
   for (std::size_t k = 0; k < stack.states.size(); ++k) {
@@ -74,7 +74,7 @@ double time_step(Stack& stack, double stretch) {
   return seconds + seconds_now() - begin;
 }
 
-/// Median of steps that go through `stretches` in turn.
+/// Median over steps that cycle through `stretches`.
 double measure(Stack& stack, std::vector<double> stretches, double seconds) {
   for (const double stretch : stretches) time_step(stack, stretch);
   std::vector<double> times;
@@ -87,8 +87,8 @@ double measure(Stack& stack, std::vector<double> stretches, double seconds) {
   return times[times.size() / 2];
 }
 
-/// Particles on the floor; particles over the inside of triangles of other sheets, and edges that cross, by
-/// less than twice the thickness. Counted with the tree, but not by the contact system.
+/// Number of close pairs, within twice the thickness: particles and floor, particles and interiors of
+/// triangles of other sheets, crossing edges. Counted with the tree, independently of the contact system.
 std::int64_t count_close_pairs(const Stack& stack) {
   constexpr double kReach = 2 * kThickness;
   std::vector<Vec3> x;

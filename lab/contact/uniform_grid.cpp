@@ -44,7 +44,7 @@ void UniformGrid::fill(const std::vector<Aabb>& boxes, double cell) {
   }
 }
 
-/// A pair that shares several cells counts in the one where the boxes' intersection begins.
+/// A pair in several cells is reported only in the cell of the lower corner of the boxes' intersection.
 void UniformGrid::find_self_pairs(const std::vector<Aabb>& boxes, const std::vector<AabbTree::Keys>& keys,
                                   PairSearch& search) const {
   search.pairs.clear();

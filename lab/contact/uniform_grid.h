@@ -1,5 +1,5 @@
 #pragma once
-/// The other family of the paper: space cut into equal cells. A peer for the tree in benchmarks, no more.
+/// Uniform grid, the other broad phase of the paper. Used only for comparison with the tree in benchmarks.
 
 #include <cstdint>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace weft::engine::lab {
 
-/// Every box is listed in each cell that it touches. The lists stand one after the other, sorted by a hash of
-/// the cell, and boxes are compared with the others of their cell. Filled anew whenever boxes have moved.
+/// Spatial hashing: every box is listed in each cell that it overlaps. The lists are contiguous, sorted by a
+/// hash of the cell; boxes are compared within their cells. Rebuilt whenever boxes have moved.
 class UniformGrid {
  public:
   /// `cell` is the side of a cell [m].

@@ -1,4 +1,4 @@
-/// What the paper does not say.
+/// Findings that are not in the paper: filtered gravity, a lost damping term, a sign error.
 
 #include <fmt/core.h>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s²]
 constexpr double kPi = 3.141592653589793;
 
-/// What Eq. 16 makes of a uniform acceleration in the first step from rest, for every particle, as a share.
+/// Share of a uniform acceleration that Eq. 16 gives to every particle in the first step from rest.
 std::vector<double> predict_shares(const ClothModel& model, double step) {
   const auto n = model.mass.size();
   std::vector<double> a(n), sum(n, 0.0), share(n);
@@ -33,12 +33,13 @@ std::vector<double> predict_shares(const ClothModel& model, double step) {
   return share;
 }
 
-/// By how much a free swing of two particles grows in a step of ω h = x: its amplitude, (extension, relative
-/// velocity / ω), the largest within a period, over that of the first period. 0: gone within a period.
+/// Growth factor per step, ω h = x, of the amplitude of a free oscillation of two particles. Amplitude: norm
+/// of (extension, relative velocity / ω), maximum over a period, relative to the first period. 0: it dies out
+/// within a period.
 double measure_growth(const std::string& name, double x) {
   constexpr double kMass = 0.1, kLength = 1, kStretch = 1e-3, kOmega = 10;
   constexpr int kSteps = 600;
-  constexpr double kRounding = 0.02;  // of the first amplitude: what floats still tell well
+  constexpr double kRounding = 0.02;  // of the first amplitude: resolution of floats
   HungCloth pair =
       make_chain({{0, 0, 0}, {0, kLength + kStretch, 0}}, kMass, kLength, kMass * kOmega * kOmega / 2);
   pair.environment.gravity = Vec3::Zero();
@@ -62,7 +63,7 @@ double measure_growth(const std::string& name, double x) {
   return last == 0 ? 0 : std::pow(largest(last) / largest(0), 1.0 / static_cast<double>(last));
 }
 
-/// |λ| of BDF2: (3/2 − i x) z² − 2 z + 1/2 = 0, the root that goes to 1 with x.
+/// |λ| of BDF2: (3/2 − i x) z² − 2 z + 1/2 = 0, the root that tends to 1 as x tends to 0.
 double bdf2_growth(double x) {
   const std::complex<double> lead(1.5, -x);
   return std::abs((2.0 + std::sqrt(4.0 - 2.0 * lead)) / (2.0 * lead));

@@ -1,4 +1,4 @@
-/// What the paper hypotheses.
+/// The claims of the paper.
 
 #include <fmt/core.h>
 
@@ -29,10 +29,10 @@ constexpr int kShearSide = 33;  // particles
 
 struct ShearModel {
   std::string name, springs;
-  double share = 1;  // of the shear stiffness given, per diagonal
+  double share = 1;  // of the given shear stiffness, per diagonal
 };
 
-/// A second of the hung sheet, by the solver in small steps, so that only the springs differ.
+/// A second of the hung sheet, solved in small steps, so that only the springs differ.
 std::vector<Frame> swing(const ShearModel& model, double stiffness) {
   constexpr int kFrames = 60, kSteps = 4, kIterations = 40;
   HungCloth cloth = make_hung_sheet(
@@ -70,8 +70,7 @@ double mean_over(const std::vector<Frame>& frames, const Value& value) {
 
 // ---- stability
 
-/// Whether a sheet that hangs still but for a tremble of 0.1 m/s, without gravity, stays within a few metres
-/// for 300 steps.
+/// Whether a sheet without gravity, with random velocities of 0.1 m/s, stays within 10 m for 300 steps.
 bool is_stable(const IntegratorSettings& settings, const HungCloth& start, double step) {
   constexpr double kTremble = 0.1, kFar = 10;
   constexpr int kSteps = 300;
@@ -94,7 +93,7 @@ bool is_stable(const IntegratorSettings& settings, const HungCloth& start, doubl
 
 constexpr double kLongestStep = 0.25;  // [s]
 
-/// By halving, to 3 %; kLongestStep if even that is stable [s].
+/// Bisection to 3 %; kLongestStep if that is stable [s].
 double find_stability_limit(const IntegratorSettings& settings, const HungCloth& cloth) {
   if (is_stable(settings, cloth, kLongestStep)) return kLongestStep;
   double low = 1e-6, high = kLongestStep;
@@ -107,7 +106,7 @@ double find_stability_limit(const IntegratorSettings& settings, const HungCloth&
 
 // ---- time
 
-/// Processor time of a step, the least of a few [ms].
+/// Processor time of a step, minimum of a few [ms].
 template <class Step>
 double least_ms(int times, const Step& step) {
   double least = 1e300;
@@ -315,7 +314,7 @@ Hypothesis linear_cost(const SectionOptions& options) {
     PlotSeries series{name, {}};
     std::vector<std::string> row{"`" + name + "`"};
     for (const int side : sides) {
-      if (name == "desbrun" && side > 128) {  // its factorisation alone would take minutes
+      if (name == "desbrun" && side > 128) {  // factorisation takes minutes
         row.emplace_back("–");
         continue;
       }

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to lab/: the hypotheses of `weft study paper`, in the order of its section.
+/// Private to lab/: the hypotheses of `weft study paper`, in the order of the section.
 
 #include "lab/report/sections.h"
 

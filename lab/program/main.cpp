@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   using namespace weft::engine;
   int exit_code = app::kDone;
-  // `weft study` starts this program under its own name.
+  // `weft study` starts this program with its own name as argv[0].
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   CLI::App laboratory{"The laboratory of Weft: tests of fabrics, the study, benchmarks", name};
   laboratory.set_version_flag("--version", kVersion);

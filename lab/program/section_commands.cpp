@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 struct SectionCommand {
   std::string name, about;
   Section (*study)(const SectionOptions&);
-  double usual_seconds, usual_quick_seconds;  // for the remaining time
+  double usual_seconds, usual_quick_seconds;  // for estimates of the remaining time
 };
 
 const std::vector<SectionCommand>& section_commands() {
@@ -77,7 +77,7 @@ SectionOptions section_options(const ReportOptions& options) {
   return section;
 }
 
-/// In general terms, without machine names.
+/// A general description, without machine names.
 std::string describe_machine() {
   return fmt::format("a machine with {} processors and {} instructions", num_processors(),
                      to_string(simd_level()));
@@ -116,7 +116,7 @@ void write_report(const fs::path& folder, const Report& report) {
   write_file(folder / "study.html", to_html(report, folder));
 }
 
-/// With --json one object on standard output, and nothing else.
+/// With --json only one object on standard output.
 void run_section(const SectionCommand& command, const ReportOptions& options) {
   if (!options.out.empty()) make_folder(options.out);
   const Section section = run_study(command, options);
@@ -128,7 +128,7 @@ void run_section(const SectionCommand& command, const ReportOptions& options) {
   fmt::print("{}", options.json ? to_json(section) : to_markdown(report, "."));
 }
 
-/// A section of an earlier run in the folder, of this version and with the same quick setting.
+/// The section from an earlier run in the folder, if version and quick setting are the same.
 std::optional<Section> find_section(const SectionCommand& command, const ReportOptions& options) {
   const fs::path file = options.out / (command.name + ".json");
   if (options.fresh || !fs::exists(file)) return std::nullopt;

@@ -70,7 +70,7 @@ void print_warnings(const Findings& result) {
   for (const std::string& warning : result.warnings) say("warning: " + warning);
 }
 
-/// With --json one object on standard output, and nothing else; all text goes to standard error.
+/// With --json only one object on standard output; all text goes to standard error.
 void run_test(const std::string& name, const Test& test, const StudyOptions& options) {
   const FabricPreset preset = load_fabric(options.fabric);
   if (!options.out.empty()) make_folder(options.out);

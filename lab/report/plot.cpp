@@ -15,7 +15,7 @@ namespace {
 constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
 constexpr double kLeft = 60, kTop = 40, kPitchX = kWidth + 90, kPitchY = kHeight + 95;
 constexpr double kLegendPitch = 20;
-constexpr std::size_t kMostDots = 40;  // longer series are a line alone
+constexpr std::size_t kMostDots = 40;  // longer series have no dots
 constexpr const char* kColours[] = {"#c0392b", "#2060b0", "#2e8b57", "#8e44ad",
                                     "#d08000", "#555555", "#10a0a0", "#a06040"};
 
@@ -25,7 +25,7 @@ std::string escape(const std::string& text) {
   return safe;
 }
 
-/// Around all values of all panels, so that panels can be compared.
+/// The range of all values of all panels, so that panels can be compared.
 class Axis {
  public:
   template <class Value>
@@ -45,10 +45,10 @@ class Axis {
     high_ = pitch_ * std::ceil(high / pitch_);
   }
 
-  /// 0 … 1
+  /// Position along the axis, 0 to 1.
   double place(double value) const { return (along(value) - low_) / (high_ - low_); }
 
-  /// Values that get a line and a number.
+  /// Values with a grid line and a number.
   std::vector<double> ticks() const {
     std::vector<double> ticks;
     const int n = static_cast<int>(std::lround((high_ - low_) / pitch_));
@@ -62,7 +62,7 @@ class Axis {
  private:
   double along(double value) const { return scale_ == PlotScale::logarithmic ? std::log10(value) : value; }
 
-  /// 1, 2 or 5 times a power of ten, not less than `least`.
+  /// 1, 2 or 5 times a power of ten, at least `least`.
   static double round_pitch(double least) {
     const double power = std::pow(10, std::floor(std::log10(least)));
     for (const double digit : {1.0, 2.0, 5.0}) {
@@ -165,7 +165,7 @@ class SvgWriter {
     }
   }
 
-  /// Where each name of the legend begins, and in which row: as many side by side as fit.
+  /// Position of a name of the legend; rows break at the width of the plot.
   struct LegendPlace {
     double x;
     int row;

@@ -10,7 +10,7 @@ namespace weft::engine::lab {
 
 struct PlotPoint {
   double x = 1, y = 1;  // > 0 on logarithmic axes
-  std::string label;    // shown by the pointer, where the picture is looked at by itself
+  std::string label;    // tooltip, if the SVG is opened as a document
 };
 
 struct PlotSeries {
@@ -26,8 +26,8 @@ struct PlotPanel {
 enum class PlotScale { logarithmic, linear };
 
 enum class PlotLine {
-  along_best,   // joins the points that none on the left of them beats (lower is better)
-  through_all,  // joins all of them
+  along_best,   // joins the Pareto frontier: points lower than all on their left
+  through_all,  // joins all points
 };
 
 struct Plot {
@@ -38,13 +38,13 @@ struct Plot {
   PlotLine line = PlotLine::along_best;
 };
 
-/// Two panels side by side, as many rows as needed.
+/// Rows of two panels.
 std::string to_svg(const Plot& plot);
 
 /// Throws InputError if the file cannot be written.
 void write_svg(const Plot& plot, const std::filesystem::path& file);
 
-/// The slope of the straight line nearest to the points (log x, log y).
+/// The slope of the least-squares line through the points (log x, log y).
 double fit_exponent(const std::vector<PlotPoint>& points);
 
 }  // namespace weft::engine::lab

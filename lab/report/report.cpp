@@ -82,7 +82,7 @@ Table table_of(const std::vector<Metric>& figures) {
   return table;
 }
 
-/// All of a hypothesis's tables, its figures first.
+/// All tables of a hypothesis, the metrics first.
 std::vector<Table> tables_of(const Hypothesis& hypothesis) {
   std::vector<Table> tables;
   if (!hypothesis.found.metrics.empty()) tables.push_back(table_of(hypothesis.found.metrics));
@@ -153,7 +153,7 @@ std::string escape(const std::string& text) {
   return safe;
 }
 
-/// The little Markdown there is in texts: `code`, **strong** and *emphasis*.
+/// Converts the Markdown of texts: `code`, **strong** and *emphasis*.
 std::string inline_html(const std::string& text) {
   std::string html = escape(text);
   const auto mark = [&html](const std::string& sign, const std::string& tag) {

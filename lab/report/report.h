@@ -1,5 +1,5 @@
 #pragma once
-/// The report of a study, and its three forms: JSON, Markdown, and one HTML page that needs no other file.
+/// The report of a study, and its three formats: JSON, Markdown, and one self-contained HTML page.
 ///
 ///     Report ── Section ── Hypothesis ── Findings: metrics, tables, pictures
 ///
@@ -16,15 +16,15 @@
 namespace weft::engine::lab {
 
 struct Metric {
-  std::string name;  // unique in its section, as JSON names it
+  std::string name;  // unique in its section; key in JSON
   double value = 0;
   std::string unit;                     // "1" for a pure number
-  std::string aim = {};                 // what it is compared with, in words; empty: nothing
-  double tolerance = 0;                 // of another run, quick or full, in its unit; 0: any
-  std::optional<double> expected = {};  // empty: nothing is expected
-  double allowed = 0;                   // |value − expected| at most
+  std::string aim = {};                 // target as text; empty: none
+  double tolerance = 0;                 // for the value of another run, quick or full, in its unit; 0: any
+  std::optional<double> expected = {};  // empty: no expected value
+  double allowed = 0;                   // maximum of |value − expected|
 
-  bool is_as_expected() const;  // true where nothing is expected
+  bool is_as_expected() const;  // true if there is no expected value
 };
 
 /// A metric with an expected value.
@@ -32,7 +32,7 @@ Metric expect(std::string name, double value, std::string unit, double expected,
 
 struct Table {
   std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;  // of as many cells as the head
+  std::vector<std::vector<std::string>> rows;  // as many cells as in the head
   std::string title = {};
 };
 
@@ -60,7 +60,7 @@ enum class Verdict {
 /// A hypothesis of the paper, or of Weft, and its test.
 struct Hypothesis {
   std::string title;
-  std::string source;  // who states it, and where
+  std::string source;  // author and place of the statement
   Verdict verdict = Verdict::finding;
   std::vector<std::string> text;  // paragraphs of Markdown: the test and its outcome
   Findings found;
@@ -72,7 +72,7 @@ struct Section {
   std::string introduction;
   std::string version;    // of Weft
   bool is_quick = false;  // smaller cloths, fewer settings
-  double seconds = 0;     // that it took [s]
+  double seconds = 0;     // run time [s]
   std::vector<Hypothesis> hypotheses;
 };
 
@@ -82,22 +82,22 @@ struct Report {
   std::vector<Section> sections;
 };
 
-/// As `"figures": {"name": value, …}`, their units, and every hypothesis (`"claims"`) with its verdict.
+/// Metrics as `"figures": {"name": value, …}`, their units, and hypotheses as `"claims"` with their verdicts.
 std::string to_json(const Section& section);
 
-/// As `"chapters": [ … ]`, and where they were made.
+/// Sections as `"chapters": [ … ]`, with version and machine.
 std::string to_json(const Report& report);
 
-/// Reads what to_json() wrote. Throws InputError for anything else.
+/// Reads the output of to_json(). Throws InputError for anything else.
 Section section_from_json(const std::string& json, const std::string& source);
 
-/// Hypotheses and verdicts, as plain lines.
+/// Hypotheses and verdicts, one line each.
 std::string summary(const Report& report);
 
-/// Pictures are linked by their file names, in the folder `pictures`.
+/// Pictures are linked by file name, in the folder `pictures`.
 std::string to_markdown(const Report& report, const std::string& pictures);
 
-/// Pictures are read from `folder` and put into the page. Throws InputError if one is missing.
+/// Pictures are read from `folder` and embedded. Throws InputError if one is missing.
 std::string to_html(const Report& report, const std::filesystem::path& folder);
 
 /// `holds`, `holds in part`, `does not hold`, `finding`.

@@ -1,5 +1,5 @@
 #pragma once
-/// The sections of the study: each tests the hypotheses of one subject and tells what came out. Whoever runs them
+/// The sections of the study: each tests the hypotheses of one subject and returns the results. The caller
 /// fills in version, is_quick and seconds.
 
 #include <functional>
@@ -15,9 +15,9 @@ struct SectionOptions {
   bool quick = false;                           // smaller cloths, fewer settings: seconds instead of minutes
   int threads = 1;                              // of simulations that are not timed [1]
   std::filesystem::path cache;                  // for references; empty: default_cache_folder()
-  std::function<void(const std::string&)> say;  // told what is being done; may be empty
-  /// Paints frames of an animation, side by side, into a file of the report's folder; its first cloth as
-  /// springs, from above, if a topology is given. Empty: no pictures.
+  std::function<void(const std::string&)> say;  // progress messages; may be empty
+  /// Draws frames of an animation, in a row, to a file of the report's folder. With a topology, the first
+  /// cloth is drawn as springs, from above. Empty: no pictures.
   std::function<void(const std::string& file, const Animation& animation, const std::vector<int>& frames,
                      std::shared_ptr<const ClothTopology> springs)>
       paint;
@@ -27,13 +27,13 @@ struct SectionOptions {
   }
 };
 
-/// The claims of the paper, and its omissions.
+/// The claims of the paper, and its errata.
 Section study_paper(const SectionOptions& options);
 
-/// How right every integrator is, for how much time; convergence, energy, frequencies.
+/// Error against time of every integrator; convergence, energy, frequencies.
 Section study_accuracy(const SectionOptions& options);
 
-/// What contact holds, and at what cost.
+/// Accuracy and cost of contact.
 Section study_contact(const SectionOptions& options);
 
 /// One fabric on many meshes and at many steps.

@@ -14,15 +14,15 @@ constexpr double kPlateRadius = 0.09, kSpecimenRadius = 0.15;  // of ISO 9073-9 
 constexpr int kRings = 30;
 constexpr double kPi = 3.141592653589793;
 constexpr double kCrease = 2e-4;       // of the specimens at the start [m]
-constexpr double kCrookedness = 0.25;  // of random meshes, as a share of the rings' distance [1]
+constexpr double kCrookedness = 0.25;  // of random meshes, as a share of the distance of rings [1]
 constexpr double kFps = 960,
-                 kMostSeconds = 8;   // so many steps, for how folds form decides where they come to rest
-constexpr double kAirRate = 10;      // at which air brakes the fabric: about half of critical [1/s]
+                 kMostSeconds = 8;   // short steps, because the formation of folds determines the final shape
+constexpr double kAirRate = 10;      // damping rate by air drag: about half of critical [1/s]
 constexpr double kRestSpeed = 1e-3;  // [m/s]
 constexpr double kPixel = 5e-4;      // of the shadow [m]
 
-/// A specimen on its plates: the stencils of the last held ring bend the cloth half a ring around it, so that
-/// the plates' edge lies half a ring inside.
+/// A specimen on its plates. Bending stencils of the last held ring extend half a ring beyond it. Therefore
+/// the edge of the plates is half a ring further in.
 struct Disc {
   TriangleMesh mesh;
   std::vector<char> is_held;  // (num_vertices)
@@ -45,7 +45,7 @@ Disc make_disc(const SpecimenSettings& settings) {
   Random random(1);
   const int num_held = static_cast<int>(std::count(disc.is_held.begin(), disc.is_held.end(), 1));
   const double size = kCrookedness * kSpecimenRadius / rings;
-  for (int i = num_held; i < disc.mesh.num_vertices() - disc.num_hem; ++i)  // cloth bends over a round edge
+  for (int i = num_held; i < disc.mesh.num_vertices() - disc.num_hem; ++i)  // the plates' edge stays round
     disc.mesh.positions[i] += Vec3(random.uniform(-size, size), 0, random.uniform(-size, size));
   return disc;
 }
@@ -95,7 +95,7 @@ bool settle(World& world) {
   return false;
 }
 
-/// How often the hem goes from above its mean height to below.
+/// Number of crossings of the hem from above to below its mean height.
 int count_nodes(const ClothState& state, int num_hem) {
   const std::size_t first = state.x.size() - static_cast<std::size_t>(num_hem);
   double mean = 0;

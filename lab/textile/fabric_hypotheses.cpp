@@ -13,7 +13,7 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
+constexpr double kElastica = 0.88473;  // H/W at a chord angle of 41.5°
 
 const char* name_of(SpecimenMesh mesh) { return mesh == SpecimenMesh::grid ? "grid" : "random"; }
 
@@ -23,10 +23,10 @@ double find_metric(const Findings& result, const std::string& name) {
   return found->value;
 }
 
-/// A mesh that fabric is laid on.
+/// A mesh of the comparison.
 struct MeshCase {
   std::string name;
-  int cells;  // along the longer side, or as many vertices in rings
+  int cells;  // along the longer side; discs have about as many vertices, in rings
   SpecimenMesh mesh;
 };
 
@@ -39,7 +39,7 @@ std::vector<MeshCase> five_meshes(bool quick) {
           {"random, fine", 48, SpecimenMesh::random}};
 }
 
-/// Rings of a disc with about as many vertices as a grid of cells × cells; 45 at most, or it takes minutes.
+/// Rings of a disc with about as many vertices as a grid of cells × cells; at most 45, to limit run time.
 int rings_like(int cells) { return std::min(45, static_cast<int>(std::lround(cells / std::sqrt(3.0)))); }
 
 Specimen settle_hammock(const Fabric& fabric, const MeshCase& mesh, Findings& result) {
@@ -54,11 +54,11 @@ double spread_of(const std::vector<double>& values) {
 }
 
 struct Swing {
-  double strain = 0;        // largest principal stretch less one, over all frames [1]
+  double strain = 0;        // maximum principal stretch minus one, over all frames [1]
   double newton_steps = 0;  // per frame [1]
 };
 
-/// A sheet of a metre for a second after it is let go from the horizontal, held by two corners.
+/// A sheet of a metre, held by two corners, for a second after its release from horizontal.
 Swing swing_sheet(const Fabric& fabric, int cells, SpecimenMesh mesh) {
   constexpr int kFrames = 60;
   const Grid grid{.size_x = 1, .size_z = 1, .cells_x = cells, .cells_z = cells};
@@ -103,7 +103,7 @@ Findings fabric_constants(const SectionOptions& options) {
       double worst = 0;
       for (const char* name : names) {
         const Fabric& f = find_fabric(name);
-        if (has_springs && f.c11 <= f.g) continue;  // springs cannot be it
+        if (has_springs && f.c11 <= f.g) continue;  // not representable by springs
         const std::string kind = std::string(has_springs ? "springs, " : "triangle, ") + name_of(mesh);
         options.tell(std::string(name) + ", " + kind);
         const Findings tensile = test_tensile(f, specimen);
@@ -116,7 +116,7 @@ Findings fabric_constants(const SectionOptions& options) {
       }
       const std::string error =
           std::string(has_springs ? "springs_" : "") + "stiffness_error_" + name_of(mesh);
-      const bool is_expected = is_grid || !has_springs;  // edges of random meshes do what they can
+      const bool is_expected = is_grid || !has_springs;  // springs on random meshes are approximate
       result.metrics.push_back(is_expected ? expect(error, 100 * worst, "%", 0, is_grid ? 1.0 : 2.0)
                                            : Metric{error, 100 * worst, "%"});
     }

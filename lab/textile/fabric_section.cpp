@@ -1,4 +1,4 @@
-/// The section on fabrics: a hypothesis holds if its metrics are as expected.
+/// Section "fabric": a hypothesis holds if its metrics are as expected.
 
 #include "lab/report/sections.h"
 #include "lab/textile/fabric_hypotheses.h"
@@ -37,7 +37,7 @@ Verdict verdict_of(const std::vector<Metric>& metrics) {
   return met == 0 ? Verdict::fails : Verdict::holds_in_part;
 }
 
-/// Paints the specimens, or leaves them out where nothing is painted.
+/// Draws the specimens; without a painter they are omitted.
 std::vector<ReportPicture> paint(std::vector<ReportPicture> pictures, const SectionOptions& options) {
   std::vector<ReportPicture> painted;
   for (ReportPicture& picture : pictures) {

@@ -24,7 +24,7 @@ double bessel(double x) {
   return sum;
 }
 
-/// At rest, hung by the edge x = 0 so that x grows downwards.
+/// A strip at rest, hung by the edge x = 0, with x downwards.
 Specimen hang_strip(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh) {
   Specimen specimen = make_rectangle(fabric, grid, mesh);
   specimen.environment.gravity = {0, -kGravity, 0};
@@ -39,7 +39,7 @@ Specimen hang_strip(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh) {
   return specimen;
 }
 
-/// Where the lower edge is, on average [m].
+/// Mean x of the lower edge [m].
 double edge_x(const Specimen& specimen, const Grid& grid) {
   double sum = 0;
   for (int j = 0; j <= grid.cells_z; ++j) sum += specimen.state.position(grid.index(grid.cells_x, j)).x();
@@ -82,7 +82,7 @@ double measure_swing_period(const Fabric& fabric, int cells, SpecimenMesh mesh, 
   const auto jobs = make_serial_jobs();
   const double step = 1.0 / steps_per_second;
   double before = edge_x(specimen, grid), first = 0;
-  int crossings = 0;  // a whole swing, not half of one: the middle may be a little off
+  int crossings = 0;  // three for a full period; half periods differ if the centre is offset
   for (double time = 0; time < 3; time += step) {
     integrator->advance(*specimen.model, specimen.environment, step, *jobs, specimen.state);
     const double now = edge_x(specimen, grid);

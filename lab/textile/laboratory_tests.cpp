@@ -10,16 +10,16 @@ namespace {
 
 constexpr double kGravity = 9.81;
 constexpr double kDegree = 3.141592653589793 / 180;
-constexpr double kPeirceLoad = 8.004;  // ρ g L³/B at which the elastica's chord sinks by 41.5°
+constexpr double kPeirceLoad = 8.004;  // ρ g L³/B at which the elastica's chord angle is 41.5°
 constexpr int kStripCells = 25, kStripWidth = 4;
-constexpr int kClampedColumn = 1;   // the last one that is held; the clamp's edge is half a cell before
-constexpr double kSheetSize = 0.1;  // of what is stretched and sheared [m]
+constexpr int kClampedColumn = 1;   // the last held column; the edge of the clamp is half a cell before it
+constexpr double kSheetSize = 0.1;  // of tensile and shear specimens [m]
 constexpr int kSheetCells = 10;
 constexpr double kStrain = 1e-3;
 
 constexpr double kPeirceAngle = 41.5 * kDegree;
 
-/// How bending length goes with the chord's angle.
+/// Peirce's function: bending length against chord angle.
 double peirce(double chord) { return std::cbrt(std::cos(chord / 2) / (8 * std::tan(chord))); }
 
 int or_default(int value, int otherwise) { return value > 0 ? value : otherwise; }
@@ -46,7 +46,7 @@ void warn_unsettled(bool is_settled, Findings& result) {
   if (!is_settled) result.warnings.emplace_back("the specimen did not come to rest; results are rough");
 }
 
-/// A strip that is clamped up to the middle of its first cells.
+/// A strip clamped up to the middle of its first cells.
 struct Strip {
   Specimen specimen;
   double cell = 0, overhang = 0;
@@ -74,7 +74,7 @@ Strip make_strip(const Fabric& fabric, const SpecimenSettings& settings, double 
   return strip;
 }
 
-/// Pulls every border vertex to where a homogeneous deformation takes it, and lets the others settle.
+/// Moves every border vertex by a homogeneous deformation, and lets the others come to rest.
 Specimen make_deformed(const Fabric& fabric, const SpecimenSettings& settings,
                        const std::function<Vec3(const Vec3&)>& deform, Findings& result) {
   const int cells = or_default(settings.resolution, kSheetCells);
@@ -89,7 +89,7 @@ Specimen make_deformed(const Fabric& fabric, const SpecimenSettings& settings,
   return specimen;
 }
 
-/// What the clamp along x = size (axis 0) or z = size (axis 2) is pulled with, per width [N/m].
+/// Force per width at the clamp along x = size (axis 0) or z = size (axis 2) [N/m].
 Vec3 pull(const Specimen& specimen, int axis) {
   const std::vector<Vec3> force = compute_membrane_forces(specimen);
   Vec3 sum = Vec3::Zero();
@@ -100,7 +100,7 @@ Vec3 pull(const Specimen& specimen, int axis) {
 }
 
 /// Two entries of C from a stretch along x or z: C_aa and C_ab. The second Piola–Kirchhoff stress is C times
-/// Green's strain e + e²/2; a force per width at rest is that, times 1 + e along the pull.
+/// Green's strain e + e²/2. The force per rest width is the stress, times 1 + e along the pull.
 std::array<double, 2> stretch(const Fabric& fabric, const SpecimenSettings& settings, int axis,
                               Findings& result) {
   const Specimen specimen = make_deformed(
@@ -188,7 +188,7 @@ Findings test_buckling(const Fabric& fabric, const SpecimenSettings& settings) {
     (tips(middle) ? high : low) = middle;
   }
   const double load = std::sqrt(low * high);
-  tips(high);  // the picture is of a strip that has just tipped
+  tips(high);  // for the picture: a strip just after tipping
   result.metrics = {
       {"critical_load", load, "1"},
       {"critical_length", std::cbrt(load * fabric.bend_warp / (fabric.density * kGravity)), "m"}};

@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kIterations = 60;    // of conjugate gradients per step
 constexpr double kSettled = 1e-5;  // of the size
-constexpr int kStepsPerLook = 30;  // between two looks at whether it has settled
+constexpr int kStepsPerLook = 30;  // between two checks for rest
 constexpr int kMostLooks = 200;
-constexpr double kStepPerRoot = 0.04;  // step over the root of the size: a fortieth of a strip's swing [s/√m]
+constexpr double kStepPerRoot = 0.04;  // step over √size: a fortieth of a strip's period [s/√m]
 constexpr std::uint64_t kMeshSeed = 1;
 
 std::vector<Vec3> positions(const ClothState& state) {
@@ -39,12 +39,12 @@ TriangleMesh make_triangles(const Grid& grid, SpecimenMesh mesh, int straight_co
   return triangles;
 }
 
-/// Without springs.
+/// A material without springs.
 ClothMaterial bare_material(const Fabric& fabric) {
   return {.density = fabric.density, .structural = 0, .shear = 0, .bend = 0};
 }
 
-/// A fabric on its mesh.
+/// Model data of a fabric on a mesh.
 struct Laid {
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;

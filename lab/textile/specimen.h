@@ -1,5 +1,5 @@
 #pragma once
-/// Pieces of fabric as they are laid in testing machines.
+/// Specimens of fabric for simulated testing machines.
 
 #include <functional>
 
@@ -16,7 +16,7 @@ enum class SpecimenMesh {
 
 enum class SpecimenMembrane {
   triangle,  // elements
-  springs,   // edges that stand for the fabric as well as they can
+  springs,   // on edges: an approximation of the fabric
 };
 
 struct SpecimenSettings {
@@ -25,7 +25,7 @@ struct SpecimenSettings {
   SpecimenMembrane membrane = SpecimenMembrane::triangle;  // of tensile and shear tests
 };
 
-/// A piece of fabric without contact, and what acts on it.
+/// A piece of fabric without contact, with its loads.
 struct Specimen {
   std::shared_ptr<const ClothModel> model;
   ClothState state;
@@ -35,21 +35,21 @@ struct Specimen {
 };
 
 struct RectangleOptions {
-  double warp_deg = 0;  // warp is turned from x by so much; a multiple of 90° on a grid: a model of stencils
-  int straight_column = 0;  // of a random mesh's grid: stays in line, to be clamped up to and bend over
-  SpecimenMembrane membrane = SpecimenMembrane::triangle;  // springs on a grid: warp_deg = 0 alone
+  double warp_deg = 0;      // angle from x to warp; multiples of 90° on a grid use the grid's stencils
+  int straight_column = 0;  // of a random mesh: this column stays straight, as the edge of a clamp
+  SpecimenMembrane membrane = SpecimenMembrane::triangle;  // springs on a grid: only with warp_deg = 0
 };
 
 /// A rectangle in the x–z plane.
 Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh,
                         const RectangleOptions& options = {});
 
-/// Holds every particle for which `place` gives a place, by its position at rest [m].
+/// Pins every particle for which `place(rest position)` returns a target position [m].
 void clamp(Specimen& specimen, const std::function<std::optional<Vec3>(const Vec3&)>& place);
 
-/// Takes a specimen of this size [m] to rest with newton: where its motion is fastest it is stopped (kinetic
-/// damping), until nothing moves by more than a hundred-thousandth of the size in thirty steps. False if that
-/// did not come in six thousand steps.
+/// Brings a specimen of this size [m] to rest with newton and kinetic damping: velocities are reset at maxima
+/// of kinetic energy. At rest, nothing moves by more than a hundred-thousandth of the size in thirty steps.
+/// False after six thousand steps.
 bool settle(Specimen& specimen, double size);
 
 /// Internal force of the membranes, or of the springs, on each particle, in double precision (num_particles)

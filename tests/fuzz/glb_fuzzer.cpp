@@ -1,6 +1,6 @@
-/// .glb files: whatever the bytes are, they become an animation or an InputError.
-/// What comes is text to begin with, so that a fuzzer need not keep lengths in step: all up to the first zero
-/// is the JSON chunk, the rest the binary one.
+/// .glb files: any bytes become an animation or an InputError.
+/// The input begins as text: the bytes up to the first zero are the JSON chunk, the rest the binary chunk.
+/// The fuzzer therefore need not keep chunk lengths consistent.
 
 #include <algorithm>
 #include <cstddef>

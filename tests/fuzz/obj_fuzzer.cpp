@@ -1,4 +1,4 @@
-/// OBJ files: whatever the bytes are, they become a clean mesh or an InputError.
+/// OBJ files: any bytes become a clean mesh or an InputError.
 
 #include <cstddef>
 #include <cstdint>

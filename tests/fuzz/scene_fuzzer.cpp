@@ -1,4 +1,4 @@
-/// Scene files: whatever the bytes are, parse_scene returns a scene or throws SceneError.
+/// Scene files: for any bytes, parse_scene returns a scene or throws SceneError.
 /// Lines "# set: path.to.key=value" are overrides, as in tests/scene/broken.
 
 #include <cstddef>

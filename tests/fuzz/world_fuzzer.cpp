@@ -1,5 +1,5 @@
-/// Saved worlds: whatever the bytes are, they become a world that can step, or an InputError. The input is a list of
-/// edits of a saved world, three bytes each: where, and to what. The checksum fits again afterwards.
+/// Saved worlds: any bytes become a world that can step, or an InputError. The input is a list of edits of a
+/// saved world, three bytes each: position and value. The checksum is recomputed afterwards.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ std::vector<std::byte> make_bytes() {
   return world.save();
 }
 
-/// FNV-1a over all but the last eight bytes, which it becomes.
+/// Sets the last eight bytes to FNV-1a over all others.
 void seal(std::vector<std::byte>& bytes) {
   std::uint64_t sum = 0xcbf29ce484222325ULL;
   for (std::size_t i = 0; i + 8 < bytes.size(); ++i)

@@ -34,7 +34,7 @@ std::vector<fs::path> pages() {
   return found;
 }
 
-/// As GitHub and mkdocs make a heading's anchor: lower case, spaces to hyphens, no punctuation.
+/// The anchor of a heading on GitHub and in mkdocs: lower case, spaces to hyphens, no punctuation.
 std::string anchor_of(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {

@@ -1,4 +1,4 @@
-/// The house rule of ARCHITECTURE.md: includes only point down.
+/// Rule of ARCHITECTURE.md: includes only point down.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What each folder of src/weft may include, besides itself.
+/// Allowed includes of each folder of src/weft, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"core", {}},
     {"geometry", {"core"}},
@@ -43,7 +43,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"pictures", {"core", "geometry", "mesh", "model", "io", "render"}},
 };
 
-/// Folders of weft that a file includes from.
+/// Folders of src/weft from which a file includes.
 std::set<std::string> included_folders(const fs::path& file) {
   static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]weft/([a-z_]+)/)");
   std::set<std::string> folders;
@@ -72,7 +72,7 @@ TEST(Includes, OnlyPointDown) {
 }
 
 TEST(Includes, HaveNoCycleInTheRuleItself) {
-  // Each folder stands after all that it may include, in some order: take away those with nothing left below.
+  // Topological order: repeatedly remove a folder whose allowed includes are all removed.
   auto rest = kMayInclude;
   while (!rest.empty()) {
     const auto bottom = std::find_if(rest.begin(), rest.end(), [&](const auto& folder) {

@@ -1,7 +1,7 @@
 # cmake -DBUILD=… -DCONFIG=… -DLIBRARY=… -DNM=… -P exports_test.cmake
 #
-# Builds the shared library and compares the symbols of weft that it exports with exported_symbols.txt beside this
-# file. A symbol more or less is a change of the public interface: say so in CHANGELOG.md, and change the list.
+# Builds the shared library and compares its exported symbols of weft with exported_symbols.txt beside this file. Every
+# difference is a change of the public interface: note it in CHANGELOG.md, and update the list.
 
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)

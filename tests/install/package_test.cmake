@@ -1,7 +1,8 @@
 # cmake -DBUILD=… -DCONFIG=… -DTREE=… -DWORK=… -DGENERATOR=… -DCXX=… -P package_test.cmake
 #
-# Installs the build folder BUILD, moves what was installed, and uses it in its new place: the program with its scenes,
-# and the library from a project that knows the package alone. TREE is the source tree, WORK a folder for the results.
+# Installs the build folder BUILD, moves the installed files, and uses them in the new folder: the program with its
+# scenes, and the library from a project that uses only the package. TREE is the source tree, WORK a folder for the
+# results.
 
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
@@ -11,7 +12,7 @@ run(output ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${WOR
 set(prefix ${WORK}/moved)
 file(RENAME ${WORK}/installed ${prefix})
 
-# Nothing in the package leads back to where it was built.
+# The package contains no path of the build or source folder.
 file(GLOB_RECURSE package_files ${prefix}/*.cmake)
 expect("${package_files}" "weft-config.cmake" "the package is not installed")
 foreach(file IN LISTS package_files)
@@ -24,7 +25,7 @@ foreach(file IN LISTS package_files)
   endforeach()
 endforeach()
 
-# The program finds the scenes beside it, not those of the source tree: one of these exists nowhere else.
+# The program finds the installed scenes, not those of the source tree: one of these exists only here.
 unset(ENV{WEFT_SCENES})
 set(scenes ${prefix}/share/weft/scenes)
 file(COPY_FILE ${scenes}/paper/fig6_ball.toml ${scenes}/only_here.toml)

@@ -1,6 +1,6 @@
 # cmake -DTREE=… "-DFILES=a.a,b,…" -P paths_test.cmake
 #
-# No archive or program holds a path of the machine that it was built on.
+# No archive or program contains a path of the build machine.
 
 cmake_minimum_required(VERSION 3.25)
 string(REGEX REPLACE "([][+.*()^$?|\\])" "\\\\\\1" pattern "${TREE}/")

@@ -1,4 +1,4 @@
-# run(OUTPUT command…): the command's standard output in OUTPUT. If it fails, so does the test, telling all it said.
+# run(OUTPUT command…): the command's standard output in OUTPUT. If it fails, the test fails with its whole output.
 function(run output)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE said ERROR_VARIABLE complained RESULT_VARIABLE status)
   if(NOT status EQUAL 0)

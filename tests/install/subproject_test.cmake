@@ -1,7 +1,7 @@
 # cmake -DTREE=… -DWORK=… -DGENERATOR=… -DCXX=… -P subproject_test.cmake
 #
-# Configures a project that takes in the source tree TREE, in the ways that it may be taken in, without the packages
-# that each way must not need. What may exist then is checked by subproject/CMakeLists.txt.
+# Configures a project that includes the source tree TREE, in every supported way, without the packages that each way
+# must not need. subproject/CMakeLists.txt checks the targets.
 
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
@@ -15,7 +15,7 @@ function(check_subproject name targets missing_packages)
   endforeach()
   run(output ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/subproject -B ${build} -G ${GENERATOR}
       -DCMAKE_CXX_COMPILER=${CXX} -DTREE=${TREE} -DEXPECTED_TARGETS=${targets} ${disabled} ${ARGN})
-  # There is nothing to install: were there a rule, it would fail for want of built files, or leave something.
+  # No install rules: with one, the command would fail because of missing built files, or install a file.
   run(output ${CMAKE_COMMAND} --install ${build} --prefix ${build}/prefix)
   file(GLOB_RECURSE installed ${build}/prefix/*)
   expect("${installed}" "^$" "a subproject installs files")

@@ -52,7 +52,7 @@ std::string read_bytes(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What read_glb says of a file with these bytes.
+/// The error message of read_glb for a file with these bytes.
 std::string complaint(const std::string& bytes) {
   const std::string file = testing::TempDir() + "weft_broken.glb";
   std::ofstream(file, std::ios::binary) << bytes;
@@ -82,7 +82,7 @@ TEST(GlbReader, GivesBackWhatWasWritten) {
   EXPECT_EQ(read.cloths[0].frames[0], written.cloths[0].frames[0]);
   for (int k = 1; k < 5; ++k) {
     for (std::size_t i = 0; i < written.cloths[0].frames[k].size(); ++i) {
-      // The difference from the first frame, below 1, was rounded to float, and so was the sum.
+      // The difference from the first frame, below 1, is rounded to float, and so is the sum.
       EXPECT_NEAR(read.cloths[0].frames[k][i], written.cloths[0].frames[k][i], 1e-7);
     }
   }
@@ -163,7 +163,7 @@ TEST(GlbReader, NamesTheFileAndWhatIsWrong) {
   EXPECT_NE(changed("\"POSITION\"", "\"POTITION\"").find("no positions"), std::string::npos);
 }
 
-/// What parse_glb says of a file with this text and these numbers behind it.
+/// The error message of parse_glb for a file with this text, followed by these numbers.
 std::string complaint_of_parts(std::string text, std::string numbers) {
   const auto word = [](std::size_t value) {
     std::string bytes;
@@ -187,7 +187,7 @@ TEST(GlbReader, NamesWhatIsWrongWithFilesThatNobodyWouldWrite) {
   const std::string head = R"({"asset":{"version":"2.0"},)";
   EXPECT_NE(complaint_of_parts(head + R"("buffers":[]})", "1234").find("made.glb: has no cloth"),
             std::string::npos);
-  // tinygltf throws at an empty buffer, calls itself for each bracket, and reads whatever file it is told to.
+  // tinygltf throws for an empty buffer, recurses for each bracket, and reads every file that the text names.
   const std::string outside = testing::TempDir() + "weft_outside.bin";
   std::ofstream(outside) << "1234";
   const std::string broken[] = {

@@ -1,5 +1,4 @@
-// Every file that these tests write with success goes to WEFT_OUTPUT_DIR, for the Khronos validator to judge
-// (glb_validator_test.sh).
+// Successful tests leave their files in WEFT_OUTPUT_DIR, for the Khronos validator (glb_validator_test.sh).
 
 #include "weft/io/glb_writer.h"
 
@@ -115,8 +114,7 @@ TEST(GlbWriter, BlendsUnitNormalsThatFollowTheCloth) {
   for (size_t v = 0; v < normals.size(); v += 3) {
     const Vec3 normal(normals[v], normals[v + 1], normals[v + 2]);
     EXPECT_NEAR(normal.norm(), 1, 1e-6);
-    // The surface y = 0.1 sin(5 s + 1.4); the grid is coarse, so its normals are only near those of the
-    // surface.
+    // The surface y = 0.1 sin(5 s + 1.4); the normals of the coarse grid approximate those of the surface.
     const double slope = 0.5 * std::cos(5 * (flag.frames[2][v] - 0.02) + 1.4);
     const double cosine = std::abs(normal.dot(Vec3(-slope, 1, 0).normalized()));
     EXPECT_GT(cosine, 0.97);
@@ -148,7 +146,7 @@ TEST(GlbWriter, MovesBodiesByTheirPoses) {
   const auto model = write_and_read(
       "bodies", {.title = "", .cloths = {make_flag(4)}, .bodies = {make_ball(4), make_ball(1)}});
   const tinygltf::Animation& motion = model.animations[0];
-  ASSERT_EQ(motion.channels.size(), 3u);  // the weights, and two of the ball that moves
+  ASSERT_EQ(motion.channels.size(), 3u);  // the weights, and two of the moving ball
   EXPECT_EQ(motion.channels[1].target_path, "translation");
   EXPECT_EQ(motion.channels[2].target_path, "rotation");
   EXPECT_EQ(motion.channels[2].target_node, 1);
@@ -198,7 +196,7 @@ TEST(GlbWriter, TellsWhyAFileCannotBeWritten) {
   const Animation animation{.title = "", .cloths = {make_flag(1)}, .bodies = {}};
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "weft_glb_folder.glb";
   std::filesystem::create_directories(folder / "occupied");
-  EXPECT_THROW(write_glb(folder, animation), InputError);  // a folder is in the way
+  EXPECT_THROW(write_glb(folder, animation), InputError);  // a folder has this name
   EXPECT_FALSE(std::filesystem::exists(folder.parent_path() / ".weft_glb_folder.glb.partial"));
   try {
     write_glb(folder / "missing" / "a.glb", animation);

@@ -16,7 +16,7 @@ const std::string kFourVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TriangleMesh parse(const std::string& text) { return parse_obj(text, "x.obj").mesh; }
 
-/// The message that reading the text fails with.
+/// The error message for this text.
 std::string failure(const std::string& text) {
   try {
     parse(text);
@@ -41,7 +41,7 @@ std::string polygon_text(const std::vector<Vec3>& corners) {
   return text.str();
 }
 
-// ---- What is read ----
+// ---- Valid files ----
 
 TEST(ObjReader, KeepsTheFilesVertexOrder) {
   const TriangleMesh mesh = parse("v 9 9 9\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 2\nv 7 7 7\n");
@@ -98,7 +98,7 @@ TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
                                   "x.obj");
   EXPECT_TRUE(known.warnings.empty());
 
-  // As the garment files of Berkeley: `t` is no face, `vv` no vertex.
+  // As in the garment files of Berkeley: `t` is not a face, `vv` not a vertex.
   const ObjMesh garment = parse_obj("v 0 0 0\nvv 0 0 0\nv 1 0 0\nvv 1 0 0\nv 0 1 0\nf 1 2 3\nt 0\n", "x.obj");
   EXPECT_TRUE(garment.warnings.empty());
   EXPECT_EQ(garment.mesh.num_vertices(), 3);
@@ -170,7 +170,7 @@ TEST(ObjReader, SurvivesPolygonsThatAreNone) {
             2);  // overflow
 }
 
-// ---- What is refused ----
+// ---- Errors ----
 
 TEST(ObjReader, NamesTheLineOfWhatItRefuses) {
   const std::vector<std::pair<std::string, std::string>> cases = {

@@ -1,4 +1,4 @@
-/// Contact obeys the laws that have formulas; `weft bench contact` has the same experiments finer and longer.
+/// Contact experiments with analytic results; `weft bench contact` runs them finer and longer.
 
 #include "lab/contact/contact_experiments.h"
 
@@ -30,7 +30,7 @@ TEST(ContactExperiments, ADrumPullsByTheCapstanEquation) {
 }
 
 TEST(ContactExperiments, ABallTakesTheSheetAlongAsFarAsFrictionCan) {
-  // Whatever the mesh. Where the solve was not finished it was 0.78 to 1.56 of the law.
+  // For every mesh. An incomplete solve gives 0.78 to 1.56 of the analytic value.
   for (const int cells : {24, 32, 48}) {
     for (const double friction : {0.02, 0.03}) {
       const Spin spin = spin_ball({.cells = cells}, friction);
@@ -51,8 +51,7 @@ TEST(ContactExperiments, ATurntableTakesTheSheetAlongUntilFrictionIsAllUsedUp) {
     const Turntable fast = turn_table(setup, 0.1, 20);
     EXPECT_NEAR(fast.expected, 0.1 * 9.81 * (std::sqrt(2.0) + std::asinh(1.0)) / 0.3, 0.02 * fast.expected)
         << "of a square of 0.3 m; of 12 cells its inertia is 2/12² more";
-    // Implicit Euler, which contact takes part in, loses (ω h)² of a turning body's momentum per step: 1 % in
-    // all.
+    // Implicit Euler, with contact in the solve, loses (ω h)² of angular momentum per step: 1 % in total.
     EXPECT_NEAR(fast.acceleration, fast.expected, 0.025 * fast.expected) << integrator;
     EXPECT_NEAR(fast.torque, 1, 0.025) << integrator;
     EXPECT_NEAR(fast.friction.torque, fast.friction.torque_limit, 0.02 * fast.friction.torque_limit)
@@ -77,7 +76,7 @@ TEST(ContactExperiments, ASheetThatMovesTakesAnotherAlong) {
 TEST(ContactExperiments, TheAuditOfASheetOnABallAgreesWithItsAngularMomentum) {
   const Spin spin = spin_ball({.cells = 24}, 0.03);
   EXPECT_GT(spin.friction.sliding, 60 * 100) << "it slides all the time";
-  // What the solve has left over counts as the contacts' own.
+  // The residual of the solve counts as contact force.
   EXPECT_NEAR(spin.torque, 1, 0.1);
   EXPECT_NEAR(spin.friction.torque, spin.friction.torque_limit, 0.15 * spin.friction.torque_limit);
 }

@@ -1,4 +1,4 @@
-/// Laboratory tests give back what the fabric is made of, and one fabric is the same cloth on every mesh.
+/// Laboratory tests measure the fabric's stiffness, and one fabric behaves the same on every mesh.
 
 #include "lab/textile/laboratory_tests.h"
 
@@ -47,7 +47,7 @@ TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
   EXPECT_NEAR(figure(test_tensile(fabric, settings), "c11") / fabric.c11, 1, 0.01);
   EXPECT_NEAR(figure(test_tensile(fabric, settings), "c22") / fabric.c22, 1, 0.01);
   EXPECT_NEAR(figure(test_shear(fabric, settings), "g") / fabric.g, 1, 0.01);
-  // A finding: edges every way cannot be stiff along the threads and loose in shear.
+  // A limit of springs: edges in all directions cannot be stiff along the threads and soft in shear.
   settings.mesh = SpecimenMesh::random;
   const double c11 = figure(test_tensile(fabric, settings), "c11") / fabric.c11;
   EXPECT_GT(c11, 0.3);
@@ -55,7 +55,7 @@ TEST(Studies, SpringsOfAGridGiveTheStiffnessBackAndThoseOfRandomEdgesCannot) {
 }
 
 TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
-  constexpr double kElastica = 0.88473;  // H/W where the chord sinks by 41.5°
+  constexpr double kElastica = 0.88473;  // H/W at a chord angle of 41.5°
   for (const char* name : {"silk", "leather", "11oz_black_denim"}) {
     const Fabric& fabric = find_fabric(name);
     for (const SpecimenMesh mesh : kMeshes) {
@@ -80,9 +80,9 @@ TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
 }
 
 TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
-  // 12.85 (1 − ν) √(2 (1 + ν)) for a strip of no width; the stencils of a grid have ν = 0. A clamped strip of
-  // two cells across is a little stiffer, less so the more cells along: +16, +9 and +6 % with 15, 25 and 40.
-  const Fabric& denim = find_fabric("denim");  // whose rigidity is the same in all directions
+  // 12.85 (1 − ν) √(2 (1 + ν)) for an infinitely narrow strip; the stencils of a grid have ν = 0. A clamped
+  // strip of two cells across is slightly stiffer: by 16, 9 and 6 % with 15, 25 and 40 cells along.
+  const Fabric& denim = find_fabric("denim");  // with isotropic rigidity
   const double theory = 12.85 * std::sqrt(2);
   const auto error = [&](int cells) {
     return figure(test_buckling(denim, {.resolution = cells}), "critical_load") / theory - 1;
@@ -93,7 +93,7 @@ TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
 }
 
 TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
-  // Length over span 1.25: sag over span 0.331797. Bending and stretching are small beside.
+  // Length over span 1.25: sag over span 0.331797. Bending and stretching are negligible.
   const Fabric& cotton = find_fabric("cotton_shirting");
   for (const int cells : {12, 24, 48}) {
     for (const SpecimenMesh mesh : kMeshes) {
@@ -144,7 +144,7 @@ TEST(Drape, ShadowOfADiscIsItsArea) {
 }
 
 TEST(Drape, OfOneFabricIsTheSameOnEveryMesh) {
-  // Overhangs that began a ring too far inside, and crooked edges of the plates, once made it 10 points.
+  // Overhangs that begin a ring too far inside, and irregular edges of the plates, would give 10 points.
   const Fabric& cotton = find_fabric("cotton_shirting");
   double least = 1, most = 0;
   for (const SpecimenSettings& settings :
@@ -162,7 +162,7 @@ TEST(Drape, OfOneFabricIsTheSameOnEveryMesh) {
 }
 
 TEST(Drape, OfStifferFabricIsLarger) {
-  // Between that of cloth that hangs straight down and that of a board.
+  // Between those of cloth that hangs straight down and of a rigid board.
   Fabric fabric = find_fabric("denim");
   double before = 0;
   for (const double times : {0.3, 3.0, 30.0}) {

@@ -1,4 +1,4 @@
-/// Scripts of other engines, here a shell's that stand for them.
+/// Scripts of other engines, replaced by shell scripts.
 
 #include "lab/comparisons/peer_scripts.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Python is a shell that runs `body`, in which $2 … are what the script is given.
+/// Replaces Python by a shell script with this `body`, in which $2 … are the arguments of the script.
 void make_python(const std::string& body) {
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
   fs::create_directories(WEFT_OUTPUT_DIR);
@@ -33,7 +33,7 @@ TEST(PeerScripts, GiveBackWhatTheyPrintAndLeave) {
   make_python("echo Hello\n" + kWrite + "\n" + kTell + "\necho Bye");
   const auto run = run_two();
   ASSERT_TRUE(run);
-  EXPECT_EQ(run->engine, "Loom 7 2");  // what it was given, and the number of frames
+  EXPECT_EQ(run->engine, "Loom 7 2");  // its argument, and the number of frames
   EXPECT_EQ(run->cpu_ms, 1.5);
   EXPECT_EQ(run->frames, std::vector(2, std::vector<float>(6, 1.0F)));
 }

@@ -1,5 +1,5 @@
-/// The figure and the garments of tools/wardrobe are what they say, and a shirt that starts through the arms
-/// is put on.
+/// The figure and the garments of tools/wardrobe have the documented properties, and a shirt that intersects
+/// the arms at the start is repaired.
 
 #include "tools/wardrobe/wardrobe.h"
 

@@ -11,7 +11,7 @@
 namespace weft::engine {
 namespace {
 
-/// Cells of 15 mm on a ball of 10 cm; one step per frame, so that min_stretch is that of every step.
+/// Cells of 15 mm on a ball of 10 cm; one step per frame, so that min_stretch covers every step.
 SceneDesc silk_on_a_ball() {
   constexpr int kCells = 64;
   const double size = 0.015 * kCells;

@@ -1,4 +1,4 @@
-// The scenes of scenes/contact, coarser and shorter; at their full size: `make scenes`.
+// The scenes of scenes/contact, coarser and shorter; `make scenes` runs them at full size.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace weft::engine {
 namespace {
 
-/// Nothing crosses at any frame, nothing passes through anything within any step, nothing is inside a
-/// collider by more than the checker's own rounding, and there is nothing that the last line had to give up.
+/// Checks: no intersections in any frame, no passages within any step. Depth inside colliders is at most the
+/// checker's rounding, and the CCD fail-safe has no infeasible pairs.
 void expect_held(const std::string& name, int frames, const Overrides& overrides) {
   const SceneDesc scene =
       read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/contact/" + name + ".toml", overrides);
@@ -18,7 +18,7 @@ void expect_held(const std::string& name, int frames, const Overrides& overrides
   EXPECT_EQ(report.frames, frames);
   EXPECT_EQ(report.intersections, 0);
   EXPECT_EQ(report.passages, 0) << report.first_passage;
-  EXPECT_LE(report.penetration_max.value_or(0), 1e-6);  // without a collider there is none to be in
+  EXPECT_LE(report.penetration_max.value_or(0), 1e-6);  // empty without a collider
   EXPECT_EQ(report.infeasible, std::vector<std::string>());
 }
 

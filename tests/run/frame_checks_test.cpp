@@ -19,7 +19,7 @@ World make_sheet() {
   return world;
 }
 
-/// A square plate that stands off the sheet and turns about its own origin.
+/// A square plate above the sheet that rotates about its own origin.
 std::shared_ptr<const TriangleMesh> make_plate() {
   return std::make_shared<TriangleMesh>(make_square_mesh({0, 0, 0}, Vec3::UnitY(), 0.3));
 }
@@ -28,7 +28,7 @@ TEST(FrameChecks, TakeMeshesWhereTheirMotionHasTakenThem) {
   World world = make_sheet();
   world.set_gravity(Vec3::Zero());
   world.set_contact(false);
-  // The plate hangs a tenth above the sheet, and stands upright through it after a second.
+  // The plate is 0.1 above the sheet, and after a second upright through it.
   const RigidMotion turn({{.time = 0}, {.time = 1, .angles_deg = {kQuarterTurn, 0, 0}}});
   world.add_collider({.name = "plate",
                       .shape = MeshShape{make_plate(), Mat3::Identity(), {0.4, 0.1, 0.4}},
@@ -52,7 +52,7 @@ TEST(FrameChecks, KnowTheInsideOfClosedMeshes) {
       << "the sheet's middle is 0.1 from the centre; the mesh is inscribed";
 }
 
-/// One triangle over a sphere that comes up; at frame 3 it is 0.05 deep.
+/// One triangle above a rising sphere; at frame 3 it is 0.05 deep.
 Animation make_animation() {
   Animation animation;
   AnimatedMesh cloth{.name = "rag", .triangles = {{0, 1, 2}}, .frames = {}};
@@ -98,7 +98,7 @@ TEST(FrameChecks, CountFramesThatCross) {
 TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
   Animation animation = make_animation();
   AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
-  for (const float depth : {0.0f, 5.0f, 5.0f, 0.0f, 0.0f})  // below the rag as a whole, and back
+  for (const float depth : {0.0f, 5.0f, 5.0f, 0.0f, 0.0f})  // completely below the rag, and back
     blade.frames.push_back({0.1f, 4 - depth, 0, 0.2f, 4 - depth, 0, 0.1f, 3 - depth, 0.1f});
   animation.cloths.push_back(blade);
   const AnimationCheck check = check_animation(animation, {.tolerance = 1});

@@ -1,4 +1,4 @@
-/// Frames reach sinks as they are made, and files hold the frames that a sink in memory got.
+/// Sinks receive frames during the run, and files hold the same frames as a sink in memory.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ class FrameSinks : public testing::Test {
   fs::path folder_;
 };
 
-/// Keeps the frames' numbers and the world's time at them.
+/// Stores the numbers of frames and the world's time at each.
 struct Listener : FrameSink {
   void begin(SceneRun& run, RunReport&) override { add_frame(run, *this); }
   void add_frame(const SceneRun& run, RunReport&) override { add_frame(run, *this); }
@@ -161,7 +161,7 @@ TEST_F(FrameSinks, GlbSaysAtTheStartHowManyFramesItHasRoomFor) {
       << report.warnings[0];
 }
 
-/// The most memory that a process has which runs so many frames to a .glb [bytes].
+/// Peak memory of a process that writes so many frames to a .glb [bytes].
 double peak_memory(const SceneDesc& scene, int frames, const fs::path& file) {
   const pid_t child = fork();
   if (child == 0) {

@@ -21,7 +21,7 @@ SceneDesc small_scene(const std::string& integrator = "paper_fixed") {
                                      "solver.integrator=" + integrator});
 }
 
-/// Looks until the frame is as wanted. Generous: other work may keep the processors busy.
+/// Polls until a frame satisfies the condition. Long timeout, because other processes may be busy.
 LiveFrame wait_for(LiveSimulation& live, const std::function<bool(const LiveFrame&)>& is_wanted) {
   LiveFrame frame;
   const auto start = std::chrono::steady_clock::now();
@@ -133,7 +133,7 @@ TEST(Live, SpringModelsChangeWhereTheClothIs) {
 }
 
 TEST(Live, WindBlowsWhileItIsSet) {
-  // A sheet that nothing else moves sideways.
+  // A sheet without other sideways forces.
   SceneDesc scene = shipped("paper/fig5_falling", {"cloth[0].grid.cells=[8, 8]", "scene.gravity=[0, 0, 0]",
                                                    "solver.integrator=paper_fixed"});
   scene.colliders.clear();
@@ -176,7 +176,7 @@ TEST(Live, AStepThatFailsPausesTellsWhyAndKeepsTheLastGoodState) {
   EXPECT_NE(frame.status.failure.find("sail"), std::string::npos);
   EXPECT_NE(frame.status.failure.find("substeps"), std::string::npos);
   for (const float x : frame.meshes.cloths[0]) ASSERT_TRUE(std::isfinite(x));
-  // Another integrator goes on from there.
+  // Another integrator continues from this state.
   live.set_integrator("implicit_euler");
   live.reset();
   live.step(2);
@@ -184,7 +184,7 @@ TEST(Live, AStepThatFailsPausesTellsWhyAndKeepsTheLastGoodState) {
 }
 
 TEST(Live, TooHeavyClothSlowsTimeAndSaysSo) {
-  // A frame of so many steps takes far longer than a sixtieth of a second on any machine.
+  // A frame with so many steps takes much longer than a sixtieth of a second on any machine.
   LiveSimulation live(shipped("paper/fig6_ball", {"solver.steps_per_frame=5000"}));
   const LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return f.status.too_heavy; });
   EXPECT_LT(frame.status.simulated_per_second, 0.95);

@@ -1,4 +1,4 @@
-/// What a run says is wrong with it, one problem at a time.
+/// Problems of a run, one at a time.
 
 #include "weft/run/problems.h"
 
@@ -9,7 +9,7 @@
 namespace weft::engine {
 namespace {
 
-/// A sheet of a metre whose particles the tests put where they like.
+/// A sheet of a metre; the tests set the positions of its particles.
 World make_sheet() {
   World world;
   world.add_cloth(

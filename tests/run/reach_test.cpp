@@ -27,7 +27,7 @@ SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
 
 TEST(Reach, HoldsWhatHangsFromItsPins) {
   const Eigen::AlignedBox3d box = reach_of(shipped("paper/fig3_horizontal"));
-  // A square metre by two corners of one edge: the middle of the far edge is farthest from both.
+  // A square metre hung by two corners of one edge: the middle of the opposite edge is farthest from both.
   EXPECT_NEAR(box.sizes().y(), std::sqrt(1.25), 1e-6);
   const RunReport report = run_scene(shipped("paper/fig3_horizontal"), {.frames = 60});
   for (const double y : report.lowest_y) EXPECT_GT(y, box.min().y() - 0.05);

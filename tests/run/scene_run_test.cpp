@@ -29,8 +29,8 @@ bool warns(const RunReport& report, const std::string& words) {
   return false;
 }
 
-/// Half a second of each of the paper's scenes: the same bits on every machine, for any number of threads,
-/// debug and release. A change here means that the motion of existing scenes has changed: say so in
+/// State hashes after half a second of the paper's scenes: the same bits on every machine, for any
+/// number of threads, debug and release. A changed hash means a changed motion of existing scenes: note it in
 /// CHANGELOG.md.
 const std::map<std::string, std::string> kHashes = {
     {"paper/fig3_horizontal", "3d813bc4f911725d"},
@@ -49,7 +49,7 @@ TEST(PaperScenes, HaveTheSameBitsEverywhere) {
 }
 
 TEST(PaperScenes, TwinsHaveTheSameBitsEverywhere) {
-  // Smaller and shorter, for debug builds. What is tested is the arithmetic.
+  // Smaller and shorter, for debug builds, because only the arithmetic is tested.
   const SceneDesc scene = shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[15, 15]"});
   for (const int threads : {1, 2}) {
     const RunReport report = run_scene(scene, {.frames = 20, .threads = threads});
@@ -64,7 +64,7 @@ TEST(PaperScenes, KeepTheStiffnessNumberAtOneOrBelow) {
   }
 }
 
-/// Nothing crosses and nothing is more than 0.1 mm inside a collider, at any frame, by the checker.
+/// Checks every frame: no intersections, and no depth of more than 0.1 mm inside a collider.
 void expect_clean(const SceneDesc& scene, int frames) {
   const RunReport report = run_scene(scene, {.frames = frames});
   EXPECT_EQ(report.outcome, RunOutcome::done);
@@ -76,7 +76,7 @@ void expect_clean(const SceneDesc& scene, int frames) {
 
 TEST(PaperScenes, BallKeepsTheWholeClothOutside) { expect_clean(shipped("paper/fig6_ball"), 180); }
 
-// The shipped sizes of these take minutes: `make scenes`.
+// At their shipped sizes these take minutes: `make scenes`.
 TEST(PaperScenes, BallKeepsTheTwinOutside) {
   expect_clean(shipped("paper/fig6_ball_real", {"cloth[0].grid.cells=[31, 31]"}), 60);
 }
@@ -94,8 +94,8 @@ TEST(ContactScenes, LayersDoNotCross) {
 }
 
 TEST(PaperScenes, FallFreelyForTheFirstSixtyCentimetres) {
-  // From its lowest corner the tilted sheet falls as Eq. 16 lets it: between the factors of a = a_max and of
-  // none.
+  // The tilted sheet falls from its lowest corner with the gravity of Eq. 16: between the factor for a =
+  // a_max and the factor 1.
   const SceneDesc scene = shipped("paper/fig5_falling");
   const RunReport report = run_scene(scene, {.frames = 20});
   const std::vector<double>& y = report.lowest_y;
@@ -123,7 +123,7 @@ TEST(SceneRun, RecordsTheStartAndEveryFrame) {
   EXPECT_EQ(report.kinetic_energy.size(), 5u);
 }
 
-/// A body's vertices at a frame, in the world.
+/// A body's vertices at a frame, in world coordinates.
 std::vector<Vec3> vertices(const RigidMesh& body, std::size_t frame) {
   const RigidMesh::Pose& pose = body.poses.at(std::min(frame, body.poses.size() - 1));
   std::vector<Vec3> placed;
@@ -167,12 +167,12 @@ motion = [{ time = 0 }, { time = 0.05, rotation = [90, 0, 0] }]
     for (const int b : {0, 1}) {
       const ColliderShape shape = shape_at(built.world.colliders()[b], frame / 60.0);
       for (const Vec3& p : vertices(film.animation().bodies[b], static_cast<std::size_t>(frame))) {
-        // Rounding of turning and moving.
+        // Rounding of rotation and translation.
         EXPECT_NEAR(signed_distance(shape, p).distance, 0, 1e-12) << "collider " << b << ", frame " << frame;
       }
     }
   }
-  // The mesh's middle, (0.1, 0, 0) in the file, is first turned to y, then by its motion to z.
+  // The mesh's middle, (0.1, 0, 0) in the file, is first rotated to y, then by its motion to z.
   const auto middle = [&](std::size_t frame) {
     Vec3 sum = Vec3::Zero();
     const std::vector<Vec3> placed = vertices(film.animation().bodies[2], frame);
@@ -306,7 +306,7 @@ TEST(Report, CountsWhatStillCrossesAndWarnsOfAStartThatDoes) {
   EXPECT_FALSE(report.penetration_max.has_value());
 }
 
-/// Two ribbons that are pulled through each other: nothing crosses at any frame.
+/// Two ribbons that are pulled through each other: no frame has intersections.
 SceneDesc swapped_ribbons(const Overrides& overrides) {
   Overrides all = {"solver.contact=false", "cloth[0].grid.cells=[40, 8]", "cloth[1].grid.cells=[8, 40]"};
   all.insert(all.end(), overrides.begin(), overrides.end());
@@ -342,7 +342,7 @@ TEST(Report, CountsPassagesWithinSubstepsAndSteps) {
       << "there and back: the ball's middle, and the particle in its way";
 }
 
-/// The second sheet's lowest tenth goes through the first one.
+/// Two sheets; the lowest tenth of the second one is below the first one.
 SceneDesc crossed_sheets() {
   SceneDesc scene = shipped("two_layers", {"cloth[0].name=sheet", "cloth[0].grid.cells=[16, 16]"});
   scene.colliders.clear();
@@ -396,7 +396,7 @@ TEST(Report, OfACrossedStartThatIsAllowedWarns) {
 }
 
 TEST(Report, MeasuresHowDeepTrianglesAreAndWarnsOfAStartInsideACollider) {
-  // Particles stand around a ball that pokes through the one triangle between them.
+  // The particles are outside of a ball that pokes through the one triangle between them.
   const SceneDesc scene = shipped(
       "paper/fig6_ball", {"cloth[0].grid.cells=[1, 1]", "cloth[0].position=[-0.5, 0.6, -0.5]",
                           "scene.gravity=[0, 0, 0]", "solver.steps_per_frame=1", "solver.contact=false"});
@@ -442,7 +442,7 @@ TEST(Report, HasTheEnergiesOfEveryFrameAndTheirSumIsTheTwoItAlwaysHad) {
 }
 
 TEST(Report, OfAnAuditBalancesAndTheMotionIsTheSame) {
-  // A ball that turns under the sheet on it.
+  // A ball that rotates under a sheet.
   const SceneDesc scene =
       shipped("contact/rotating_ball", {"cloth[0].grid.cells=[12, 12]", "solver.steps_per_frame=2"});
   RunReport reports[2];

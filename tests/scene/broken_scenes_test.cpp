@@ -1,7 +1,7 @@
-/// Scene files as people get them wrong, in tests/scene/broken. Each says what it expects, in the order of
-/// reporting:
+/// Typical mistakes in scene files, in tests/scene/broken. Each file lists the expected errors, in the order
+/// of reporting:
 ///
-///   # set: cloth[0].fabric.density=heavy        an override to read it with
+///   # set: cloth[0].fabric.density=heavy        an override
 ///   # error: 7:3: unknown key "denisty"         line, column and a part of the message
 ///   # error: --set cloth[0].fabric.density: expected a number
 
@@ -25,7 +25,7 @@ std::string read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// What follows the mark, of each line that begins with it.
+/// The rest of each line that begins with the mark.
 Lines lines_marked(const std::string& text, const std::string& mark) {
   Lines marked;
   std::istringstream lines(text);
@@ -35,7 +35,7 @@ Lines lines_marked(const std::string& text, const std::string& mark) {
   return marked;
 }
 
-/// "7:3: message" or "--set path: message", as the comments have it.
+/// "7:3: message" or "--set path: message", as in the comments.
 std::string describe(const Diagnostic& d) {
   const bool has_place = d.line > 0;
   const std::string place = has_place ? std::to_string(d.line) + ":" + std::to_string(d.column) : d.file;
@@ -52,7 +52,7 @@ Lines mistakes(const std::string& text, const Overrides& overrides = {}) {
   return found;
 }
 
-/// Whether the place is the same and the message holds what is expected of it.
+/// Whether line and column are equal and the message contains the expected part.
 bool matches(const std::string& found, const std::string& expected) {
   const std::size_t message = expected.find(": ") + 2;
   return found.starts_with(expected.substr(0, message)) &&

@@ -1,4 +1,4 @@
-/// What scenes say of contact: thickness, colliders that deform.
+/// Contact in scene files: thickness, deforming colliders.
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ class DeformingMesh : public testing::Test {
 
   void write(const std::string& name, const TriangleMesh& mesh) { write_obj(folder_ / name, mesh); }
 
-  /// A box whose top is at this height; its corners are sewn in the first frame.
+  /// A box with its top at this height; its corners are sewn in the first frame.
   static TriangleMesh box(double height) {
     TriangleMesh mesh = make_box_mesh(Vec3::Zero(), Vec3::Constant(0.5), Mat3::Identity());
     for (Vec3& p : mesh.positions) p.y() = p.y() > 0 ? height : 0.0;

@@ -1,4 +1,4 @@
-/// A fabric by name with numbers of one's own.
+/// A fabric by name with changed numbers.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ SceneDesc scene_with(const std::string& fabric) {
       "scene.toml");
 }
 
-/// What the reader says against it; empty: nothing.
+/// The reader's error message; empty: none.
 std::string error_of(const std::string& fabric) {
   try {
     scene_with(fabric);

@@ -1,4 +1,4 @@
-/// Fabric files, right and wrong.
+/// Fabric files, valid and invalid.
 
 #include "weft/scene/fabric_reader.h"
 

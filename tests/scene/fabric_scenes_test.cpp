@@ -14,7 +14,7 @@
 namespace weft::engine {
 namespace {
 
-/// Of the test that runs: tests run side by side.
+/// A folder for the current test, because tests run in parallel.
 std::filesystem::path own_folder() {
   const std::filesystem::path folder =
       std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -84,8 +84,8 @@ TEST(FabricScenes, HaveWarpAlongEitherAxisOfTheGridOrAcross) {
 }
 
 TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
-  // A homogeneous stretch of the grid stores ½ A C ε² along either axis, whatever the cells; 2 % apart, for
-  // springs are not linear in Green's strain.
+  // A homogeneous stretch of the grid stores ½ A C ε² along either axis, for any cells. The tolerance is 2 %,
+  // because springs are not linear in Green's strain.
   const Fabric& fabric = find_fabric("denim");
   for (const char* spring_model : {"basic", "alternating"}) {
     const SceneWorld scene =
@@ -139,7 +139,7 @@ TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
   EXPECT_THROW(scene.world.set_integrator({.integrator = "paper"}), InputError);
 }
 
-/// A square of two triangles whose u runs along the direction (c, s) of its plane, and v sheared against it.
+/// A square of two triangles with u along the direction (c, s) of its plane, and v sheared against it.
 SceneWorld built_with_uv(double c, double s, double shear, const std::string& keys = "") {
   const std::filesystem::path folder = own_folder();
   std::ofstream obj(folder / "square.obj");
@@ -158,7 +158,7 @@ SceneWorld built_with_uv(double c, double s, double shear, const std::string& ke
       make_serial_jobs());
 }
 
-/// Where warp goes in the plane of the square: the direction along which ∂x/∂(axis 1) points.
+/// Direction of warp in the plane of the square: ∂x/∂(axis 1).
 Vec3 warp_of(const SceneWorld& scene, int triangle) {
   const ClothModel& model = scene.world.model(scene.world.cloth(0));
   const auto& [v, rest] = model.elements->membranes[triangle];
@@ -171,7 +171,7 @@ TEST(FabricScenes, LayWarpAlongUOnAMeshTurnedOrSheared) {
   for (const double shear : {0.0, 0.7}) {
     const SceneWorld scene = built_with_uv(0.6, 0.8, shear);
     for (const int triangle : {0, 1}) {
-      // Along warp u grows and v stays, however u is sheared.
+      // Along warp u grows and v is constant, for any shear.
       EXPECT_LT((warp_of(scene, triangle) - Vec3(0.6, 0, 0.8)).norm(), 1e-9) << shear;
     }
     EXPECT_TRUE(scene.warnings.empty());
@@ -192,7 +192,7 @@ TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
   EXPECT_GT(model.stiffness_sum[0], 100) << "[N/m], of a fabric of 2000";
   const auto is_told = [](const std::string& w) { return w.find("on average") != std::string::npos; };
   EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
-  // Regions multiply what the edges have.
+  // Regions multiply the stiffness of edges.
   const SceneWorld stiffer = built_with_uv(1, 0, 0,
                                            "membrane = \"springs\"\nstiffen = [{ select = { sphere = { "
                                            "center = [0, 0, 0], radius = 9 } }, factor = 3 }]\n");

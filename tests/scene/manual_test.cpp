@@ -1,4 +1,4 @@
-/// What the manual says about scene files is true.
+/// The examples and defaults of the manual on scene files are correct.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(Manual, ItsSceneFileIsGood) {
   EXPECT_EQ(scene.cloths.at(0).pins.size(), 4u);
   EXPECT_EQ(scene.colliders.size(), 4u);
 
-  // The values it shows as usual are the defaults.
+  // The values shown as usual are the defaults.
   const SceneDesc defaults;
   EXPECT_EQ(scene.gravity, defaults.gravity);
   EXPECT_EQ(scene.solver.implicit_euler.tolerance, defaults.solver.implicit_euler.tolerance);

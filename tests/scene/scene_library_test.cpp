@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 const std::filesystem::path kScenes = WEFT_SOURCE_DIR "/scenes";
 
-/// $WEFT_SCENES while the test runs.
+/// Sets $WEFT_SCENES during the test.
 class SceneLibrary : public testing::Test {
  protected:
   void SetUp() override { set_folder(kScenes); }
@@ -83,7 +83,7 @@ TEST(NearestName, KeepsSilentWhereNothingIsNear) {
   EXPECT_EQ(find_nearest("elephant", names), "");
 }
 
-/// Folders and empty files below a test's own folder.
+/// Folders and empty files in a temporary folder of the test.
 class SceneFolder : public testing::Test {
  protected:
   void SetUp() override {

@@ -14,7 +14,7 @@ SceneDesc parse(const std::string& text, const Overrides& overrides = {}) {
   return parse_scene(text, "scene.toml", overrides);
 }
 
-/// The smallest scene, with something added to its cloth.
+/// The smallest scene, with keys added to its cloth.
 ClothSceneDesc parse_cloth(const std::string& text) { return parse(kScene + kGrid + text).cloths.at(0); }
 
 SceneDesc set(const Overrides& overrides) {
@@ -22,7 +22,7 @@ SceneDesc set(const Overrides& overrides) {
                overrides);
 }
 
-/// A file in the tests' own folder, gone at the end.
+/// A file in the tests' folder, removed by the destructor.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& name, const std::string& text = "")

@@ -49,7 +49,7 @@ factor = 2
                InputError);
 }
 
-/// A tube of cells of about 1 cm, 10 cm wide and 12 cm high; with a hem of `hem` [m] below, if it is more than 0.
+/// A tube of cells of about 1 cm, 10 cm wide and 12 cm high, with a hem of height `hem` below; 0: none [m].
 TriangleMesh make_tube(double hem) {
   constexpr int kAround = 30, kRows = 12;
   std::vector<double> heights;
@@ -76,10 +76,10 @@ TriangleMesh make_tube(double hem) {
   return mesh;
 }
 
-/// A tube that falls on a ball, which stops its hem, in half a second.
+/// Results of half a second of a tube that falls on a ball, which stops its hem.
 struct Fall {
-  int parts = 0;       // that steps were made in
-  double stretch = 0;  // at most
+  int parts = 0;       // that steps were divided into
+  double stretch = 0;  // maximum
   std::vector<std::string> warnings;
 };
 
@@ -105,8 +105,8 @@ Fall drop(const TriangleMesh& tube) {
 }
 
 TEST(SceneWorld, DividesNoStepForShortEdgesAtAHem) {
-  // Of 0.4 mm, half as much as denim is thick. Left as they are, contact stretches them by 25 % for 2 %, and
-  // steps are made in 100 parts for 64.
+  // Edges of 0.4 mm, half of denim's thickness. If they were kept, contact would stretch them by 25 % instead
+  // of 2 %, and divide steps into 100 parts instead of 64.
   const Fall expected = drop(make_tube(0)), fall = drop(make_tube(4e-4));
   EXPECT_LE(fall.parts, expected.parts + 10);
   EXPECT_LT(fall.stretch, expected.stretch + 0.01);
@@ -133,7 +133,7 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
   EXPECT_EQ(scene.world.model(scene.world.cloth(0)).topology->mesh.num_triangles(), 5);
 }
 
-/// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a folder of its own.
+/// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a temporary folder.
 class MeshCollider : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
@@ -230,7 +230,7 @@ TEST_F(MeshCollider, OverTheClothIsNamed) {
   const SceneWorld built = build(box(), "scale = 0.6\nposition = [0, 0.9, 0]\n");
   EXPECT_TRUE(warns(built, "25 particles of cloth \"cloth\" are inside collider \"body\""))
       << testing::PrintToString(built.warnings);
-  // As its motion has it at the start.
+  // With the motion's pose at the start.
   const SceneWorld away =
       build(box(), "scale = 0.6\nposition = [0, 0.9, 0]\nmotion = [{ time = 0, position = [0, -2, 0] }]\n");
   EXPECT_TRUE(away.warnings.empty()) << testing::PrintToString(away.warnings);
@@ -272,7 +272,7 @@ TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes")) {
     if (entry.path().extension() != ".toml") continue;
-    if (entry.path().filename() == "funnel.toml") continue;  // open on purpose, and told so
+    if (entry.path().filename() == "funnel.toml") continue;  // open on purpose, with a warning
     const SceneWorld built = build_world(read_scene(entry.path()), make_serial_jobs());
     EXPECT_TRUE(built.warnings.empty()) << entry.path() << testing::PrintToString(built.warnings);
   }

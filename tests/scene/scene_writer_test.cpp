@@ -1,4 +1,4 @@
-/// Scenes that are written come back equal, and a scene made by a program is checked by the reader's sentences.
+/// Written scenes are read back equal, and check_scene gives the reader's messages.
 
 #include "weft/scene/scene_writer.h"
 
@@ -67,7 +67,7 @@ TEST_F(SceneWriter, WritesEveryShippedSceneSoThatItReadsBackEqual) {
   EXPECT_GE(count, 30);
 }
 
-/// Every key that a scene file has, away from its default.
+/// Every key of a scene file, with another value than its default.
 TEST_F(SceneWriter, WritesEveryKey) {
   std::ofstream(folder_ / "a.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
   std::ofstream(folder_ / "b_1.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
@@ -179,7 +179,7 @@ xpbd = { substeps = 12 }
   EXPECT_EQ(read, scene);
 }
 
-/// A cloth and a body that deforms, without any file.
+/// A cloth and a deforming body, without files.
 SceneDesc make_scene_in_memory() {
   weft::TriangleMesh sheet{.positions = {{0, 1, 0}, {1, 1, 0}, {0, 1, 1}, {1, 1, 1}},
                            .triangles = {{0, 2, 1}, {1, 2, 3}},

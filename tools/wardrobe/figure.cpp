@@ -9,18 +9,18 @@
 namespace weft::engine::wardrobe {
 namespace {
 
-/// A ball that rolls from a to b and grows from radius ra to rb [m].
+/// A round cone: the union of balls from a to b, with radius from ra to rb [m].
 struct Cone {
   Bone bone;
   Vec3 a, b;
   double ra, rb;
 };
 
-constexpr double kTorso = 0.06;  // over which its parts are joined [m]
+constexpr double kTorso = 0.06;  // blend length of its parts [m]
 constexpr double kArmSlope_deg = 30;
 const Vec3 kShoulder{0.18, 1.40, -0.01};
 
-/// Of the left arm, so far from the shoulder, and so much in front of the arm.
+/// A point at the left arm: distance from the shoulder, and offsets in front of and above the arm [m].
 Vec3 along_arm(double length, double front = 0, double up = 0) {
   const auto [sin, cos] = sin_cos_deg(kArmSlope_deg);
   return kShoulder + Vec3(cos * length + sin * up, -sin * length + cos * up, front);
@@ -90,7 +90,7 @@ constexpr std::array<Bone, kNumBones> kParent = {
     kHips,         kHips, kChest,     kChest,    kLeftArm, kLeftForearm, kChest,    kRightArm,
     kRightForearm, kHips, kLeftThigh, kLeftShin, kHips,    kRightThigh,  kRightShin};
 
-/// Falls off with the distance to each bone's skin.
+/// Skinning weights, which decrease with the distance to each bone's skin.
 std::array<float, kNumBones> compute_weights(const Vec3& p) {
   constexpr double kReach = 0.014;  // [m]
   std::array<double, kNumBones> distance;
@@ -126,7 +126,7 @@ Pose rest_pose() {
   return pose;
 }
 
-/// Turns both arms down, by the same angle.
+/// Rotates both arms down, by the same angle.
 void lower_arms(Pose& pose, double angle_deg) {
   pose[kLeftArm].z() = -angle_deg;
   pose[kRightArm].z() = angle_deg;

@@ -1,9 +1,9 @@
 #pragma once
-/// A person to dress: a mesh of smoothly joined round cones, hair as a shell of its own, and a skeleton.
+/// A human figure for garments: a mesh of smoothly joined round cones, a shell of hair, and a skeleton.
 ///
-/// At rest the arms are 30 degrees below the horizontal, y is up, the face looks along z, the feet stand on
-/// y = 0. Vertices follow the bones near them (linear blend skinning), so that the skin goes through itself
-/// at armpits, elbows and crotch, as that of many game figures does.
+/// At rest the arms are 30 degrees below the horizontal, y is up, the face points along z, the feet are on y
+/// = 0. Vertices follow nearby bones (linear blend skinning). The skin therefore intersects itself at
+/// armpits, elbows and crotch, like that of many game characters.
 
 #include <array>
 #include <string>
@@ -32,19 +32,19 @@ enum Bone {
   kNumBones
 };
 
-/// What each bone is turned by against the one it hangs on: about x, y, z, in this order [degrees].
+/// Rotation of each bone relative to its parent: about x, y, z, in this order [degrees].
 using Pose = std::array<Vec3, kNumBones>;
 
-/// The figure's skin at rest, some of its bones alone, joined over a length of `blend`, its
-/// torso over 0.06 or more [m].
+/// The figure's skin at rest, for these bones only, joined over a length of `blend`, the torso over 0.06 or
+/// more [m].
 Field body_field(const std::vector<Bone>& bones, double blend);
 
-/// Where the bone begins at rest [m].
+/// Start of the bone at rest [m].
 Vec3 joint_of(Bone bone);
 
 struct Figure {
   TriangleMesh mesh;                                  // at rest; the hair comes last
-  int num_skin_triangles = 0;                         // before it
+  int num_skin_triangles = 0;                         // before the hair
   std::vector<std::array<float, kNumBones>> weights;  // (num_vertices) sums are 1 [1]
 };
 

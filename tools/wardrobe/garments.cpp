@@ -25,7 +25,7 @@ Field unite(const Field& a, const Field& b) {
   return [a, b](const Vec3& p) { return std::min(a(p), b(p)); };
 }
 
-/// Around the legs, from waist to below the knees; an ellipse across.
+/// Around the legs, from waist to below the knees; the cross-section is an ellipse.
 Field skirt_field() {
   return [](const Vec3& p) {
     const double t = std::clamp((1.02 - p.y()) / 0.7, -0.2, 1.2);
@@ -46,7 +46,7 @@ TriangleMesh cut(TriangleMesh mesh, const std::vector<HalfSpace>& kept, double s
 HalfSpace below(double y) { return {Vec3::UnitY(), y}; }
 HalfSpace above(double y) { return {-Vec3::UnitY(), -y}; }
 
-/// Both sleeves end there.
+/// Ends of both sleeves, at ±x.
 std::vector<HalfSpace> cuffs(double x) { return {{Vec3::UnitX(), x}, {-Vec3::UnitX(), x}}; }
 
 HalfSpace neckline() {
@@ -54,7 +54,7 @@ HalfSpace neckline() {
   return {normal, normal.dot(Vec3(0, 1.492, 0))};
 }
 
-/// With arms that are lifted.
+/// A field with arms lifted by an angle.
 Field lift_arms(const Field& field, double angle_deg) {
   return [field, angle_deg](const Vec3& p) {
     const double share =
@@ -70,7 +70,7 @@ TriangleMesh wall(const Field& field, double cell, const std::vector<HalfSpace>&
   return cut(build_isosurface(field, kRoom, cell), kept, snap * cell);
 }
 
-/// The part of a mesh between two half planes through the y axis, of angles `from` and `to` from x to z.
+/// The part of a mesh between two half planes through the y axis, at angles `from` and `to` from x to z.
 TriangleMesh sector(const TriangleMesh& mesh, double from_deg, double to_deg, double snap) {
   const auto [sin_a, cos_a] = sin_cos_deg(from_deg);
   const auto [sin_b, cos_b] = sin_cos_deg(to_deg);
@@ -98,11 +98,11 @@ TriangleMesh weave(int num_across, int num_down, const Place& place) {
   return mesh;
 }
 
-constexpr double kWaist = 1.08;  // the dress's height there [m]
+constexpr double kWaist = 1.08;  // height of the dress's waist [m]
 
 Field bodice_field() { return offset(body_field({kHips, kChest}, 0.06), 0.009); }
 
-/// How far the bodice is from the y axis at the waist.
+/// Distance of the bodice from the y axis at the waist [m].
 double waist_radius(const Field& bodice, double angle) {
   double low = 0, high = 0.4;
   while (high - low > 1e-7) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Garments for the figure at rest, as people bring them: no texture coordinates, slivers, borders that do
-/// not meet, linings, pleats.
+/// Garments for the figure at rest, with typical defects of user meshes: no texture coordinates, slivers,
+/// gaps between borders, linings, pleats.
 
 #include "tools/wardrobe/figure.h"
 
@@ -8,7 +8,7 @@ namespace weft::engine::wardrobe {
 
 /// With cells of about `cell` [m]; 0.009 gives a T-shirt of 10,000 vertices.
 TriangleMesh make_tshirt(double cell);
-/// Its sleeves are lifted against the figure's arms, which start half outside them.
+/// The sleeves are higher than the figure's arms, which start half outside them.
 TriangleMesh make_shirt(double cell, double lift_deg);
 /// With slivers of 0.1 mm at waist and ankles.
 TriangleMesh make_trousers(double cell);
@@ -17,7 +17,7 @@ TriangleMesh make_skirt(double cell);
 TriangleMesh make_coat(double cell);
 /// Three layers round the neck.
 TriangleMesh make_scarf(double cell);
-/// A bodice of four panels and a pleated skirt of six, whose borders lie 0.2 to 2 mm apart.
+/// A bodice of four panels and a pleated skirt of six, with borders 0.2 to 2 mm apart.
 TriangleMesh make_pleated_dress(double cell);
 /// Level, above the head.
 TriangleMesh make_sheet(double side, int num_cells);

@@ -28,7 +28,7 @@ class Samples {
   Vec3 place(int i, int j, int k) const { return low_ + cell_ * Vec3(i, j, k); }
   bool is_inside(int index) const { return values_[index] < 0; }
 
-  /// The mean of the zeros on the edges of the cell whose lowest corner that is; nothing where it has none.
+  /// Mean of the zeros on the edges of the cell with this lowest corner; empty if there are none.
   std::optional<Vec3> find_middle(int i, int j, int k) const {
     Vec3 sum = Vec3::Zero();
     int count = 0;
@@ -66,7 +66,7 @@ Vec3 draw_on(const Field& field, const Vec3& p, double cell) {
   return p + step;
 }
 
-/// Coordinates are whole micrometres.
+/// Rounds to whole micrometres.
 Vec3 rounded(const Vec3& x) { return (x * 1e6).array().round() / 1e6 + 0.0; }
 
 void add_quad(const std::array<int, 4>& v, TriangleMesh& mesh) {
@@ -97,7 +97,7 @@ TriangleMesh build_isosurface(const Field& field, const Eigen::AlignedBox3d& box
       }
     }
   }
-  for (int k = 1; k + 1 < nz; ++k) {  // a quad across each edge that has a zero
+  for (int k = 1; k + 1 < nz; ++k) {  // a quad across each edge with a zero
     for (int j = 1; j + 1 < ny; ++j) {
       for (int i = 1; i + 1 < nx; ++i) {
         for (int axis = 0; axis < 3; ++axis) {

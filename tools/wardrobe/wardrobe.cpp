@@ -21,7 +21,7 @@ std::string numbered(const std::string& motion, int frame) {
   return name;
 }
 
-/// Its hair faces inwards: a face that is inside out, as there are many.
+/// The hair faces inwards, a common defect of meshes.
 void write_figure(const std::filesystem::path& folder) {
   Figure figure = make_figure(kFigureCell);
   const int num_skin = figure.num_skin_triangles;
@@ -36,7 +36,7 @@ void write_figure(const std::filesystem::path& folder) {
   }
 }
 
-/// A garment, and what a scene says of it.
+/// A garment, with its entries in a scene file.
 struct Piece {
   std::string name;
   TriangleMesh mesh;

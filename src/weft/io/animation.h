@@ -20,8 +20,8 @@ struct AnimatedMesh {
   std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
 };
 
-/// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, which takes it to the world.
-/// One pose: it stands still.
+/// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, from mesh to world
+/// coordinates. One pose: at rest.
 struct RigidMesh {
   struct Pose {
     Vec3 translation = Vec3::Zero();                               // [m]
@@ -36,14 +36,14 @@ struct RigidMesh {
   std::array<double, 3> color = {0.5, 0.5, 0.5};
   std::vector<Pose> poses;                 // (1 or num_frames)
   std::vector<std::vector<float>> frames;  // of a body that deforms: (num_frames) of (num_vertices x 3), in
-                                           // the mesh's coordinates; empty: the mesh stays as it is [m]
+                                           // the mesh's coordinates; empty: rigid [m]
   /// Position of a vertex in a frame, in the mesh's coordinates.
   Vec3 vertex(std::size_t v, std::size_t frame) const {
     if (frames.empty()) return mesh.positions[v];
     return Eigen::Map<const Eigen::Vector3f>(&frames[frame][3 * v]).cast<double>();
   }
 
-  std::optional<SolidShape> shape;  // what `mesh` shows, exactly, in its coordinates; empty: just the mesh
+  std::optional<SolidShape> shape;  // exact shape of `mesh`, in its coordinates; empty: only the mesh
 };
 
 struct Animation {
@@ -58,20 +58,20 @@ struct Animation {
 struct AnimationFrame {
   std::vector<std::vector<float>> cloths;         // (num_cloths) of (num_vertices x 3), world space [m]
   std::vector<RigidMesh::Pose> poses;             // (num_bodies)
-  std::vector<std::vector<float>> body_vertices;  // (num_bodies) as RigidMesh::frames has them; empty for a
-                                                  // body that does not deform [m]
+  std::vector<std::vector<float>> body_vertices;  // (num_bodies) as in RigidMesh::frames; empty for a body
+                                                  // that does not deform [m]
 };
 
-/// Its meshes alone.
+/// A copy with meshes only.
 Animation without_frames(const Animation& animation);
 
-/// Number of frames, at least 1: the most that any mesh has.
+/// Number of frames, at least 1: the maximum over meshes.
 std::size_t count_frames(const Animation& animation);
 
 /// Frame `k` of the animation; a body with one pose has it in every frame.
 AnimationFrame get_frame(const Animation& animation, std::size_t k);
 
-/// Appends a frame. A body that has stood still so far keeps one pose.
+/// Appends a frame. A body that is still at rest keeps one pose.
 void append_frame(AnimationFrame frame, Animation& animation);
 
 }  // namespace weft::engine

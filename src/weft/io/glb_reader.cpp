@@ -18,7 +18,7 @@ namespace {
 using Pose = RigidMesh::Pose;
 using Value = tinygltf::Value;
 
-/// What is wrong with the file; parse_glb adds its name.
+/// Throws the mistake in the file; parse_glb adds the file name.
 [[noreturn]] void fail(const std::string& what) { throw InputError(what); }
 
 template <class T>
@@ -42,8 +42,7 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Whether brackets in the file's text are nested no deeper than tinygltf, which calls itself for each, can
-/// stand.
+/// Whether the nesting of brackets in the file's text is safe for the recursion of tinygltf.
 bool is_flat_enough(std::span<const unsigned char> bytes) {
   constexpr int kDeepest = 100;
   constexpr size_t kHeader = 20, kLengthAt = 12;
@@ -65,7 +64,7 @@ bool is_flat_enough(std::span<const unsigned char> bytes) {
   return true;
 }
 
-/// Other files and pictures that this one names are not looked at.
+/// Prevents access to other files and pictures that the file refers to.
 void stay_in_the_file(tinygltf::TinyGLTF& loader) {
   loader.SetFsCallbacks(
       {[](const std::string&, void*) { return false; }, [](const std::string& file, void*) { return file; },
@@ -76,7 +75,7 @@ void stay_in_the_file(tinygltf::TinyGLTF& loader) {
                         nullptr);
 }
 
-/// Fills `model`, or tells in `error` why it cannot.
+/// Fills `model`, or sets `error` to the reason.
 bool load(std::span<const unsigned char> bytes, tinygltf::Model& model, std::string& error) {
   tinygltf::TinyGLTF loader;
   stay_in_the_file(loader);
@@ -84,7 +83,7 @@ bool load(std::span<const unsigned char> bytes, tinygltf::Model& model, std::str
   try {
     return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
                                        static_cast<unsigned>(bytes.size()));
-  } catch (const std::exception& exception) {  // an empty buffer, for one
+  } catch (const std::exception& exception) {  // an empty buffer, for example
     error = exception.what();
     return false;
   }
@@ -103,7 +102,7 @@ tinygltf::Model parse(std::span<const unsigned char> bytes) {
 
 // ---- Accessors ----
 
-/// Copies all numbers of an accessor whose elements lie side by side, as write_glb leaves them.
+/// Copies all numbers of an accessor with contiguous elements, as written by write_glb.
 template <class Number>
 std::vector<Number> read_numbers(const tinygltf::Model& model, int index, int component_type, int type) {
   const tinygltf::Accessor& accessor = at(model.accessors, index, "accessor");
@@ -328,7 +327,7 @@ class Reader {
     return poses;
   }
 
-  /// The values of what moves a node; empty if it stands still.
+  /// The values of the animation channel of a node; empty if it is at rest.
   std::vector<float> read_channel(int node, const char* path, int type) const {
     if (model_.animations.empty()) return {};
     const tinygltf::Animation& motion = model_.animations[0];

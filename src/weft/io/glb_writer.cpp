@@ -20,12 +20,12 @@ namespace {
 
 constexpr double kRoughness = 0.8;  // cloth scatters light
 
-/// What an accessor holds, in glTF's terms.
+/// Format of an accessor, in glTF's terms.
 struct Layout {
   int type = TINYGLTF_TYPE_VEC3;
   int num_components = 3;
   int target = 0;           // GPU buffer, 0 for animation data
-  bool has_bounds = false;  // minimum and maximum are told: required for positions and key times
+  bool has_bounds = false;  // with minimum and maximum: required for positions and key times
 };
 constexpr Layout kPositions{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, true};
 constexpr Layout kNormals{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, false};
@@ -64,7 +64,7 @@ void require_valid(const RigidMesh::Pose& pose, const std::string& name, size_t 
   throw InputError("body '" + name + "' has a non-finite pose in frame " + std::to_string(frame));
 }
 
-/// Every mesh has all frames, or a body one pose.
+/// Checks that every mesh has all frames, and every body all or one pose.
 void require_equal_counts(const Animation& animation) {
   const size_t frames = count_frames(animation);
   for (const AnimatedMesh& cloth : animation.cloths)
@@ -145,7 +145,7 @@ tinygltf::Value extras_of(const RigidMesh& body) {
 
 }  // namespace
 
-/// Builds the document while the bytes of its buffer go to disk.
+/// Builds the document; the bytes of its buffer are spooled to disk.
 class GlbWriter::Builder {
  public:
   Builder(StagedFile& file, const Animation& meshes)
@@ -191,7 +191,7 @@ class GlbWriter::Builder {
   }
 
  private:
-  /// A mesh of the document, and what its further frames are compared with.
+  /// A mesh of the document, and the base for differences of further frames.
   struct MeshInFile {
     int mesh = -1, node = -1;
     bool is_moving = false;  // a frame is a morph target
@@ -261,7 +261,7 @@ class GlbWriter::Builder {
     if (is_animated()) model_.animations.push_back(std::move(motion_));
   }
 
-  /// Of morph targets, for all meshes in common: frame k shows target k − 1 and no other.
+  /// Weights of morph targets, shared by all meshes: frame k shows only target k − 1.
   void add_weights() {
     const size_t num_targets = num_frames_ - 1;
     const bool has_targets = std::any_of(meshes_in_file_.begin(), meshes_in_file_.end(),
@@ -282,7 +282,7 @@ class GlbWriter::Builder {
     }
   }
 
-  /// A body that stands still has its pose in its node alone.
+  /// The pose of a body at rest is in its node only.
   void add_poses(const MeshInFile& own, const std::vector<RigidMesh::Pose>& poses) {
     const auto& [translation, rotation] = poses[0];
     const Eigen::Vector4d first = rotation.normalized().coeffs();
@@ -387,7 +387,7 @@ class GlbWriter::Builder {
     return index;
   }
 
-  /// Of floats that are written already, from byte `begin` on.
+  /// An accessor for floats that are already written, from byte `begin` on.
   int add_accessor(size_t begin, size_t num_floats, const Layout& layout) {
     tinygltf::Accessor accessor;
     accessor.bufferView = add_view(begin, num_floats * sizeof(float), layout.target);

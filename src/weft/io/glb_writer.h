@@ -1,8 +1,8 @@
 #pragma once
-/// Animations out: binary glTF 2.0 (.glb), which browsers, Blender and most viewers open.
+/// Writer for animations: binary glTF 2.0 (.glb), for browsers, Blender and most viewers.
 ///
-/// In the file the first frame is the mesh, every further frame a morph target (positions and normals), and
-/// one animation blends linearly from frame to frame. Bodies that deform likewise.
+/// The first frame is the mesh in the file. Every further frame is a morph target (positions and normals).
+/// One animation blends linearly from frame to frame. The same for bodies that deform.
 
 #include <cstddef>
 #include <filesystem>
@@ -13,27 +13,27 @@
 
 namespace weft::engine {
 
-/// Writes an animation frame by frame. Frames wait on disk, beside the file: memory grows by some kilobytes
-/// per frame and mesh, whatever the number of vertices.
+/// Writes an animation frame by frame. Frames are spooled to disk, beside the file: memory grows by some
+/// kilobytes per frame and mesh, independent of the number of vertices.
 ///
-/// Materials are double-sided, fabric coordinates become texture coordinates in metres. Data that glTF has no
-/// words for goes to the nodes' extras, as `"weft": {"role": "cloth"}` or `{"role": "collider", "shape":
-/// "sphere", "center": [0, 0, 0], "radius": 0.3}`; other shapes are `plane` (point, normal), `capsule` (a, b,
+/// Materials are double-sided, fabric coordinates become texture coordinates in metres. Data without a glTF
+/// equivalent is in the nodes' extras, as `"weft": {"role": "cloth"}` or `{"role": "collider", "shape":
+/// "sphere", "center": [0, 0, 0], "radius": 0.3}`. Other shapes are `plane` (point, normal), `capsule` (a, b,
 /// radius), `box` (center, half_size, rotation: nine numbers row by row) and `mesh`. The asset's extras hold
 /// `title` and `passing`.
 ///
 /// The lengths in a .glb have 32 bits, so that it holds less than 4 GiB: see glb_size(). All functions throw
-/// InputError: if the file cannot be written, with the system's reason, if it is full, and for a frame that
-/// no viewer could show (other meshes than before, or coordinates that are not finite).
+/// InputError if the file cannot be written, with the system's reason, or is full. They also throw it for a
+/// frame that viewers cannot show: other meshes than before, or coordinates that are not finite.
 class GlbWriter {
  public:
-  /// At least one mesh; frames that `meshes` has are not written.
+  /// Requires at least one mesh. Frames in `meshes` are not written.
   GlbWriter(StagedFile& file, const Animation& meshes);
   ~GlbWriter();
 
   void add_frame(const AnimationFrame& frame);
 
-  /// Writes the file up to StagedFile::finish(), after at least one frame; replace() is left to the caller.
+  /// Writes the file up to StagedFile::finish(), after at least one frame; the caller calls replace().
   void finish();
 
  private:
@@ -44,11 +44,11 @@ class GlbWriter {
 /// Size of the file, without its JSON text [bytes].
 std::size_t glb_size(const Animation& meshes, std::size_t num_vertices, std::size_t num_frames);
 
-/// What a .glb can hold at most [bytes].
+/// Maximum size of a .glb [bytes].
 std::size_t max_glb_size();
 
-/// Writes a whole animation: all its meshes have the same number of frames (>= 1). An earlier file is
-/// replaced whole or not at all.
+/// Writes a whole animation, whose meshes all have the same number of frames (>= 1). An earlier file is
+/// replaced completely or not at all.
 void write_glb(const std::filesystem::path& file, const Animation& animation);
 
 }  // namespace weft::engine

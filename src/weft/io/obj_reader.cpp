@@ -1,7 +1,6 @@
-// The parser is our own because tinyobjloader does not take files as people have them: it reads a bad
-// coordinate as 0, only warns of an index out of range, and takes the garment keyword `t` for a subdivision
-// tag. Its polygon cutting depends on where the origin lies: far from it every second concave nonagon came
-// out wrong.
+// Own parser, because tinyobjloader fails on common files. It reads a bad coordinate as 0, only warns of an
+// index out of range, and takes the garment keyword `t` for a subdivision tag. Its triangulation depends on
+// the distance to the origin: far away, every second concave nonagon is wrong.
 
 #include "weft/io/obj_reader.h"
 
@@ -26,8 +25,7 @@ namespace {
 
 // ---- Lines and words ----
 
-/// The text as lines of words. '#' starts a comment, and a line that ends in a backslash goes on in the next
-/// one.
+/// The text as lines of words. '#' starts a comment; a backslash at the end continues a line.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {
@@ -35,7 +33,7 @@ class LineReader {
     if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
   }
 
-  /// Goes to the next line; false at the end of the text.
+  /// Advances to the next line; false at the end of the text.
   bool next() {
     if (rest_.empty()) return false;
     words_.clear();
@@ -45,11 +43,11 @@ class LineReader {
     return true;
   }
 
-  int line() const { return line_; }  // counted from 1; of a continued line the first
+  int line() const { return line_; }  // from 1; the first one of a continued line
   const std::vector<std::string_view>& words() const { return words_; }
 
  private:
-  /// Appends the words of one line of the text; true if the line goes on in the next one.
+  /// Appends the words of one line of the text; true if the next line continues it.
   bool take_line() {
     const size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
     append_words(rest_.substr(0, length));
@@ -95,7 +93,7 @@ std::optional<long long> parse_index(std::string_view word) {
   return index;
 }
 
-/// The index of texture coordinates of a/b or a/b/c; 0 where there is none.
+/// The index of texture coordinates of a/b or a/b/c; 0 if there is none.
 long long parse_uv_index(std::string_view word) {
   const std::size_t slash = word.find('/');
   if (slash == word.npos) return 0;
@@ -111,7 +109,7 @@ std::string in_quotes(std::string_view word) {
 
 // ---- Polygons ----
 
-/// Newell's normal: perpendicular to the polygon's best plane, as long as twice its area.
+/// Newell's normal: perpendicular to the best-fitting plane, with length twice the area.
 Vec3 polygon_normal(const std::vector<int>& polygon, const std::vector<Vec3>& x) {
   Vec3 normal = Vec3::Zero();
   for (size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -125,7 +123,7 @@ Triangle corner(const std::vector<int>& polygon, size_t tip) {
   return {polygon[(tip + n - 1) % n], polygon[tip], polygon[(tip + 1) % n]};
 }
 
-/// An ear is a convex corner whose triangle holds none of the other vertices; only an ear can be cut off.
+/// An ear is a convex corner whose triangle contains none of the other vertices; only an ear can be clipped.
 bool is_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal, size_t tip) {
   const auto [a, b, c] = corner(polygon, tip);
   const double tolerance = 1e-12 * normal.squaredNorm();  // round-off: a vertex on the cut counts as inside
@@ -140,8 +138,7 @@ bool is_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const V
   return true;
 }
 
-/// The ear with the shortest cut; for a polygon that has none (it crosses itself or has no area) the second
-/// corner.
+/// The ear with the shortest cut; the second corner of a polygon without ears (self-intersecting, no area).
 size_t find_best_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal) {
   size_t best = 1;
   double shortest_sq = std::numeric_limits<double>::infinity();
@@ -156,7 +153,7 @@ size_t find_best_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x
   return best;
 }
 
-/// Cuts a polygon of n vertices into n - 2 triangles by clipping ears.
+/// Triangulates a polygon of n vertices into n - 2 triangles by ear clipping.
 void append_triangles(std::vector<int> polygon, TriangleMesh& mesh) {
   const Vec3 normal = polygon_normal(polygon, mesh.positions);
   while (polygon.size() > 3) {
@@ -188,7 +185,7 @@ class ObjParser {
  private:
   struct Face {
     int line = 0;
-    std::vector<long long> vertices;  // counted from 0; may be those of later lines
+    std::vector<long long> vertices;  // from 0; later lines may define them
     std::vector<long long> uv;        // likewise; -1: none
   };
   struct Unknown {
@@ -203,7 +200,7 @@ class ObjParser {
   }
 
   void read_line(std::string_view keyword) {
-    // vv and t are of the garment files of Berkeley.
+    // vv and t occur in the garment files of Berkeley.
     constexpr std::array<std::string_view, 11> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s", "g",
                                                               "o",  "l",      "p",      "vv",     "t"};
     if (keyword == "v") {
@@ -236,7 +233,7 @@ class ObjParser {
     positions().push_back(position);
   }
 
-  /// vt U V; a third one may follow. What is no number counts as not given.
+  /// vt U V; a third one may follow. Words that are not numbers count as missing.
   void read_uv() {
     const auto& words = lines_.words();
     const auto number = [&](std::size_t k) {
@@ -353,7 +350,7 @@ void append_number(std::string& text, double value) {
   text.append(digits.data(), end);
 }
 
-/// `uv`: (num_triangles), or empty; a triangle without has no number in it.
+/// `uv`: (num_triangles), or empty; NaN for triangles without texture coordinates.
 void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex,
                  const std::vector<CornerUv>& uv = {}) {
   for (const Vec3& position : mesh.positions) {

@@ -21,8 +21,8 @@ struct PaintSettings {
   SceneStyle style;
 };
 
-/// Draws frames of an animation, which must outlive this: all that go to one file with one camera, which shows
-/// everything in these frames.
+/// Draws frames of an animation, which must outlive this. All frames of one file share a camera, which shows
+/// everything in them.
 class Painter {
  public:
   /// Throws GraphicsError without graphics, InputError for an animation without cloth.

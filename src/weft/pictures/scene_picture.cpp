@@ -9,11 +9,11 @@ namespace weft::engine {
 namespace {
 
 constexpr double kCheckSize = 0.025;  // of the checks in cloth [m]
-constexpr double kBelow = 0.02;       // of the ground under what is drawn, as a share of its size [1]
-constexpr double kLevel = 0.999;      // a plane is ground where its normal's y is more [1]
+constexpr double kBelow = 0.02;       // depth of the ground below the scene, as a share of its size [1]
+constexpr double kLevel = 0.999;      // least y of the normal of a ground plane [1]
 constexpr Color kStructural = {0.05, 0.10, 0.25}, kShear = {0.75, 0.22, 0.04}, kBend = {0.10, 0.45, 0.25};
-constexpr int kArcPieces = 8;        // bending springs are drawn as arcs of so many lines …
-constexpr double kArcHeight = 0.13;  // … this high, as a share of their length [1]
+constexpr int kArcPieces = 8;        // lines in the arc of a bending spring
+constexpr double kArcHeight = 0.13;  // of the arc, as a share of its length [1]
 
 bool is_level_plane(const RigidMesh& body) {
   const Plane* plane = body.shape ? std::get_if<Plane>(&*body.shape) : nullptr;
@@ -30,7 +30,7 @@ Vec3 vertex(const std::vector<float>& positions, std::size_t v) {
   return {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
 }
 
-/// All that a frame shows but for planes, which have no end.
+/// Everything in a frame except for planes, which are infinite.
 void add_points(const Animation& animation, int frame, std::vector<Vec3>& points) {
   for (const AnimatedMesh& cloth : animation.cloths) {
     const std::vector<float>& positions = cloth.frames[frame];
@@ -63,7 +63,7 @@ DrawnMesh draw_body(const RigidMesh& body, int frame) {
   return mesh;
 }
 
-/// A level plane, or `otherwise`, or below the lowest point of the animation.
+/// Height of a level plane, else `otherwise`, else below the lowest point of the animation.
 std::optional<double> find_ground(const Animation& animation, std::optional<double> otherwise) {
   for (const RigidMesh& body : animation.bodies) {
     if (is_level_plane(body)) return body.poses[0].translation.y();
@@ -80,7 +80,7 @@ std::optional<double> find_ground(const Animation& animation, std::optional<doub
   return box.min().y() - kBelow * box.diagonal().norm();
 }
 
-/// From a to b, bent towards `side` (unit).
+/// An arc from a to b, bent towards `side` (unit).
 void add_arc(const Vec3& a, const Vec3& b, const Vec3& side, std::vector<Vec3>& ends) {
   const double height = kArcHeight * (b - a).norm();
   const auto at = [&](int k) -> Vec3 {

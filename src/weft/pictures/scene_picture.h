@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of scenes: the frames of an animation as lists of meshes to draw.
+/// Pictures of scenes: frames of an animation as lists of meshes to draw.
 
 #include <optional>
 
@@ -9,20 +9,20 @@
 
 namespace weft::engine {
 
-/// The springs of one cloth, to be drawn instead of its surface.
+/// The springs of one cloth, drawn instead of its surface.
 struct SpringsToDraw {
   int cloth = 0;  // index in the animation
   std::shared_ptr<const ClothTopology> topology;
 };
 
 struct SceneStyle {
-  bool transparent = false;      // nothing behind the cloth and what holds it
-  std::optional<double> ground;  // its height where the scene has no level plane; empty: below all frames [m]
+  bool transparent = false;            // no background behind cloth and colliders
+  std::optional<double> ground;        // height if the scene has no level plane; empty: below all frames [m]
   std::vector<SpringsToDraw> springs;  // of cloths that are drawn as springs
 };
 
-/// Draws the frames of an animation, which must outlive this. Cloth is woven of checks where it has fabric
-/// coordinates; level planes are drawn as endless ground.
+/// Draws the frames of an animation, which must outlive this. Cloth with fabric coordinates is drawn with
+/// checks; level planes are drawn as endless ground.
 class ScenePictures {
  public:
   explicit ScenePictures(const Animation& animation, SceneStyle style = {});
@@ -35,7 +35,7 @@ class ScenePictures {
   SceneStyle style_;
 };
 
-/// The camera turned as `like`, at the distance from which everything in these frames is in the picture.
+/// The camera with the orientation of `like`, at a distance that shows everything in these frames.
 Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
                    double aspect);
 

@@ -1,4 +1,4 @@
-/// Public sentences for warnings.
+/// Public functions: warnings as text.
 
 #include "weft/face/world_impl.h"
 #include "weft/run/warnings.h"

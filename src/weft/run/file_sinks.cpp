@@ -30,7 +30,7 @@ std::size_t count_fitting(const Animation& meshes, std::size_t num_vertices) {
   return fits;
 }
 
-/// Letters, digits, '-', '_' and '.'; all others become '_'.
+/// Keeps letters, digits, '-', '_' and '.'; replaces other characters by '_'.
 std::string file_name(std::string name) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.') c = '_';

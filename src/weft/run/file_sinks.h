@@ -1,5 +1,5 @@
 #pragma once
-/// Frames to files, as they are made.
+/// Frame sinks that write files during the run.
 
 #include <filesystem>
 #include <optional>
@@ -32,7 +32,7 @@ class GlbSink : public FrameSink {
 /// "sheet". Vertices are the cloth's particles, in their order.
 class ObjSink : public FrameSink {
  public:
-  /// The folder exists.
+  /// The folder must exist.
   explicit ObjSink(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void begin(SceneRun& run, RunReport& report) override;

@@ -10,8 +10,8 @@ namespace {
 constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
 constexpr int kSphereRings = 32;
 
-/// Where each particle lies along warp and weft before anything has moved: a grid's own axes, or the two axes
-/// along which a mesh at rest is longest.
+/// Rest coordinates of each particle along warp and weft: a grid's own axes, or the two axes along which a
+/// mesh at rest is longest.
 std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
   std::array<int, 2> axes = {0, 2};
   if (!topology.grid) {
@@ -28,7 +28,7 @@ std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
   return coordinates;
 }
 
-/// The collider's shape around its own pivot, exact and as a mesh to look at.
+/// The collider's shape around its own pivot, exact and as a mesh for drawing.
 RigidMesh show(const Collider& collider) {
   RigidMesh body;
   body.name = collider.name;

@@ -1,5 +1,5 @@
 #pragma once
-/// Worlds as animations: for files, and for pictures.
+/// Worlds as animations, for files and pictures.
 
 #include "weft/io/animation.h"
 #include "weft/run/frame_sink.h"
@@ -11,10 +11,10 @@ namespace weft::engine {
 /// The meshes of a world that was built from a scene, without frames.
 Animation make_animation(const SceneDesc& scene, const World& world);
 
-/// The world as it is now.
+/// The current state of the world.
 AnimationFrame capture_frame(const World& world);
 
-/// Keeps every frame in memory, the start too: for pictures of short runs.
+/// Keeps every frame in memory, with the start, for pictures of short runs.
 class FilmSink : public FrameSink {
  public:
   void begin(SceneRun& run, RunReport& report) override;

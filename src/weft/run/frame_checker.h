@@ -10,8 +10,9 @@
 
 namespace weft::engine {
 
-/// Adds crossings, depth inside colliders, and passages within steps to the run's report. A start that
-/// crosses is refused by an InputError, unless the scene allows it. None of this counts as simulation time.
+/// Adds intersections, depth inside colliders, and passages within steps to the run's report. Throws
+/// InputError for initial intersections, unless the scene allows them. The checks do not count as simulation
+/// time.
 class FrameChecker : public FrameSink {
  public:
   explicit FrameChecker(bool check_passages = true) : has_passages_(check_passages) {}

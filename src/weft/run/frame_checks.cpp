@@ -26,13 +26,13 @@ struct Placement {
   }
 };
 
-/// A mesh whose positions are kept in `result`.
+/// A mesh whose positions are stored in `result`.
 MeshView view_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles, bool is_closed,
                    FrameToCheck& result) {
   return {result.positions.emplace_back(std::move(positions)), triangles, is_closed};
 }
 
-/// The mesh where it is placed.
+/// The mesh in its placement.
 MeshView place_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles,
                     const Placement& placement, bool is_closed, FrameToCheck& result) {
   for (Vec3& p : positions) p = placement.point(p);
@@ -81,7 +81,7 @@ std::string millimetres(double length) {
   return text;
 }
 
-/// Adds frame by frame to what is known of an animation.
+/// Adds the check of one frame to the results.
 void add_frame(const verify::Frame& frame, int index, const AnimationCheckOptions& options,
                AnimationCheck& sum) {
   const verify::FrameCheck check = verify::check_frame(frame, 1);

@@ -1,5 +1,5 @@
 #pragma once
-/// Frames of worlds and of animation files, laid before the independent checker.
+/// Frames of worlds and of animation files as input for the independent checker.
 
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace weft::engine {
 
-/// A frame for the checker, with the positions that it looks at. Moves, but does not copy.
+/// A frame for the checker, with the positions that it refers to. Movable, not copyable.
 struct FrameToCheck {
   FrameToCheck() = default;
   FrameToCheck(FrameToCheck&&) = default;
@@ -21,15 +21,15 @@ struct FrameToCheck {
   std::vector<std::vector<Vec3>> positions;  // of cloths, then of meshes among the colliders
 };
 
-/// Shows the checker a world as it is now.
+/// Frames of a world.
 class WorldFrames {
  public:
   explicit WorldFrames(const World& world);
 
-  /// Valid as long as the world's cloths and colliders stay the same ones.
+  /// Valid until a cloth or collider is added or removed.
   FrameToCheck now() const { return at(world_.time()); }
 
-  /// The cloths as they are now, and the colliders where they are at another time: within a step [s].
+  /// The current cloths, with the colliders' positions at another time, within a step [s].
   FrameToCheck at(double time) const;
 
  private:
@@ -37,7 +37,7 @@ class WorldFrames {
   std::vector<char> is_closed_;  // (colliders) meshes with an inside
 };
 
-/// Shows the checker the frames of an animation, which must outlive this.
+/// Frames of an animation, which must outlive this.
 class AnimationFrames {
  public:
   explicit AnimationFrames(const Animation& animation);
@@ -50,10 +50,10 @@ class AnimationFrames {
   std::vector<char> is_closed_;  // (bodies) meshes with an inside
 };
 
-/// What the checker found in an animation. Frame 0 is the start.
+/// Results of the checker for an animation. Frame 0 is the start.
 ///
-/// Between frames it takes the ways for straight lines (verify/passages.h), which they are not: what then
-/// goes through anything may have done so, and is told, but is no offence unless asked for.
+/// Between frames the checker assumes straight paths (verify/passages.h), which real paths are not. A passage
+/// is therefore only a possible one: it is reported, and is an offence only if `passages_offend`.
 struct AnimationCheck {
   struct Offence {
     int frame = 0;
@@ -68,14 +68,14 @@ struct AnimationCheck {
   int deepest_frame = -1;                 // -1: cloth is never inside
   std::string deepest_place;
   int passages = 0;                 // pairs of features that may have passed through each other, all frames
-  std::vector<Offence> may_passed;  // the first few of them: between the frame and the one before
-  std::vector<Offence> offences;    // the first few
+  std::vector<Offence> may_passed;  // the first of them: between the frame and the one before
+  std::vector<Offence> offences;    // the first ones
   bool is_clean = true;
 };
 
 struct AnimationCheckOptions {
-  double tolerance = 1e-4;  // cloth no deeper than this is no offence [m]
-  int num_offences = 10;    // listed at most, and as many passages [1]
+  double tolerance = 1e-4;  // of the depth of cloth in colliders [m]
+  int num_offences = 10;    // maximum in each list: offences, possible passages [1]
   bool passages_offend = false;
 };
 

@@ -12,18 +12,18 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kPatience = 0.05;    // how far play may fall behind real time before time slows [s]
-constexpr double kWindow = 1;         // over which the pace is measured [s]
-constexpr double kSlow = 0.95;        // of real time: slower is too heavy [1]
-constexpr std::size_t kSteps = 512;   // that medians are taken over
-constexpr std::size_t kTroubles = 4;  // that are told at most
-constexpr double kDrag = 0.25;        // of wind in scenes that have none of their own [N·s/m³]
+constexpr double kPatience = 0.05;    // maximum delay to real time before slow motion [s]
+constexpr double kWindow = 1;         // for measuring the pace [s]
+constexpr double kSlow = 0.95;        // of real time: a lower pace is too heavy [1]
+constexpr std::size_t kSteps = 512;   // in medians
+constexpr std::size_t kTroubles = 4;  // maximum number reported
+constexpr double kDrag = 0.25;        // of wind in scenes without wind [N·s/m³]
 
 constexpr const char* kNoModel = "mesh";
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// The first grid's model: meshes have none.
+/// The spring model of the first grid; meshes have none.
 std::string name_of_model(const SceneDesc& scene) {
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (std::holds_alternative<Grid>(cloth.shape)) return std::string(to_string(cloth.model));
@@ -168,7 +168,7 @@ std::uint64_t LiveSimulation::state_hash() {
 
 bool LiveSimulation::is_between_frames() const { return status_.steps % scene_now().steps_per_frame == 0; }
 
-/// Waits for something to do. False: the end.
+/// Waits for a command, a step or the next frame's time, and runs the commands. False: end of the thread.
 bool LiveSimulation::run_commands() {
   std::vector<std::function<void()>> commands;
   {
@@ -212,7 +212,7 @@ void LiveSimulation::run() {
   }
 }
 
-/// Makes a step. False: it failed, and everything is as before.
+/// Makes a step. False: it failed, and the state is unchanged.
 bool LiveSimulation::take_step() {
   const Clock::time_point start = Clock::now();
   const StepReport report = run_->step();
@@ -255,7 +255,7 @@ void LiveSimulation::start_pace() {
   milestones_.push_back({due_, status_.steps, world().time()});
 }
 
-/// Lets the next frame be due one frame's time after this one was; time slows when play has fallen behind.
+/// The next frame is due one frame's time after this one. Slow motion if play is too late.
 void LiveSimulation::end_frame() {
   status_.frames = status_.steps / scene_now().steps_per_frame;
   const Clock::time_point now = Clock::now();
@@ -266,7 +266,7 @@ void LiveSimulation::end_frame() {
   publish();
 }
 
-/// The scene's wind, or what has been set instead of its velocity.
+/// The scene's wind, with the velocity that was set, if any.
 void LiveSimulation::apply_wind() {
   weft::Wind wind = describe_wind(start_scene_.wind);
   if (wind_) {
@@ -282,7 +282,7 @@ void LiveSimulation::change_model(SpringModel model) {
   SceneDesc scene = scene_now();
   scene.solver = solver_;
   for (ClothSceneDesc& cloth : scene.cloths) cloth.model = model;
-  // Pins hang on the start, so the new world is built there, and then taken to where the old one is.
+  // Pins depend on initial positions: build the new world at the start, then restore the current state.
   const World::Snapshot now = world().snapshot();
   run_ = std::make_unique<SceneRun>(std::move(scene), jobs_);
   world().restore(now);
@@ -292,7 +292,7 @@ void LiveSimulation::change_model(SpringModel model) {
   judge_solver();
 }
 
-/// Something else computes the steps from now on: what was said of the last ones is no longer true.
+/// After a change of solver or springs: recomputes the warnings and discards results of earlier steps.
 void LiveSimulation::judge_solver() {
   SceneDesc now = scene_now();
   now.solver = solver_;
@@ -303,7 +303,7 @@ void LiveSimulation::judge_solver() {
   is_paced_ = false;
 }
 
-/// Takes hold of what is to be held, where it is, and of nothing else.
+/// Grabs `held_` at its current position; releases all other grabs.
 void LiveSimulation::hold() {
   World& held = world();
   for (int c = 0; c < held.num_cloths(); ++c) held.set_grabs(held.cloth(c), {});

@@ -1,13 +1,13 @@
 #pragma once
-/// A scene that runs in real time on a thread of its own, to be watched and touched from another.
+/// A scene that runs in real time on its own thread, with display and interaction from another thread.
 ///
 ///     caller's thread                          simulation's thread
 ///     play, pause, grab, set_wind, … ──queue──>  between two steps
 ///     newest() <──one lock for a swap of vectors──  after each frame of the scene
 ///
-/// Neither side waits for the other. Steps are those of SceneRun: same scene, same commands before the same
-/// steps, same bits, however often somebody looks or pauses. Cloth that is too heavy for real time slows its
-/// time down; nothing is skipped and nothing piles up.
+/// Neither thread waits for the other. Steps are those of SceneRun: the same scene, with the same commands
+/// before the same steps, gives the same bits, independent of reads and pauses. A scene that is too heavy for
+/// real time runs in slow motion; steps are neither skipped nor queued.
 
 #include <chrono>
 #include <condition_variable>
@@ -35,7 +35,7 @@ struct ClothPoint {
   Vec3 weights = Vec3::Constant(1.0 / 3);  // [1]
 };
 
-/// How a live simulation is doing.
+/// Status of a live simulation.
 struct LiveStatus {
   bool playing = false;
   std::int64_t steps = 0;   // since the start or the last reset [1]
@@ -50,15 +50,15 @@ struct LiveStatus {
   double ms_per_step_p95 = 0;       // 95th percentile, likewise [ms]
   double steps_per_second = 0;      // over the last second of play, wall time [1/s]
   double simulated_per_second = 0;  // likewise; 1: real time [1]
-  bool too_heavy = false;           // for real time: time runs slower
+  bool too_heavy = false;           // for real time: slow motion
 
-  std::vector<std::string> warnings;  // of integrator and springs that do not go together
-  std::string failure;                // of the last step, by name; empty: none. A step that fails pauses
-  std::vector<std::string> troubles;  // of the last steps, by name
-  std::optional<Vec3> held;           // the point of the cloth that a hand holds [m]
+  std::vector<std::string> warnings;  // of integrator and springs that do not fit each other
+  std::string failure;                // of the last step, as text; empty: none. A failed step pauses
+  std::vector<std::string> troubles;  // warnings of the last steps, as text
+  std::optional<Vec3> held;           // position of the grabbed point [m]
 };
 
-/// Everything at one moment.
+/// Status and meshes at one time.
 struct LiveFrame {
   LiveStatus status;
   AnimationFrame meshes;
@@ -74,36 +74,36 @@ class LiveSimulation {
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
 
-  /// What does not move: names, triangles, colours, shapes; with the start as its one frame.
+  /// The constant parts: names, triangles, colours, shapes; with the start as the only frame.
   const Animation& start() const { return start_; }
   const SceneDesc& scene() const { return start_scene_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::vector<Vec3>& reach() const { return reach_; }  // see find_reach
 
-  /// All of these return at once, and take effect before the next step.
+  /// All of these return immediately, and take effect before the next step.
   void play();
   void pause();
-  void step(int count = 1);  // pauses, and makes so many steps as fast as they go
-  void reset();              // to the start, with the present integrator, springs and wind; lets go
-  /// Throws InputError for an unknown name. One that knows springs alone is not taken where a cloth is of a
-  /// fabric; a warning says so.
+  void step(int count = 1);  // pauses, then makes `count` steps without pacing
+  void reset();              // restarts with the current integrator, springs and wind; releases the grab
+  /// Throws InputError for an unknown name. An integrator that supports springs only is refused, with a
+  /// warning, if a cloth has a fabric.
   void set_integrator(const std::string& name);
-  void set_model(SpringModel model);            // of cloths that are grids; they stay where they are
-  void set_wind(std::optional<Vec3> velocity);  // everywhere and at any time; empty: the scene's [m/s]
-  void grab(const ClothPoint& point);           // instead of what is held
-  void move_grab(const Vec3& target);           // draws what is held to there [m]
+  void set_model(SpringModel model);            // of cloths that are grids; positions are kept
+  void set_wind(std::optional<Vec3> velocity);  // uniform and constant; empty: the scene's [m/s]
+  void grab(const ClothPoint& point);           // replaces the current grab
+  void move_grab(const Vec3& target);           // sets the target of the grab [m]
   void release();
 
-  /// The newest frame, if there is one since the last call; `frame`'s memory is used again.
+  /// The newest frame, if there is a new one since the last call; the memory of `frame` is reused.
   bool take_newest(LiveFrame& frame);
 
-  /// Of the state between two steps; waits for the step under way.
+  /// Hash of the state between two steps; waits for the current step.
   std::uint64_t state_hash();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A moment of play, to measure the pace.
+  /// A sample of progress, for the pace.
   struct Milestone {
     Clock::time_point wall;
     std::int64_t steps;
@@ -128,13 +128,13 @@ class LiveSimulation {
   void publish();
   LiveStatus measure() const;
 
-  // Constant once made.
+  // Constant after construction.
   SceneDesc start_scene_;
   Animation start_;
   std::vector<std::string> warnings_;
   std::vector<Vec3> reach_;
 
-  // Of the simulation's thread.
+  // Used by the simulation's thread only.
   std::shared_ptr<JobSystem> jobs_;
   std::unique_ptr<SceneRun> run_;
   IntegratorSettings solver_;
@@ -143,13 +143,13 @@ class LiveSimulation {
   int steps_to_make_ = 0;
   std::optional<Vec3> wind_;
   std::optional<ClothPoint> held_;
-  bool is_paced_ = false;  // play is under way, and due_ and milestones_ are about it
+  bool is_paced_ = false;  // due_ and milestones_ are valid
   Clock::time_point due_;  // of the next frame
   std::deque<Milestone> milestones_;
   std::deque<double> step_ms_;
   LiveFrame next_;
 
-  // Shared.
+  // Shared by both threads.
   std::mutex commands_mutex_, frame_mutex_;
   std::condition_variable wake_;
   std::vector<std::function<void()>> commands_;

@@ -9,10 +9,10 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kInARow = 5;             // frames that strain and flatness may last
+constexpr int kInARow = 5;             // frames: allowed duration of strain and flatness
 constexpr double kUsualStrain = 0.15;  // of fabrics without a limit [1]
-constexpr double kLeastArea = 0.1;     // of a triangle's own [1]
-constexpr double kEnergyShare = 0.02;  // of what had fallen [1]
+constexpr double kLeastArea = 0.1;     // share of the rest area [1]
+constexpr double kEnergyShare = 0.02;  // of the range of the total energy so far [1]
 
 double strain_limit(const ClothModel& model) {
   if (!model.elements) return kUsualStrain;
@@ -24,7 +24,7 @@ double strain_limit(const ClothModel& model) {
 
 }  // namespace
 
-/// The worst of each code, cloth and fault.
+/// Keeps the worst warning of each code, cloth and fault.
 void ProblemFinder::see(const StepWarning& warning) {
   const auto is_same = [&](const Seen& s) {
     return s.worst.code == warning.code && s.worst.cloth == warning.cloth && s.worst.fault == warning.fault;
@@ -71,7 +71,7 @@ void ProblemFinder::keep(Seen& seen, const StepWarning& warning, bool is_wrong, 
 void ProblemFinder::look_at_energy(double energy) {
   if (num_frames_ == 0) most_energy_ = least_energy_ = energy;
   const double rise = num_frames_ == 0 ? 0 : energy - energy_;
-  double lift = 0;  // of all cloth by its thickness [J]
+  double lift = 0;  // energy to lift all cloth by its thickness [J]
   for (int c = 0; c < world_.num_cloths(); ++c) {
     const ClothModel& model = world_.model(world_.cloth(c));
     lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *

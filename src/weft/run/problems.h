@@ -1,6 +1,5 @@
 #pragma once
-/// What is wrong with a run, told from its frames and steps: a result that looks finished but should not be
-/// trusted.
+/// Problems of a run, found in its frames and steps: reasons not to trust a result that is complete.
 
 #include <string>
 #include <vector>
@@ -11,17 +10,17 @@ namespace weft::engine {
 
 struct RunProblem {
   WarningCode code = WarningCode::not_converged;
-  int frames = 0;        // or steps, in which it was seen; of what is told at the end 1 [1]
-  double value = 0;      // the worst, as StepWarning has it
-  std::string sentence;  // what happened, and which key to turn
+  int frames = 0;        // or steps, with the problem; 1 for problems found at the end [1]
+  double value = 0;      // the worst, as in StepWarning
+  std::string sentence;  // the problem, and the key to change
 };
 
-/// Gathers problems frame by frame.
+/// Collects problems frame by frame.
 ///
 ///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
-///     flat_triangle  under a tenth of its area, likewise
-///     energy_rise    in a frame, by more than 2 % of the energy that had fallen, and than lifting all
-///                    cloth by its thickness takes, where nothing is driven
+///     flat_triangle  below a tenth of its area, for more than five frames in a row
+///     energy_rise    in a frame, without external drive, by more than 2 % of the energy range so far, and by
+///                    more than the energy that lifts all cloth by its thickness
 ///     cap_reached, contact_skipped, not_converged   by steps
 ///     infeasible     pairs, each once
 ///     crossings      in the last frame
@@ -38,7 +37,7 @@ class ProblemFinder {
   /// Pairs of triangles that cross in the last frame.
   void set_crossings(int count) { crossings_ = count; }
 
-  /// `count` more pairs of features that went through each other.
+  /// `count` more pairs of features that passed through each other.
   void add_passages(int count) { passages_ += count; }
 
   /// The worst of each code and cloth, in the order of codes.

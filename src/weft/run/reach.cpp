@@ -7,9 +7,8 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kBelow =
-    0.05;  // cloth is drawn this far below the lowest collider, as a share of its size [1]
-constexpr double kLevel = 0.999;  // a plane is a floor where its normal's y is more [1]
+constexpr double kBelow = 0.05;   // end of a fall below the lowest collider, as a share of cloth's size [1]
+constexpr double kLevel = 0.999;  // least y of the normal of a floor [1]
 
 std::optional<double> find_floor(const World& world) {
   for (const Collider& collider : world.colliders()) {
@@ -41,7 +40,7 @@ Eigen::AlignedBox3d box_around(const ColliderShape& shape) {
   return box;
 }
 
-/// What hangs straight down from the nearest pin: each particle as far below it as it is away at rest.
+/// Positions of hanging cloth: each particle straight below its nearest pin, at its rest distance from it.
 void add_hanging(const ClothModel& model, const ClothState& state, const std::vector<Pin>& pins,
                  std::vector<Vec3>& points) {
   const std::vector<Vec3>& rest = model.topology->mesh.positions;

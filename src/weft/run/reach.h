@@ -1,6 +1,5 @@
 #pragma once
-/// Where a scene will probably go, guessed from its start: for cameras that must look before the future is
-/// known.
+/// Framing for live cameras: an estimate of a scene's future extent, from its start.
 
 #include <vector>
 
@@ -8,8 +7,8 @@
 
 namespace weft::engine {
 
-/// Points around all that is at the start, what can hang from pins, and what falls, down to a level plane, to
-/// a little below the lowest collider, or by its own size [m].
+/// Points around the initial cloth and colliders, hanging cloth below its pins, and falling cloth. Cloth
+/// falls to a level plane, else slightly below the lowest collider, else by its own size [m].
 std::vector<Vec3> find_reach(const World& world);
 
 }  // namespace weft::engine

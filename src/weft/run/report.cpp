@@ -34,7 +34,7 @@ nlohmann::ordered_json json_of(const EnergySeries& e) {
           {"left_over", json_of(e.left_over)}};
 }
 
-/// Seconds of the whole run; counts per frame, but for the longest list of the run.
+/// Seconds of the whole run; counts per frame, except for the longest list of the run.
 nlohmann::ordered_json json_of(const WorkTimes& w, int frames) {
   const auto per_frame = [&](std::size_t count) { return static_cast<double>(count) / std::max(1, frames); };
   return {{"seconds",

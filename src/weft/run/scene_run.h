@@ -1,5 +1,5 @@
 #pragma once
-/// A scene, run one frame at a time.
+/// Runs a scene frame by frame.
 ///
 ///     GlbSink glb(file);
 ///     SceneRun run(read_scene("flag.toml"), make_jobs(2), {&glb});
@@ -20,28 +20,28 @@ namespace weft::engine {
 
 class SceneRun {
  public:
-  /// Builds the world and shows the start to the sinks, which must outlive this. `num_frames`: instead of the
-  /// scene's duration. Throws InputError as build_scene() and the sinks do.
+  /// Builds the world and passes the start to the sinks, which must outlive this. `num_frames` overrides the
+  /// scene's duration. Throws InputError like build_scene() and the sinks.
   SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks = {},
            std::optional<int> num_frames = {});
 
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
 
-  /// Simulates a frame. False if there was none left, or if it failed: then report() has the outcome.
+  /// Simulates a frame. False if no frame is left, or if it failed: then report() has the outcome.
   bool next_frame();
 
   /// One step, for programs that change or show the world between the steps of a frame. Wind and gusts are
-  /// the scene's. Neither sinks nor the report hear of it.
+  /// the scene's. Sinks and report do not include it.
   StepReport step();
 
-  /// No frame follows.
+  /// Sets the outcome of a run that ends early.
   void interrupt() { report_.outcome = RunOutcome::interrupted; }
 
-  /// Ends the run, complete or not: the last entries of the report, and the ends of the sinks' files.
+  /// Ends the run, complete or not: adds the last entries of the report and finishes the sinks.
   const RunReport& finish();
 
-  /// Calls `observer` with every moment within steps (World::set_observer); its time is not measured.
+  /// Calls `observer` at every time within steps (World::set_observer); its run time is not measured.
   void observe(std::function<void(double time)> observer);
 
   const SceneDesc& scene() const { return scene_; }
@@ -86,16 +86,16 @@ struct Progress {
   double seconds_left = 0;   // at the present pace [s]
 };
 
-/// Called after every frame; false ends the run there, keeping what was done.
+/// Called after every frame; false ends the run and keeps the results so far.
 using OnFrame = std::function<bool(const Progress&)>;
 
 /// Runs a scene to its end, with a Recorder and a FrameChecker before the other sinks. Throws InputError for
-/// bad input; a simulation that fails ends the run, with the reason in `outcome` and `failure`.
+/// bad input. A failed step ends the run, with `outcome` and `failure` in the report.
 RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std::vector<FrameSink*>& sinks = {},
                     const OnFrame& on_frame = {});
 
-/// Warnings of cloths that are too stiff for the paper's Eq. 16: the stiffer the cloth for its step, the more
-/// Eq. 16 reduces gravity.
+/// Warnings for cloths that are too stiff for the paper's Eq. 16, which reduces gravity by a factor that
+/// grows with stiffness and step.
 std::vector<std::string> check_paper(const SceneDesc& scene, const World& world);
 
 }  // namespace weft::engine

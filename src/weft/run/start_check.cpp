@@ -10,14 +10,14 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kMaxTold = 100000;         // crossings that are told apart by surfaces
-constexpr double kInsideAtStart = 1e-6;  // cloth that is deeper inside a collider is told of [m]
+constexpr int kMaxTold = 100000;         // maximum number of crossing triangle pairs grouped by surfaces
+constexpr double kInsideAtStart = 1e-6;  // depth of cloth inside a collider that is reported [m]
 
-constexpr double kTooLarge = 20;      // for cloth and for those who wear it [m] …
-constexpr double kMillimetres = 500;  // … and for a file in centimetres [m]
-constexpr double kMaxRatio = 30;      // as large as a cloth a collider may be
-constexpr double kLying = 2;          // what lies is so many times as deep as high
-constexpr double kFlat = 0.1;         // share of its depth: what is no higher is a sheet
+constexpr double kTooLarge = 20;      // for a garment or its wearer, in metres: probably centimetres [m]
+constexpr double kMillimetres = 500;  // too large for centimetres: probably millimetres [m]
+constexpr double kMaxRatio = 30;      // of the sizes of collider and cloth, either way
+constexpr double kLying = 2;          // a lying mesh: least depth, as a multiple of its height
+constexpr double kFlat = 0.1;         // a sheet: maximum height, as a share of its depth
 
 std::string format(const char* text, double number) {
   char result[96];
@@ -25,7 +25,7 @@ std::string format(const char* text, double number) {
   return result;
 }
 
-/// A cloth or a mesh among the colliders.
+/// A cloth or a mesh collider.
 struct MeshBody {
   std::string name;  // `cloth "shirt"`
   Vec3 size = Vec3::Zero();
@@ -41,7 +41,7 @@ Vec3 size_of(const std::vector<Vec3>& positions) {
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
 }
 
-/// Cloths come first.
+/// All cloths, then the mesh colliders.
 std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
   std::vector<MeshBody> bodies;
   for (int c = 0; c < world.num_cloths(); ++c) {
@@ -88,7 +88,7 @@ std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& co
          format(" %.3g m; are both files in the same unit? scale multiplies a file's", collider.largest());
 }
 
-/// Beside something that stands. A sheet may lie.
+/// Warns of a cloth that lies on its back beside a standing collider. Sheets may lie.
 std::optional<std::string> check_up(const MeshBody& cloth, const MeshBody& collider) {
   const bool lies = cloth.size.z() > kLying * cloth.size.y() && cloth.size.y() > kFlat * cloth.size.z(),
              stands = collider.size.y() > kLying * collider.size.z();

@@ -1,5 +1,5 @@
 #pragma once
-/// What a person should know of a scene before it runs: how large things are, and what crosses at the start.
+/// Checks of a scene before its run: sizes of meshes, and initial intersections.
 
 #include <string>
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace weft::engine {
 
-/// A sentence for every two things that cross, or of which one is in the other, before anything has moved.
+/// A message for each pair of bodies that intersect initially, or one of which is inside the other.
 std::vector<std::string> check_start(const World& world);
 
 struct SizeCheck {
   /// `cloth "shirt": 0.62 m wide, 0.71 m high, 0.24 m deep, 5230 triangles`, for every cloth and every mesh
-  /// among the colliders. Wide, high and deep are along x, y and z.
+  /// collider. Width, height and depth are along x, y and z.
   std::vector<std::string> sizes;
-  std::vector<std::string> warnings;  // of a mesh that seems to be in another unit, or to lie on its back
+  std::vector<std::string> warnings;  // of meshes with a suspect unit or orientation
 };
 
 /// `world` is the scene's.

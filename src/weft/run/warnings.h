@@ -1,5 +1,5 @@
 #pragma once
-/// Sentences for what a World reports as data: what happened, and which key of a scene file to turn.
+/// Text for the warnings that a World reports as data: the event, and the key of a scene file to change.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace weft::engine {
 
-/// The code as reports have it: "cap_reached", …
+/// The code as in reports: "cap_reached", …
 std::string to_string(WarningCode code);
 std::string to_string(StepFault fault);
 

@@ -50,7 +50,7 @@ MeshSource read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
   return mesh;
 }
 
-/// Keys of the other kind of cloth are refused with the reason, rather than being unknown.
+/// Keys of the other kind of cloth are refused with the reason, not as unknown.
 std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std::filesystem::path& folder) {
   cloth.require({"grid", "mesh"}, "grid = { size = [1, 1], cells = [32, 32] } or mesh = \"file.obj\"");
   const TomlValue grid = cloth.get("grid"), mesh = cloth.get("mesh");
@@ -104,7 +104,7 @@ std::optional<FabricDesc> read_named_fabric(const TomlValue& value, const std::f
   }
 }
 
-/// By name, by file or in SI numbers; nothing if the cloth has spring stiffnesses instead.
+/// A fabric by name, file or SI numbers; empty if the cloth has spring stiffnesses instead.
 std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
                                       const std::filesystem::path& folder) {
   if (const TomlValue name = cloth.get("fabric"); name && name.is_string())
@@ -132,7 +132,7 @@ void read_warp(TomlTable& cloth, FabricDesc& fabric) {
   fabric.warp = direction;
 }
 
-/// What only a fabric in SI has; and what a fabric makes of material and model.
+/// Keys that require a fabric; material and model that follow from a fabric.
 void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   if (!desc.fabric) {
     for (const char* key : {"membrane", "warp"})

@@ -9,10 +9,9 @@ namespace {
 
 using Shape = decltype(ColliderSceneDesc::shape);
 
-constexpr double kUnit = 1e-15;  // of |n|² from 1: the direction is normalised already
+constexpr double kUnit = 1e-15;  // deviation of |n|² from 1 at which the direction counts as normalised
 
-/// Keys of a mesh, on a shape that is given by keys of its own: refused with the reason, rather than being
-/// unknown.
+/// Keys of a mesh on any other shape: refused with the reason, not as unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
   for (const std::string_view key : {"file", "frames", "frame_rate", "rest", "up", "scale", "position",
                                      "rotation"}) {
@@ -102,7 +101,7 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   return mesh;
 }
 
-/// Of a shape that cannot be read nothing else is judged, for what else belongs to it is not known.
+/// If "shape" cannot be read, other keys are not checked, because the valid ones are unknown.
 Shape read_shape(TomlTable& collider, const std::filesystem::path& folder) {
   const std::vector<std::string> names = {"sphere", "plane", "capsule", "box", "mesh"};
   collider.require({"shape"}, "\"sphere\", \"plane\", \"capsule\", \"box\" or \"mesh\"");

@@ -1,5 +1,5 @@
 #pragma once
-/// Mistakes in a scene file, each with its place.
+/// Mistakes in a scene file, each with file, line and column.
 
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace weft::engine {
 
-/// One mistake: "FILE:LINE:COLUMN: what is wrong, what was expected".
+/// One mistake: "FILE:LINE:COLUMN: mistake, expected value".
 struct Diagnostic {
   std::string file;          // an override's is "--set path.to.key"
-  int line = 0, column = 0;  // from 1; 0: no place in a file
+  int line = 0, column = 0;  // from 1; 0: not in a file
   std::string message;       // a sentence
 
   std::string to_string() const;

@@ -42,8 +42,8 @@ void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& cu
   }
 }
 
-/// Mistakes that only all numbers together show, each at the number that is named. A number that could not be
-/// read has its default, and was reported.
+/// Validates the combination of all numbers; each mistake is reported at the number that it names. An
+/// unreadable number has its default here, and is reported already.
 void judge_together(TomlTable& table, const Fabric& fabric) {
   for (const FabricMistake& mistake : find_mistakes(fabric)) {
     if (const TomlValue value = table.get(mistake.field))
@@ -57,7 +57,7 @@ void judge_together(TomlTable& table, const Fabric& fabric) {
 
 Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base) {
   Fabric f = base;
-  // A stiffness of the table's own stands for a curve of the base.
+  // A stiffness in the table replaces the curve of the base.
   if (table.has("c11")) f.stretch_warp.clear();
   if (table.has("c22")) f.stretch_weft.clear();
   const auto read = [&](const char* key, double& target, const NumberRule& rule) {

@@ -1,4 +1,4 @@
-/// Public reading and writing of mesh files.
+/// Public functions for reading and writing mesh files.
 
 #include "weft/face/convert.h"
 #include "weft/io.h"

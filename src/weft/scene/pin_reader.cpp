@@ -6,7 +6,7 @@
 namespace weft::engine {
 namespace {
 
-/// What may be pinned; a shape that could not be read is taken to have everything.
+/// Valid selections for pins; a shape that could not be read allows all.
 struct Pinnable {
   bool has_corners = true;
   IntegerRule index = {.least = 0};

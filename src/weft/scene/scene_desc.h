@@ -1,5 +1,5 @@
 #pragma once
-/// A scene as plain data: what a scene file says, checked and with defaults filled in.
+/// A scene as plain data: the contents of a scene file, checked and with defaults filled in.
 
 #include <filesystem>
 #include <memory>
@@ -22,7 +22,7 @@
 namespace weft::engine {
 
 struct GridCorner {
-  int i = 0, j = 0;  // 0 or 1 each: which end of the first and of the second axis
+  int i = 0, j = 0;  // 0 or 1 each: the end of the first and of the second axis
   bool operator==(const GridCorner&) const = default;
 };
 
@@ -37,34 +37,34 @@ using ParticleSelection =
 struct PinDesc {
   ParticleSelection select;
   std::vector<KeyFrame> motion;  // empty: held still
-  Vec3 pivot = Vec3::Zero();     // what `motion` turns about [m]
+  Vec3 pivot = Vec3::Zero();     // centre of the rotation of `motion` [m]
   bool operator==(const PinDesc&) const = default;
 };
 
-/// Springs that are stiffer or softer than the cloth's others: those with both ends in the selection.
+/// A region of stiffer or softer springs: those with both ends in the selection.
 struct StiffenDesc {
   ParticleSelection select;
-  double factor = 1;  // what their stiffness is multiplied by, >= 0 [1]
+  double factor = 1;  // of their stiffness, >= 0 [1]
   bool operator==(const StiffenDesc&) const = default;
 };
 
-/// A mesh in a file or in memory, and how it is taken over.
+/// A mesh in a file or in memory, with the conversions on import.
 struct MeshSource {
   std::filesystem::path file;   // resolved against the scene file's folder
   std::shared_ptr<const weft::TriangleMesh> mesh;  // in memory, instead of a file
-  bool up_is_z = false;         // turned first, so that its z axis becomes the world's y axis
-  double scale = 1;             // of the file's unit, > 0 [m]
+  bool up_is_z = false;         // rotated first, so that its z axis becomes the world's y axis
+  double scale = 1;             // length of the file's unit, > 0 [m]
   bool weld = false;            // sew vertices that coincide
   double weld_distance = 1e-6;  // within this distance, >= 0 [m]
-  double sew_distance = 0;      // a cloth's: sew borders within this distance, vertex on vertex or not [m]
+  double sew_distance = 0;      // cloth: sew borders within this distance, vertex on vertex or not [m]
   bool operator==(const MeshSource&) const = default;
 };
 
-/// A collider's mesh, where it is at the start.
+/// A collider's mesh with its initial pose.
 struct PlacedMesh {
   MeshSource source;                          // of a sequence: the first frame's
-  std::vector<std::filesystem::path> frames;  // of a sequence, in order, the first one too; empty: none
-  std::vector<std::vector<Vec3>> frame_positions;  // likewise in memory, of (num_vertices) each; in the
+  std::vector<std::filesystem::path> frames;  // of a sequence, in order, with the first one; empty: none
+  std::vector<std::vector<Vec3>> frame_positions;  // the same in memory, (num_vertices) each; in the
                                                    // source's unit and axes [m]
   std::filesystem::path rest;                 // pose before SceneDesc::settle; empty: that of the start
   double frame_rate = 30;                     // of a sequence, > 0 [1/s]
@@ -73,7 +73,7 @@ struct PlacedMesh {
   bool operator==(const PlacedMesh&) const = default;
 };
 
-/// A box, where it is at the start.
+/// A box with its initial pose.
 struct PlacedBox {
   Vec3 center = Vec3::Zero();            // [m]
   Vec3 half_size = Vec3::Constant(0.5);  // along its own axes, > 0 [m]
@@ -85,18 +85,18 @@ struct ColliderSceneDesc {
   std::string name;  // default: "collider", "collider 2", …
   std::variant<Sphere, Plane, Capsule, PlacedBox, PlacedMesh> shape;
   double friction = Collider().friction;  // Coulomb's coefficient, >= 0 [1]
-  double static_friction = 0;             // while nothing slides; less than `friction`: the same [1]
+  double static_friction = 0;             // of sticking contacts; less than `friction`: the same [1]
   RigidMotion motion;
   bool operator==(const ColliderSceneDesc&) const = default;
 };
 
-/// What a cloth is made of, in SI units.
+/// The fabric of a cloth, in SI units.
 struct FabricDesc {
   std::string name;  // for messages
   Fabric numbers;
   Membrane membrane = Membrane::triangle;
-  std::optional<Vec3> warp;  // in the cloth's own coordinates, projected on every triangle; empty: a mesh's
-                             // texture coordinates say it (warp = u), on a grid it is the first axis
+  std::optional<Vec3> warp;  // in the cloth's own coordinates, projected on every triangle; empty: from the
+                             // texture coordinates of a mesh (warp = u), on a grid the first axis
   bool operator==(const FabricDesc&) const = default;
 };
 
@@ -104,24 +104,24 @@ struct ClothSceneDesc {
   std::string name;  // default: "cloth", "cloth 2", …
   std::variant<Grid, MeshSource> shape;
   SpringModel model = SpringModel::simplified;  // of a fabric on a grid: alternating
-  ClothMaterial material;                       // with a fabric: its density, thickness and friction alone
-  bool has_own_thickness = false;               // else the material's, but no more than half of a mean edge
+  ClothMaterial material;                       // with a fabric: only its density, thickness and friction
+  bool has_own_thickness = false;               // else the material's, at most half of the mean edge
   std::optional<FabricDesc> fabric;             // empty: `material` has the stiffness of springs
   Vec3 position = Vec3::Zero();                 // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
   std::vector<PinDesc> pins;
-  std::vector<StiffenDesc> stiffened;  // of springs alone; factors multiply where selections overlap
+  std::vector<StiffenDesc> stiffened;  // springs only; factors multiply where selections overlap
   bool operator==(const ClothSceneDesc&) const = default;
 };
 
-/// Of two things by their names, in place of what they say themselves.
+/// Contact settings of a pair of bodies, given by their names; they override the settings of the bodies.
 struct ContactDesc {
   std::array<std::string, 2> between;  // cloths and colliders, one cloth at least; a cloth twice: with itself
   std::optional<double> friction;      // Coulomb's coefficient, >= 0 [1]
-  double static_friction = 0;          // while nothing slides; only with `friction` [1]
-  bool collide = true;                 // false: they go through each other
+  double static_friction = 0;          // of sticking contacts; only with `friction` [1]
+  bool collide = true;                 // false: they do not collide
   bool operator==(const ContactDesc&) const = default;
 };
 
@@ -133,10 +133,10 @@ struct WindDesc {
   bool operator==(const WindDesc&) const = default;
 };
 
-/// What to do with a start at which cloth crosses something, after it has been untangled if that is wished.
+/// Response to initial intersections of cloth; with `untangle`, to those that remain.
 enum class CrossedStart {
-  refuse,  // by an InputError that names it
-  allow,   // warn of it, and run
+  refuse,  // InputError that names the intersection
+  allow,   // warning
 };
 
 struct SceneDesc {
@@ -154,10 +154,10 @@ struct SceneDesc {
   WindDesc wind;
   IntegratorSettings solver;
   int steps_per_frame = 1;       // >= 1
-  std::optional<bool> adaptive;  // whether steps are divided where they are too long; empty: with newton
-  int max_steps_per_frame = 16;  // into as many in all, >= 1
-  bool contact = true;           // whether colliders, cloth itself and other cloths hold cloth off
-  bool untangle = true;          // set apart what crosses at the start, where there is contact
+  std::optional<bool> adaptive;  // divides steps that are too long; empty: only with newton
+  int max_steps_per_frame = 16;  // limit of that division, >= 1
+  bool contact = true;           // of cloth with colliders, itself and other cloths
+  bool untangle = true;          // removes initial intersections, if `contact`
   CrossedStart crossed_start = CrossedStart::refuse;
 
   int num_frames() const;      // round(duration · fps), at least 1

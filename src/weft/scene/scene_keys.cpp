@@ -1,4 +1,4 @@
-/// The reference of scene files, from what the reader asks for.
+/// The reference of scene files, from the reader's queries.
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,7 @@
 namespace weft::engine {
 namespace {
 
-/// Files that between them make the reader ask for every key it knows; they need not be good scenes.
+/// Files that together make the reader query every key; they need not be valid scenes.
 constexpr std::string_view kKeySamples[] = {
     R"([scene]
 [[cloth]]
@@ -44,7 +44,7 @@ c11 = 1
 select = { sphere = {} }
 )"};
 
-/// Keys of all tables by their paths, both in the order of asking.
+/// Keys of all tables by path, both in query order.
 class KeyTable {
  public:
   void add(const TomlSection& section) {
@@ -104,7 +104,7 @@ class KeyTable {
   }
 
   std::vector<std::pair<std::string, std::vector<KeyNote>>> tables_;
-  std::map<std::string, std::string> required_;  // by path, and in which words
+  std::map<std::string, std::string> required_;  // path of a required key → its wording
 };
 
 }  // namespace

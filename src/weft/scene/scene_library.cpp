@@ -49,7 +49,7 @@ std::vector<fs::path> folders_above(const fs::path& file) {
   return folders;
 }
 
-/// "paper/fig6_ball" may be asked for as "fig6_ball" too.
+/// "fig6_ball" is accepted for "paper/fig6_ball" too.
 std::string find_nearest_scene(const std::string& name, const std::vector<ShippedScene>& scenes) {
   std::vector<std::string> names, last_parts;
   for (const ShippedScene& scene : scenes) {

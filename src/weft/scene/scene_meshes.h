@@ -1,5 +1,5 @@
 #pragma once
-/// Private to scene/: cloths and colliders of a scene as public descriptions, their mesh files read.
+/// Private to scene/: cloths and colliders of a scene as public descriptions, with their mesh files loaded.
 
 #include <string>
 #include <vector>
@@ -11,15 +11,15 @@
 
 namespace weft::engine {
 
-/// Without pins and stiffened regions. Throws InputError, beginning with the cloth, where its file cannot be
-/// read.
+/// Without pins and stiffened regions. Throws InputError, beginning with the name of the cloth, if its file
+/// cannot be read.
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings);
 
-/// Likewise.
+/// The same for a collider; `settle` as in SceneDesc [s].
 ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
                                std::vector<std::string>& warnings);
 
-/// How many of the points are inside the shape. Nothing is inside an open mesh.
+/// Number of points inside the shape; 0 for an open mesh.
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points);
 
 }  // namespace weft::engine

@@ -158,7 +158,7 @@ void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
   }
 }
 
-/// A number goes to whichever integrator runs; "auto" leaves the choice to it.
+/// A number applies to the integrator in use; "auto" leaves the choice to it.
 void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
   const TomlValue value = solver.get("iterations");
   if (!value) return;

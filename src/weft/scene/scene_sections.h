@@ -1,5 +1,5 @@
 #pragma once
-/// Private to scene/: the sections of a scene file that are worth a file of their own.
+/// Private to scene/: readers for sections of a scene file.
 
 #include <filesystem>
 #include <string_view>
@@ -10,42 +10,42 @@
 
 namespace weft::engine {
 
-/// A whole scene; mistakes are left in the document.
+/// A whole scene; mistakes are recorded in the document.
 SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file);
 
-/// One [[cloth]], the `number`-th from 1. Mesh files are looked for beside the scene, in `folder`.
+/// One [[cloth]], the `number`-th from 1. Mesh file names are relative to `folder`, the scene's folder.
 ClothSceneDesc read_cloth(TomlTable cloth, int number, const std::filesystem::path& folder);
 
 /// A cloth's pins, in both forms; `shape` is nullptr if it could not be read.
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
 
-/// Where a cloth's springs are stiffer or softer; `shape` as for pins.
+/// Regions of stiffer or softer springs; `shape` as for pins.
 std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
 
-/// The key "static_friction": not less than `friction`.
+/// The key "static_friction": at least `friction`.
 void read_static_friction(TomlTable& table, double friction, double& static_friction);
 
-/// One [[collider]], the `number`-th from 1. Mesh files are looked for as for cloth.
+/// One [[collider]], the `number`-th from 1. Mesh file names as for cloth.
 ColliderSceneDesc read_collider(TomlTable collider, int number, const std::filesystem::path& folder);
 
-/// The files of a name with one star, in the order of their names.
+/// The files that match a name with one star, sorted by name.
 std::vector<std::filesystem::path> find_frame_files(const std::filesystem::path& pattern);
 
-/// A fabric's numbers in SI, and what they are together; what is left out is as in `base`. `needs_all`: only
-/// damping and what follows it may be.
+/// A fabric's SI numbers, validated one by one and together. Missing numbers are those of `base`.
+/// `needs_all`: only damping and the numbers after it may be missing.
 Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base = {});
 
 /// A file, named by `key`, which exists; empty if it is missing.
 std::filesystem::path read_file_name(TomlTable& owner, std::string_view key,
                                      const std::filesystem::path& folder);
 
-/// A mesh file, named by `key`, and what says how to read it: "up" and "scale".
+/// A mesh file, given by `key`, with the keys "up" and "scale".
 MeshSource read_mesh_file(TomlTable& owner, std::string_view key, const std::filesystem::path& folder);
 
 /// The key "motion" of a pin or collider: key frames with increasing times.
 std::vector<KeyFrame> read_motion(TomlTable& owner);
 
-/// A key frame's "time", which must be later than that of the last one in `before`.
+/// A key frame's "time"; it must be later than that of the last key in `before`.
 template <class Key>
 bool read_time(TomlTable& table, const std::vector<Key>& before, Key& key) {
   table.require({"time"}, "a number in s");

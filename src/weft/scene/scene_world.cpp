@@ -31,7 +31,7 @@ std::vector<int> select_inside(const std::vector<Vec3>& positions, const Region&
   return selected;
 }
 
-/// Selections become particle numbers.
+/// Converts selections to particle indices.
 struct Selector {
   const ClothSceneDesc& cloth;
   const std::vector<int>& particle_of_vertex;
@@ -80,7 +80,7 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
       " contains no particle; regions are in world coordinates [m], after position and rotation");
 }
 
-/// Pins and stiffened regions, selected by where particles are at the start.
+/// Pins and stiffened regions, selected by initial particle positions.
 void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   const std::vector<Vec3> positions =
       place(WorldAccess::engine(built).model(id).topology->mesh.positions, desc);

@@ -1,5 +1,5 @@
 #pragma once
-/// From a scene to a world that can step.
+/// Builds the World of a scene.
 
 #include <memory>
 #include <string>
@@ -11,28 +11,28 @@
 
 namespace weft::engine {
 
-/// What building a scene has to say.
+/// Messages from building a scene.
 struct SceneNotes {
-  double untangle_seconds = 0;        // that setting apart what crossed at the start took [s]
-  std::vector<std::string> warnings;  // what is odd about meshes, pins and colliders, in sentences
-  std::vector<std::string> notes;     // what was done to meshes as the scene asks, in sentences
+  double untangle_seconds = 0;        // time for removing initial intersections [s]
+  std::vector<std::string> warnings;  // suspect properties of meshes, pins and colliders
+  std::vector<std::string> notes;     // changes to meshes that the scene asks for
 };
 
 struct PublicScene : SceneNotes {
   weft::World world;
 };
 
-/// The same without the public face.
+/// The same with the internal World.
 struct SceneWorld : SceneNotes {
   World world;
 };
 
-/// Loads meshes, places cloth, sets pins. A collider's mesh that faces inwards is turned right side out.
-/// Throws InputError where a mesh cannot be used or a pin selects nothing.
+/// Loads meshes, places cloth, sets pins. A collider mesh that faces inwards is flipped. Throws InputError if
+/// a mesh cannot be used or a pin selects nothing.
 PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
-/// A scene's wind, as a World takes it.
+/// A scene's wind as input for a World.
 weft::Wind describe_wind(const WindDesc& wind);
 
 }  // namespace weft::engine

@@ -57,7 +57,7 @@ std::string toml_array(const Numbers& numbers) {
 
 std::string toml(const Vec3& v) { return toml_array(v); }
 
-/// Keys and values: the lines of a table, or what stands in an inline one.
+/// Keys and values, as lines of a table or as an inline table.
 class Table {
  public:
   template <class Value>
@@ -65,7 +65,7 @@ class Table {
     return add_text(key, toml(value));
   }
 
-  /// Only if it is not what the reader takes for a missing key.
+  /// Omits a value equal to the reader's default.
   template <class Value>
   Table& add(const char* key, const Value& value, const Value& usual) {
     return value == usual ? *this : add(key, value);
@@ -100,7 +100,7 @@ std::string toml_array(const std::vector<Table>& tables) {
 
 // ---- Meshes ----
 
-/// Names of mesh files, as a scene file in a folder has them; meshes in memory are written there first.
+/// Names of mesh files relative to the scene file's folder; meshes in memory are written there first.
 class MeshFiles {
  public:
   explicit MeshFiles(const fs::path& scene_file)
@@ -140,7 +140,7 @@ class MeshFiles {
     return name;
   }
 
-  /// The pattern that finds these files, all of them and no other.
+  /// The pattern that matches exactly these files.
   static fs::path pattern_of(const std::vector<fs::path>& frames, const std::string& owner) {
     const std::string first = frames.front().filename().string();
     std::size_t begin = first.size(), end = first.size();
@@ -422,7 +422,7 @@ std::string section_at(const std::string& text, int line) {
   return section;
 }
 
-/// An empty folder of the system's temporary ones, removed with this.
+/// An empty temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(fs::temp_directory_path() / ("weft-" + std::to_string(std::random_device()()))) {

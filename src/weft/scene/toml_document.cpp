@@ -61,7 +61,7 @@ std::vector<Diagnostic> TomlDocument::finish() {
 
 void TomlDocument::judge(const TomlSection& section) {
   if (!section.table) return;
-  std::vector<std::string> meant;  // by keys with a slip of the pen; they are not missing as well
+  std::vector<std::string> meant;  // by misspelt keys; these are not reported as missing too
   for (const auto& [key, value] : *section.table) {
     const std::string name(key.str());
     if (section.any_keys || contains(section.keys, name) || contains(section.refused, name)) continue;
@@ -83,7 +83,7 @@ std::string TomlDocument::explain_unknown(const TomlSection& section, const std:
   const std::string nearest = find_nearest(key, section.keys);
   if (!nearest.empty()) return unknown + "; did you mean " + quote(nearest) + "?";
   if (const TomlSection* home = find_home(section, key)) {
-    // An override that starts too low, "paper.damping_sign=…", is given its whole path.
+    // An override without its leading sections, "paper.damping_sign=…": suggest the full path.
     const bool starts_too_low = is_override(place) && section.path.empty();
     const std::string rest = starts_too_low ? place.path->substr(place.path->find(' ') + 1) : key;
     return unknown + "; did you mean " + (home->path.empty() ? "" : home->path + ".") + rest + "?";
@@ -91,7 +91,7 @@ std::string TomlDocument::explain_unknown(const TomlSection& section, const std:
   return unknown + "; known here: " + join(section.keys, ", ");
 }
 
-/// The section that knows the key, among the top-level ones, the parent and the children.
+/// The section that has the key, among the top-level ones, the parent and the children.
 const TomlSection* TomlDocument::find_home(const TomlSection& section, std::string_view key) const {
   for (const TomlSection& other : sections_) {
     const bool is_near =
@@ -103,7 +103,7 @@ const TomlSection* TomlDocument::find_home(const TomlSection& section, std::stri
 
 std::string quote(std::string_view text, std::size_t max_length) {
   std::size_t length = std::min(text.size(), max_length);
-  // Never between the bytes of one character.
+  // UTF-8: never cuts between the bytes of one character.
   while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
     --length;
   std::string quoted = "\"" + std::string(text.substr(0, length));

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to scene/: a TOML text, what is asked of it, and every mistake found. Knows nothing of scenes.
+/// Private to scene/: a TOML text, the queries of its readers, and the mistakes found. Independent of scenes.
 
 #include <deque>
 #include <string>
@@ -11,30 +11,28 @@
 
 namespace weft::engine {
 
-/// What a key may hold, in words: for the reference of scene files.
+/// Documentation of a key, for the reference of scene files.
 struct KeyNote {
   std::string key;
   std::string holds;  // "number > 0"
   std::string unit;   // "m"; empty: none
-  std::string usual;  // the default, as it would be written; empty: none
+  std::string usual;  // the default in TOML; empty: none
 };
 
-/// What a reader asked one table for. Keys that nobody asked for are mistakes; only at the end is it known
-/// which.
+/// Keys that a reader queries in one table. Keys that were never queried are mistakes, found in finish().
 struct TomlSection {
   struct Requirement {
     std::vector<std::string> one_of;  // keys
     std::string expected;             // for the message
   };
 
-  const toml::table* table =
-      nullptr;                    // nullptr: not in the document; asked all the same, so that keys are known
-  std::string path;               // "cloth.fabric"; empty: the document
-  std::vector<std::string> keys;  // known ones, in the order of asking
-  std::vector<std::string> refused;  // keys that were reported already
+  const toml::table* table = nullptr;  // nullptr: not in the document; its keys are recorded all the same
+  std::string path;                    // "cloth.fabric"; empty: the document
+  std::vector<std::string> keys;       // known ones, in the order of queries
+  std::vector<std::string> refused;    // keys that were reported already
   std::vector<Requirement> required;
-  bool any_keys = false;       // unknown keys are not judged
-  std::vector<KeyNote> notes;  // of keys that were asked for by what they may hold
+  bool any_keys = false;       // unknown keys are allowed
+  std::vector<KeyNote> notes;  // of keys that were read with a type
 };
 
 class TomlDocument {
@@ -42,8 +40,8 @@ class TomlDocument {
   /// Throws SceneError with one diagnostic if the text is not TOML.
   TomlDocument(std::string_view text, std::string file);
 
-  /// "path.to.key=value" or "list[2].key=value": replaces or adds a value, which is TOML or else taken as a
-  /// string. What cannot be followed is recorded as a mistake.
+  /// "path.to.key=value" or "list[2].key=value": replaces or adds a value, which is TOML or else a string. A
+  /// path that does not fit the document is recorded as a mistake.
   void override_value(const std::string& assignment);
 
   const toml::table& root() const { return root_; }
@@ -53,8 +51,7 @@ class TomlDocument {
   TomlSection& add_section(const toml::table* table, std::string path);
   void add_mistake(const toml::source_region& place, std::string message);
 
-  /// Judges unknown and missing keys, and hands over all mistakes in the order of their places, overrides
-  /// last.
+  /// Checks for unknown and missing keys, and returns all mistakes in the order of the text, overrides last.
   std::vector<Diagnostic> finish();
 
  private:
@@ -70,11 +67,11 @@ class TomlDocument {
   std::vector<Diagnostic> mistakes_;
 };
 
-/// Parses text; `source` is the file in messages. Throws SceneError. Refuses what is nested so deeply that
+/// Parses text; `source` is the file in messages. Throws SceneError, also where nesting is so deep that
 /// toml++, which destroys tables recursively, would run out of stack.
 toml::table parse_toml(std::string_view text, const std::string& source);
 
-/// In quotes, shortened to so many bytes, and without control characters that would upset a terminal.
+/// The text in quotes, at most `max_length` bytes, with control characters replaced for terminals.
 std::string quote(std::string_view text, std::size_t max_length = 60);
 
 }  // namespace weft::engine

@@ -11,7 +11,7 @@ std::string trim(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
 }
 
-/// One step of a path: "key" or "key[2]".
+/// One component of a path: "key" or "key[2]".
 struct Step {
   std::string key;
   std::vector<std::size_t> indices;
@@ -71,7 +71,7 @@ std::string as_toml_string(std::string_view text) {
   return quoted + "\"";
 }
 
-/// A table whose only value, "value", says that it comes from `source`.
+/// A table with one value, "value", whose source is `source`.
 toml::table parse_value(std::string_view text, const std::string& source) {
   try {
     toml::table table = parse_toml("value = " + std::string(text), source);
@@ -81,7 +81,7 @@ toml::table parse_value(std::string_view text, const std::string& source) {
   return parse_toml("value = " + as_toml_string(text), source);
 }
 
-/// Follows the steps and puts the value at their end. Returns what is wrong, "" if nothing.
+/// Follows the path and sets the value at its end. Returns the mistake, "" if none.
 class Walk {
  public:
   Walk(toml::table& root, toml::table value) : at_(&root), value_(std::move(value)) {}

@@ -8,13 +8,13 @@ namespace {
 
 constexpr int kMaxDepth = 32;  // of brackets, and of dots in a key
 
-/// Walks over TOML just closely enough to tell brackets and dots from those in strings and comments. Where
-/// the text is no TOML the count may be wrong, but there toml++ stops too.
+/// Scanner for nesting depth: distinguishes brackets and dots from those in strings and comments. In text
+/// that is not TOML the count may be wrong, but there toml++ stops too.
 class DepthScanner {
  public:
   explicit DepthScanner(std::string_view text) : text_(text) {}
 
-  /// Where the text is nested too deeply.
+  /// The first offset with too deep nesting.
   std::optional<std::size_t> find_too_deep() {
     for (; at_ < text_.size(); skip()) {
       count(text_[at_]);
@@ -67,7 +67,7 @@ class DepthScanner {
   int brackets_ = 0, dots_ = 0;
 };
 
-/// Counted as toml++ counts: columns are code points.
+/// Lines and columns as in toml++: columns are code points.
 SceneError make_error(std::string_view text, std::size_t at, const std::string& source, std::string message) {
   Diagnostic d = {source, 1, 1, std::move(message)};
   for (const char c : text.substr(0, at)) {
@@ -89,8 +89,8 @@ bool trips_toml(std::string_view text) {
   return false;
 }
 
-/// The character that trips toml++, which does not tell: the last one of the shortest beginning that trips
-/// it.
+/// The character that breaks the precondition, which toml++ does not report: the last one of the shortest
+/// prefix that breaks it.
 std::size_t find_tripping(std::string_view text) {
   std::size_t good = 0, bad = text.size();
   while (bad - good > 1) {

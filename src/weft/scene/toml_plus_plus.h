@@ -1,14 +1,14 @@
 #pragma once
-/// Private to scene/: toml++, made to survive malformed text. The one place that includes it.
+/// Private to scene/: toml++, made robust against malformed text. The only file that includes it.
 ///
-/// Text that is not TOML breaks preconditions inside toml++ 3.3, which then aborts or, with NDEBUG, has
+/// Text that is not TOML breaks preconditions inside toml++ 3.3. It then aborts or, with NDEBUG, has
 /// undefined behaviour: "[&" (its issue 294), "[1, }", "é" outside of quotes. Here a broken precondition
-/// throws std::logic_error, of which parse_toml makes a mistake in the text.
+/// throws std::logic_error, which parse_toml reports as a mistake in the text.
 
 #include <cstdint>
 #include <stdexcept>
 
-// Compiled here, even where the package's flags ask for its shared library: that one has all of these faults.
+// Header only, even where the package's flags ask for its shared library, which has all of these faults.
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
 #define TOML_HEADER_ONLY 1
@@ -25,7 +25,7 @@ namespace weft::engine {
 #define TOML_ASSERT(condition) ((condition) ? void() : ::weft::engine::throw_broken_precondition(#condition))
 #define TOML_ASSERT_ASSUME TOML_ASSERT
 
-// Its tests for white space say that letters such as é cannot occur; they are no white space.
+// Its tests for white space treat letters such as é as unreachable; here they return false.
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE \
   return {}

@@ -7,7 +7,7 @@ namespace weft::engine {
 
 namespace {
 
-/// As it would be written, with the digits that matter to people.
+/// A number as in a scene file, rounded for readers.
 std::string write_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
@@ -96,7 +96,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
 
 void TomlTable::require(std::initializer_list<std::string_view> one_of, std::string_view expected) {
   section_->required.push_back({{one_of.begin(), one_of.end()}, std::string(expected)});
-  // Of several, the one that comes later in the file is one too many.
+  // Of several, the mistake is at the key that comes later in the file.
   const toml::key* first = nullptr;
   for (const std::string_view name : one_of) {
     if (!has(name)) continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to scene/: typed values out of TOML. What is wrong is recorded, and reading goes on.
+/// Private to scene/: typed values from TOML. Mistakes are recorded, and reading continues.
 ///
 ///   TomlTable solver = root.table("solver");
 ///   solver.read("tolerance", settings.tolerance, above_zero("m"));  // keeps the default if missing or wrong
@@ -22,7 +22,7 @@ namespace weft::engine {
 constexpr double kSmallestNumber = 1e-12;  // where it has to be above 0
 constexpr double kLargestNumber = 1e12;
 
-/// Which numbers are right; NaN and infinity never are.
+/// Range of valid numbers; NaN and infinity are never valid.
 struct NumberRule {
   std::string_view unit = "";  // for messages; "" for pure numbers
   enum class Low { none, zero, above_zero } low = Low::none;
@@ -52,7 +52,7 @@ class TomlValue {
   bool is_boolean() const { return node_->is_boolean(); }
   bool is_table() const { return node_->is_table(); }
 
-  // Each sets the target and returns true; or records a mistake, leaves the target alone, and returns false.
+  // Each sets the target and returns true; or records a mistake, keeps the target, and returns false.
   bool read(bool& target) const;
   bool read(std::string& target) const;
   bool read(int& target, const IntegerRule& rule) const;
@@ -62,7 +62,7 @@ class TomlValue {
   bool read(std::array<int, 2>& target, const IntegerRule& each) const;
   bool read(std::vector<int>& target, const IntegerRule& each) const;
 
-  /// Sets the target to what goes with the name that is written.
+  /// Sets the target to the choice with the given name.
   template <class Choice>
   bool read_choice(Choice& target, Choices<Choice> choices) const {
     std::vector<std::string> names;
@@ -72,10 +72,10 @@ class TomlValue {
     return index >= 0;
   }
 
-  /// Which of the names is written; -1, and a mistake, if none.
+  /// Index of the given name; -1, and a mistake, if it is none of them.
   int find_choice(const std::vector<std::string>& names) const;
 
-  /// An array's elements; none, and a mistake, if it is no array.
+  /// An array's elements; empty, and a mistake, if it is not an array.
   std::vector<TomlValue> elements(std::string_view expected) const;
 
   void mistake(std::string_view message) const;  // "NAME: MESSAGE"
@@ -88,7 +88,7 @@ class TomlValue {
   std::string name_;
 };
 
-// What a key may hold, as TomlValue::read() takes it; the target holds its default.
+// Documentation of a key, with the rules of TomlValue::read(); the target holds the default.
 KeyNote make_note(std::string_view key, const bool& usual);
 KeyNote make_note(std::string_view key, const std::string& usual);
 KeyNote make_note(std::string_view key, const int& usual, const IntegerRule& rule);
@@ -110,7 +110,7 @@ KeyNote make_choice_note(std::string_view key, const Choice& usual, Choices<Choi
   return note;
 }
 
-/// A table that remembers what it was asked for. One that is not in the document can be asked all the same.
+/// A table that records queried keys. A table that is not in the document can be queried too.
 class TomlTable {
  public:
   TomlTable(TomlDocument& document, const toml::table* table, std::string path)
@@ -141,13 +141,13 @@ class TomlTable {
   /// The tables of an array, written [[key]] or key = [{ … }, …].
   std::vector<TomlTable> tables(std::string_view key);
 
-  /// Exactly one of the keys must be there (a mistake if not, unless one of them is misspelt).
+  /// Exactly one of the keys must be present (a mistake if not, unless one of them is misspelt).
   void require(std::initializer_list<std::string_view> one_of, std::string_view expected);
 
-  /// If the key is there, that is the mistake.
+  /// Records a mistake if the key is present.
   void refuse(std::string_view key, std::string_view why);
 
-  /// Leaves keys unjudged that nobody asks for.
+  /// Allows unknown keys.
   void allow_any_keys() { section_->any_keys = true; }
 
  private:

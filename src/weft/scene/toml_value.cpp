@@ -9,14 +9,14 @@
 namespace weft::engine {
 namespace {
 
-/// As short as it can be said, and not to be mistaken for an integer.
+/// Shortest text that does not read as an integer.
 std::string to_text(double number) {
   char buffer[32];
   const std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-/// Also of integers that a double cannot hold exactly.
+/// The value as a double; integers may lose precision.
 std::optional<double> to_number(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return number->get();
   if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
@@ -60,7 +60,7 @@ bool obeys(double number, const NumberRule& rule) {
   return number <= rule.most || !is_limited(rule);
 }
 
-/// Whether single precision can live with it.
+/// Whether the magnitude fits single precision.
 bool has_fit_magnitude(double number, const NumberRule& rule) {
   const bool too_small = rule.low == NumberRule::Low::above_zero && number < kSmallestNumber;
   return std::abs(number) <= kLargestNumber && !too_small;
