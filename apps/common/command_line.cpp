@@ -24,8 +24,8 @@ void say(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 int num_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 int choose_threads(int asked) {
-  constexpr int kMostPerProcessor = 4;  // above it, oneTBB ignores the excess and prints a warning
-  const int most = kMostPerProcessor * num_processors();
+  constexpr int kMaxPerProcessor = 4;  // above it, oneTBB ignores the excess and prints a warning
+  const int most = kMaxPerProcessor * num_processors();
   if (asked > most) say(fmt::format("--threads {}: limited to {}, four per processor", asked, most));
   return asked > 0 ? std::min(asked, most) : num_processors();
 }

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "commands.h"
 #include "apps/common/command_line.h"
+#include "commands.h"
 #include "weft/error.h"
 #include "weft/run/start_check.h"
 #include "weft/scene/scene_library.h"

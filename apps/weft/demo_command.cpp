@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "commands.h"
-#include "weft/pictures/painter.h"
 #include "apps/common/progress.h"
+#include "commands.h"
 #include "run_command.h"
 #include "summary.h"
 #include "view_command.h"
+#include "weft/pictures/painter.h"
 #include "weft/render/video.h"
 #include "weft/run/film.h"
 
@@ -38,20 +38,20 @@ void paint(const Animation& animation, const fs::path& folder) {
 class Pictures {
  public:
   void paint(const Animation& animation, const fs::path& folder) {
-    if (!trouble_.empty()) return;
+    if (!error_.empty()) return;
     try {
       app::paint(animation, folder);
     } catch (const std::runtime_error& error) {
-      trouble_ = error.what();
+      error_ = error.what();
     }
   }
 
-  void tell() const {
-    if (!trouble_.empty()) fmt::print("\nPictures or videos were not written: {}\n", trouble_);
+  void report_error() const {
+    if (!error_.empty()) fmt::print("\nPictures or videos were not written: {}\n", error_);
   }
 
  private:
-  std::string trouble_;
+  std::string error_;
 };
 
 /// Optional window: a failure does not stop the demo.
@@ -85,7 +85,7 @@ int run_demo(const fs::path& out) {
       "\nEach scene's picture.png, video.mp4, animation.glb (for any glTF viewer) and report.json are in "
       "{}.\n",
       (out / "paper").string());
-  pictures.tell();
+  pictures.report_error();
   if (has_spectator()) show_window();
   return kDone;
 }

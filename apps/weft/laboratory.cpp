@@ -21,13 +21,14 @@ int run_laboratory(char** argv) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);
   const std::filesystem::path program = self.parent_path() / "weft-lab";
   execv(program.c_str(), argv);
-  std::fprintf(stderr, "weft %s needs the program weft-lab, which is not at %s; `make lab` builds it\n", argv[1],
-               program.c_str());
+  std::fprintf(stderr, "weft %s needs the program weft-lab, which is not at %s; `make lab` builds it\n",
+               argv[1], program.c_str());
   return kBadInput;
 }
 
 void add_laboratory_commands(CLI::App& app) {
-  app.add_subcommand("study", "A laboratory's standard tests of a fabric, and studies of Weft itself (weft-lab)");
+  app.add_subcommand("study",
+                     "A laboratory's standard tests of a fabric, and studies of Weft itself (weft-lab)");
   app.add_subcommand("bench", "Measure speed (weft-lab)");
 }
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <memory>
 
-#include "commands.h"
 #include "apps/common/command_line.h"
-#include "weft/pictures/painter.h"
 #include "apps/common/progress.h"
+#include "commands.h"
 #include "run_command.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/io/glb_reader.h"
+#include "weft/pictures/painter.h"
 #include "weft/render/video.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"

@@ -5,9 +5,9 @@
 #include <memory>
 #include <regex>
 
-#include "commands.h"
 #include "apps/common/command_line.h"
 #include "apps/common/progress.h"
+#include "commands.h"
 #include "summary.h"
 #include "weft/core/staged_file.h"
 #include "weft/run/file_sinks.h"

@@ -15,10 +15,10 @@ struct RunRequest {
   std::filesystem::path out;     // folder of the results; empty: out/ and the scene's name
   std::filesystem::path report;  // a second copy of the report; empty: none
   std::optional<int> frames;
-  int threads = 0;             // 0: all processors
-  bool audit = false;          // energy audit in the report
-  bool strict = false;         // problems are an error
-  bool check_passages = true;  // within steps
+  int threads = 0;               // 0: all processors
+  bool audit = false;            // energy audit in the report
+  bool strict = false;           // problems are an error
+  bool check_passages = true;    // within steps
   bool glb = true, obj = false;  // animation.glb; the folder obj, a file per cloth and frame
   Overrides overrides;
 };

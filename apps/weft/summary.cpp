@@ -60,7 +60,7 @@ std::string summarise(const RunReport& r) {
 std::string describe_problems(const RunReport& r) {
   std::string text;
   for (const RunProblem& p : r.problems) {
-    text += fmt::format("  problem: {} ({}{})\n", p.sentence, to_string(p.code),
+    text += fmt::format("  problem: {} ({}{})\n", p.message, to_string(p.code),
                         p.frames > 1 ? fmt::format(", {} times", p.frames) : "");
   }
   return text;

@@ -48,7 +48,8 @@ void print(const fs::path& file, const AnimationCheck& check) {
   }
   fmt::print("  between frames, on linear paths: possible tunnelling of {}:\n",
              count(check.passages, "pair", "pairs"));
-  for (const auto& [frame, what] : check.may_passed) fmt::print("  before frame {}: {}\n", frame, what);
+  for (const auto& [frame, what] : check.possible_passages)
+    fmt::print("  before frame {}: {}\n", frame, what);
 }
 
 nlohmann::ordered_json to_json(const std::vector<AnimationCheck::Offence>& list) {
@@ -70,7 +71,7 @@ nlohmann::ordered_json to_json(const fs::path& file, const AnimationCheck& check
           {"deepest_frame", frame_or_null(check.deepest_frame)},
           {"deepest_place", check.deepest_frame < 0 ? null : nlohmann::ordered_json(check.deepest_place)},
           {"passages", check.passages},
-          {"may_have_passed", to_json(check.may_passed)},
+          {"may_have_passed", to_json(check.possible_passages)},
           {"offences", to_json(check.offences)}};
 }
 

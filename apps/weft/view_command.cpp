@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <memory>
 
-#include "commands.h"
 #include "apps/common/command_line.h"
 #include "apps/common/progress.h"
+#include "commands.h"
 #include "viewer.h"
 #include "weft/core/staged_file.h"
 #include "weft/scene/scene_library.h"
@@ -22,7 +22,7 @@ namespace {
 
 /// Lowers the priority of this thread, and of those that it creates, below the simulation's: with software
 /// OpenGL, pictures are late rather than steps.
-void give_way_to_simulation() {
+void lower_drawing_priority() {
 #ifdef __linux__
   constexpr int kNiceness = 4;
   setpriority(PRIO_PROCESS, 0, kNiceness);  // on Linux: of the calling thread
@@ -55,7 +55,7 @@ void view(const ViewRequest& request) {
   std::vector<std::unique_ptr<ViewSide>> sides = make_sides(request, scene);
   for (const std::string& warning : sides[0]->live().warnings()) say("warning: " + warning);
   catch_interrupts();
-  give_way_to_simulation();
+  lower_drawing_priority();
   Viewer(std::move(sides), options).run();
 }
 

@@ -85,7 +85,7 @@ void draw_status(const LiveStatus& s) {
   if (s.too_heavy)
     say(kAlarm, fmt::format("Slower than real time by a factor of {:.3g}", 1 / s.simulated_per_second));
   if (!s.failure.empty()) say(kAlarm, "Paused: " + s.failure);
-  for (const std::string& trouble : s.troubles) say(kAlarm, trouble);
+  for (const std::string& warning : s.step_warnings) say(kAlarm, warning);
   for (const std::string& warning : s.warnings) say(kAlarm, warning);
 }
 

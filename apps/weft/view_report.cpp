@@ -28,7 +28,7 @@ Json to_json(const ViewSide& side) {
           {"simulated_per_second", s.simulated_per_second},
           {"too_heavy", s.too_heavy},
           {"failure", s.failure.empty() ? Json() : Json(s.failure)},
-          {"troubles", s.troubles},
+          {"troubles", s.step_warnings},
           {"warnings", s.warnings}};
 }
 

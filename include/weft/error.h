@@ -11,7 +11,7 @@ namespace weft {
 /// Invalid input. what() is a full sentence: the error, its place, and the expected value.
 class WEFT_API InputError : public std::runtime_error {
  public:
-  explicit InputError(const std::string& sentence) : std::runtime_error(sentence) {}
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
 }  // namespace weft

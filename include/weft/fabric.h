@@ -19,7 +19,7 @@
 
 namespace weft {
 
-inline constexpr int kMostStretchPoints = 8;
+inline constexpr int kMaxStretchPoints = 8;
 
 /// A point of a measured stretch curve.
 struct StretchPoint {
@@ -81,7 +81,7 @@ struct Fabric {
   /// solver. `springs` apply it along each spring [1].
   double strain_limit = 0;
 
-  /// Measured curves along warp and weft, from the origin through these points, at most kMostStretchPoints;
+  /// Measured curves along warp and weft, from the origin through these points, at most kMaxStretchPoints;
   /// strain, tension and tension over stretch must rise. Empty: straight lines of slope c11 and c22, which
   /// always apply in compression. The membrane stays positive definite: c12² is less than the product of the
   /// curves' least slopes. `springs` ignore them.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/report/sections.h"
 #include "lab/accuracy/measure_method.h"
 #include "lab/report/plot.h"
+#include "lab/report/sections.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
@@ -30,8 +30,8 @@ std::vector<MethodResult> hold_contest(const HungCloth& cloth, const Reference& 
   for (const MethodSettings& entry : list_integrator_entries()) {
     if (cloth.model->num_particles() > entry.most_particles) continue;
     if (is_quick && entry.method == "implicit_euler") continue;  // seconds per run
-    results.push_back(measure_method([&] { return make_integrator_method(entry, cloth); }, entry,
-                                         cloth, reference));
+    results.push_back(
+        measure_method([&] { return make_integrator_method(entry, cloth); }, entry, cloth, reference));
   }
   return results;
 }
@@ -44,27 +44,27 @@ Hypothesis error_against_time(const SectionOptions& options) {
   for (const int side : options.quick ? std::vector<int>{33} : std::vector<int>{33, 64, 128})
     cloths.push_back(make_hung_sheet(side, "simplified", {}));
   cloths.push_back(make_hung_strip(8, 48, {}));
-  hypothesis.found.tables = {{{"CPU ms per frame at an error of 0.045 m"}, {}},
-                  {{"cloth", "particles", "the reference's own error, m", "its worst strain, %"}, {}}};
+  hypothesis.found.tables = {
+      {{"CPU ms per frame at an error of 0.045 m"}, {}},
+      {{"cloth", "particles", "the reference's own error, m", "its worst strain, %"}, {}}};
   for (const std::string_view name : integrator_names())
     hypothesis.found.tables[0].rows.push_back({"`" + std::string(name) + "`"});
   hypothesis.found.tables[0].rows.push_back({"**xpbd over newton**"});
   Plot plot{.x_title = "CPU ms per frame", .y_title = "error, m", .mark_y = kEqualError};
   double at_33 = 0, least = 1e9, most = 0;
   for (const HungCloth& cloth : cloths) {
-    options.tell(cloth.name);
+    options.report_progress(cloth.name);
     const Reference reference = find_reference(cloth, 60, cache_of(options), options.say);
     const std::vector<MethodResult> results = hold_contest(cloth, reference, options.quick);
     plot.panels.push_back(make_panel(cloth.name, results));
     hypothesis.found.tables[0].head.push_back(cloth.name);
     hypothesis.found.tables[1].rows.push_back({cloth.name, fmt::format("{}", cloth.model->num_particles()),
-                                    fmt::format("{:.4f}", reference.error),
-                                    fmt::format("{:.1f}", 100 * reference.strain)});
+                                               fmt::format("{:.4f}", reference.error),
+                                               fmt::format("{:.1f}", 100 * reference.strain)});
     std::optional<double> newton, xpbd;
     for (std::size_t k = 0; k < integrator_names().size(); ++k) {
       const std::string name(integrator_names()[k]);
-      const auto time =
-          find_time(name, results, [](const MethodResult& r) { return r.error / kEqualError; });
+      const auto time = find_time(name, results, [](const MethodResult& r) { return r.error / kEqualError; });
       hypothesis.found.tables[0].rows[k].push_back(cell_of(time));
       if (name == "newton") newton = time;
       if (name == "xpbd") xpbd = time;
@@ -82,7 +82,7 @@ Hypothesis error_against_time(const SectionOptions& options) {
       "limit), mean over a second. The time at equal error is found between the two nearest settings of each "
       "integrator; –: not reached with any setting tried."};
   hypothesis.found.metrics = {{"newton_error_33", at_33, "m", "≤ 0.045", 0.01},
-                   {"least_xpbd_over_newton", least, "1", "> 1", 0}};
+                              {"least_xpbd_over_newton", least, "1", "> 1", 0}};
   hypothesis.text.push_back(fmt::format(
       "`xpbd` takes {:.1f} to {:.1f} times as long as `newton`, the more the larger the cloth: its substeps "
       "grow with the particles per side, "
@@ -90,8 +90,8 @@ Hypothesis error_against_time(const SectionOptions& options) {
       least, most));
   hypothesis.verdict = least > 1 ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.found.pictures = {{"accuracy_frontier.svg",
-                     "Error against processor time; each dot one setting, lines join the best.",
-                     to_svg(plot)}};
+                                "Error against processor time; each dot one setting, lines join the best.",
+                                to_svg(plot)}};
   return hypothesis;
 }
 
@@ -119,7 +119,7 @@ Frame swing_strip_exactly() {
 }
 
 Hypothesis convergence_in_step(const SectionOptions& options) {
-  options.tell("convergence in step");
+  options.report_progress("convergence in step");
   Hypothesis hypothesis{.title = "`newton` is of second order, its kin of first", .source = "Weft"};
   const Frame truth = swing_strip_exactly();
   const std::vector<int> counts = {60, 120, 240, 480, 960};
@@ -154,7 +154,8 @@ Hypothesis convergence_in_step(const SectionOptions& options) {
       "A strip of 12.5 by 100 cm with 3×17 particles and 200 N/m, hung by its short edge and let go: RMS "
       "error after half a second against `explicit` with 40 000 and 80 000 steps per second, extrapolated; "
       "order: from 480 to 1920 steps per second."};
-  hypothesis.found.metrics = {{"newton_order", newton, "1", "2", 0.3}, {"implicit_euler_order", euler, "1", "1", 0.2}};
+  hypothesis.found.metrics = {{"newton_order", newton, "1", "2", 0.3},
+                              {"implicit_euler_order", euler, "1", "1", 0.2}};
   hypothesis.verdict =
       std::abs(newton - 2) < 0.35 && std::abs(euler - 1) < 0.25 ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.found.pictures = {{"accuracy_order.svg", "Error against the step.", to_svg(plot)}};
@@ -164,7 +165,7 @@ Hypothesis convergence_in_step(const SectionOptions& options) {
 // ---- energy
 
 Hypothesis energy_over_time(const SectionOptions& options) {
-  options.tell("energy over time");
+  options.report_progress("energy over time");
   Hypothesis hypothesis{.title = "No integrator but the printed ones makes energy", .source = "Weft"};
   const int side = 17, frames = options.quick ? 120 : 300;
   hypothesis.text = {
@@ -212,13 +213,13 @@ Hypothesis energy_over_time(const SectionOptions& options) {
       series.points.push_back({f * kFrame, last, ""});
     }
     hypothesis.found.tables[0].rows.push_back({"`" + run.name + "`", fmt::format("{}", run.steps),
-                                    fmt::format("{:.4f}", most), fmt::format("{:.3f}", last)});
+                                               fmt::format("{:.4f}", most), fmt::format("{:.3f}", last)});
     plot.panels[0].series.push_back(series);
     if (run.name == "newton") newton_most = most, newton_end = last;
     if (run.name != "paper" && run.name != "explicit") all_hold = all_hold && most < 0.01;
   }
   hypothesis.found.metrics = {{"newton_energy_most", newton_most, "1", "0", 0.01},
-                   {"newton_energy_end", newton_end, "1", "", 0}};
+                              {"newton_energy_end", newton_end, "1", "", 0}};
   hypothesis.verdict = all_hold ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.found.pictures = {
       {"accuracy_energy.svg", "Energy over time; 0 is what a frictionless cloth keeps.", to_svg(plot)}};
@@ -257,7 +258,7 @@ double chain_frequency(double bessel_zero, double step, NewtonQuality quality) {
 }
 
 Hypothesis frequencies(const SectionOptions& options) {
-  options.tell("frequencies");
+  options.report_progress("frequencies");
   Hypothesis hypothesis{.title = "Cloth swings at the frequencies of theory", .source = "Weft"};
   hypothesis.text = {
       "A chain of a metre with 100 links of 10⁵ N/m hangs from one end and swings by 2 mm in one of its "
@@ -265,8 +266,8 @@ Hypothesis frequencies(const SectionOptions& options) {
       "full mass, which makes the chain half a link too long: −0.25 %. BDF2 itself errs by −0.13, −0.67 and "
       "−1.6 % at 60 steps per second."};
   hypothesis.found.tables = {{{"mode", "theory, Hz", "`high`, 60 steps/s: %", "`high`, 240 steps/s: %",
-                    "`default`, 60 steps/s: %", "`default`, 240 steps/s: %"},
-                   {}}};
+                               "`default`, 60 steps/s: %", "`default`, 240 steps/s: %"},
+                              {}}};
   double worst = 0, worst_default = 0;
   int mode = 0;
   for (const double zero : {2.404826, 5.520078, 8.653728}) {
@@ -283,20 +284,22 @@ Hypothesis frequencies(const SectionOptions& options) {
     hypothesis.found.tables[0].rows.push_back(row);
   }
   hypothesis.found.metrics = {{"worst_frequency_error_240", worst, "%", "≤ 1", 0.3},
-                   {"worst_frequency_error_240_default", worst_default, "%", "≤ 1", 0}};
+                              {"worst_frequency_error_240_default", worst_default, "%", "≤ 1", 0}};
   hypothesis.text.push_back(
       fmt::format("With `quality = \"high\"` to {:.2f} %. The default chooses its iterations for the motion "
                   "that is seen; a tremble of millimetres in a chain so stiff it feeds instead, and higher "
                   "modes drown ({:.0f} % off).",
                   worst, worst_default));
-  hypothesis.verdict = worst > 1 ? Verdict::fails : worst_default > 1 ? Verdict::holds_in_part : Verdict::holds;
+  hypothesis.verdict = worst > 1           ? Verdict::fails
+                       : worst_default > 1 ? Verdict::holds_in_part
+                                           : Verdict::holds;
   return hypothesis;
 }
 
 // ---- convergence in mesh
 
 Hypothesis convergence_in_mesh(const SectionOptions& options) {
-  options.tell("convergence in mesh");
+  options.report_progress("convergence in mesh");
   Hypothesis hypothesis{.title = "A finer mesh is the same cloth", .source = "Weft"};
   const std::vector<int> sides =
       options.quick ? std::vector<int>{9, 17, 33} : std::vector<int>{9, 17, 33, 65, 129};
@@ -305,9 +308,9 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
       "stiffness per width is the springs'), swinging from horizontal with `newton`: where the middle of its "
       "lower edge is after half a second, and what the sheet measures along its middle at rest. Theory at "
       "rest: ρ g L²/(2k) more than its side."};
-  hypothesis.found.tables = {{{"particles", "lower edge after 0.5 s: y, m", "its difference to the finest, mm",
-                    "lengthening at rest, mm"},
-                   {}}};
+  hypothesis.found.tables = {{{"particles", "lower edge after 0.5 s: y, m",
+                               "its difference to the finest, mm", "lengthening at rest, mm"},
+                              {}}};
   std::vector<double> edge, longer;
   for (const int side : sides) {
     HungCloth sheet = make_hung_strip(side - 1, side - 1, {}, 1);
@@ -327,13 +330,13 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
   }
   for (std::size_t k = 0; k < sides.size(); ++k) {
     hypothesis.found.tables[0].rows.push_back({fmt::format("{}²", sides[k]), fmt::format("{:.4f}", edge[k]),
-                                    fmt::format("{:.2f}", 1000 * (edge[k] - edge.back())),
-                                    fmt::format("{:.3f}", 1000 * longer[k])});
+                                               fmt::format("{:.2f}", 1000 * (edge[k] - edge.back())),
+                                               fmt::format("{:.3f}", 1000 * longer[k])});
   }
   const double theory = 0.2 * kGravity / (2 * 2000);
   const double at_33 = longer[2];
   hypothesis.found.metrics = {{"lengthening_at_33", 1000 * at_33, "mm",
-                    fmt::format("{:.3f} in an endless sheet", 1000 * theory), 0.02}};
+                               fmt::format("{:.3f} in an endless sheet", 1000 * theory), 0.02}};
   hypothesis.verdict = std::abs(at_33 / theory - 1) < 0.1 ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
 }
@@ -341,7 +344,8 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
 // ---- on a ball
 
 Hypothesis drape_on_ball(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "Cloth on a ball comes to the same shape, whoever moves it", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Cloth on a ball comes to the same shape, whoever moves it",
+                        .source = "Weft"};
   const int frames = options.quick ? 60 : 180;
   hypothesis.text = {
       fmt::format("The scene `drape_sphere` for {:.0f} s with contact, by every integrator that may be asked "
@@ -359,7 +363,7 @@ Hypothesis drape_on_ball(const SectionOptions& options) {
   int crossings = 0;
   for (const Run& run : {Run{"newton", 1}, {"newton", 2}, {"implicit_euler", 1}, {"xpbd", 1}}) {
     if (options.quick && run.name == "implicit_euler") continue;
-    options.tell("drape_sphere by " + run.name);
+    options.report_progress("drape_sphere by " + run.name);
     const SceneDesc scene =
         read_scene(find_scene("drape_sphere"),
                    {"solver.integrator=" + run.name, fmt::format("solver.steps_per_frame={}", run.steps)});
@@ -370,15 +374,14 @@ Hypothesis drape_on_ball(const SectionOptions& options) {
     for (std::size_t i = 1; i < end.size(); i += 3) height += 3.0 * end[i] / static_cast<double>(end.size());
     heights.push_back(height);
     crossings = std::max(crossings, report.intersections.value_or(0));
-    hypothesis.found.tables[0].rows.push_back({"`" + run.name + "`", fmt::format("{}", run.steps),
-                                    fmt::format("{:.4f}", height),
-                                    fmt::format("{:.1f}", 100 * report.max_strain),
-                                    fmt::format("{}", report.intersections.value_or(0)),
-                                    fmt::format("{:.1f}", report.cpu_ms_per_frame)});
+    hypothesis.found.tables[0].rows.push_back(
+        {"`" + run.name + "`", fmt::format("{}", run.steps), fmt::format("{:.4f}", height),
+         fmt::format("{:.1f}", 100 * report.max_strain), fmt::format("{}", report.intersections.value_or(0)),
+         fmt::format("{:.1f}", report.cpu_ms_per_frame)});
   }
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
   hypothesis.found.metrics = {{"drape_height_spread", 1000 * (*high - *low), "mm", "0", 0},
-                   {"drape_crossings", static_cast<double>(crossings), "1", "0", 0.5}};
+                              {"drape_crossings", static_cast<double>(crossings), "1", "0", 0.5}};
   hypothesis.verdict = crossings == 0 && *high - *low < 0.02 ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
 }
@@ -391,8 +394,9 @@ Section study_accuracy(const SectionOptions& options) {
                   .introduction =
                       "Every integrator against converged references and against theory. `newton` is the "
                       "default, and the others say what it is worth."};
-  section.hypotheses = {error_against_time(options), convergence_in_step(options), convergence_in_mesh(options),
-                    energy_over_time(options),   frequencies(options),         drape_on_ball(options)};
+  section.hypotheses = {error_against_time(options),  convergence_in_step(options),
+                        convergence_in_mesh(options), energy_over_time(options),
+                        frequencies(options),         drape_on_ball(options)};
   return section;
 }
 

@@ -8,11 +8,11 @@
 #include <functional>
 #include <optional>
 
-#include "lab/comparisons/bullet.h"
-#include "weft/error.h"
-#include "weft/core/simd.h"
 #include "lab/accuracy/measure_method.h"
+#include "lab/comparisons/bullet.h"
 #include "lab/report/plot.h"
+#include "weft/core/simd.h"
+#include "weft/error.h"
 
 namespace weft::engine::lab {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 constexpr double kEqualStrain = 1.5;
 
 std::unique_ptr<Method> make_contestant(const MethodSettings& entry, const HungCloth& cloth) {
-  if (entry.method == "Bullet") return make_bullet_contestant(entry, cloth);
+  if (entry.method == "Bullet") return make_bullet_method(entry, cloth);
   return make_integrator_method(entry, cloth);
 }
 

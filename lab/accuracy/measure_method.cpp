@@ -9,12 +9,12 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr int kMostRuns = 3;   // the fastest counts, because of other processes
+constexpr int kMaxRuns = 3;    // the fastest counts, because of other processes
 constexpr double kEnough = 3;  // no further run after this time [s]
 
 /// One run of all frames.
 MethodResult run_once(const MakeMethod& make, const MethodSettings& entry, const HungCloth& cloth,
-                       const Reference& reference) {
+                      const Reference& reference) {
   const auto method = make();
   const auto num_frames = static_cast<double>(reference.frames.size());
   MethodResult result{.method = entry.method, .setting = entry.setting};
@@ -36,7 +36,7 @@ MethodResult run_once(const MakeMethod& make, const MethodSettings& entry, const
 
 /// Pareto frontier of a method, by ascending time: results better than all cheaper ones.
 std::vector<MethodResult> frontier_of(const std::string& method, std::vector<MethodResult> results,
-                                       const Objective& objective) {
+                                      const Objective& objective) {
   std::erase_if(results, [&](const MethodResult& r) { return r.method != method || !r.ok; });
   std::sort(results.begin(), results.end(),
             [](const MethodResult& a, const MethodResult& b) { return a.cpu_ms < b.cpu_ms; });
@@ -49,11 +49,11 @@ std::vector<MethodResult> frontier_of(const std::string& method, std::vector<Met
 
 }  // namespace
 
-MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry,
-                                 const HungCloth& cloth, const Reference& reference) {
+MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry, const HungCloth& cloth,
+                            const Reference& reference) {
   MethodResult best = run_once(make, entry, cloth, reference);
   const double seconds = best.cpu_ms / 1000 * static_cast<double>(reference.frames.size());
-  for (int r = 1; r < kMostRuns && r * seconds < kEnough && best.ok; ++r) {
+  for (int r = 1; r < kMaxRuns && r * seconds < kEnough && best.ok; ++r) {
     best.cpu_ms = std::min(best.cpu_ms, run_once(make, entry, cloth, reference).cpu_ms);
   }
   return best;

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "lab/accuracy/method.h"
-#include "lab/report/plot.h"
 #include "lab/accuracy/reference.h"
+#include "lab/report/plot.h"
 
 namespace weft::engine::lab {
 
@@ -27,8 +27,8 @@ struct MethodResult {
 using MakeMethod = std::function<std::unique_ptr<Method>()>;
 
 /// Runs all frames of the reference. The fastest of a few runs counts, because of other processes.
-MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry,
-                                 const HungCloth& cloth, const Reference& reference);
+MethodResult measure_method(const MakeMethod& make, const MethodSettings& entry, const HungCloth& cloth,
+                            const Reference& reference);
 
 /// Ratio of a result to the required quality: at most 1 meets it.
 using Objective = std::function<double(const MethodResult&)>;

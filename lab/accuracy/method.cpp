@@ -56,8 +56,7 @@ std::vector<MethodSettings> list_integrator_entries() {
   return entries;
 }
 
-std::unique_ptr<Method> make_integrator_method(const MethodSettings& entry,
-                                                       const HungCloth& cloth) {
+std::unique_ptr<Method> make_integrator_method(const MethodSettings& entry, const HungCloth& cloth) {
   return std::make_unique<IntegratorContestant>(entry, cloth);
 }
 

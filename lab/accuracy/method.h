@@ -33,7 +33,6 @@ struct MethodSettings {
 std::vector<MethodSettings> list_integrator_entries();
 
 /// On one thread.
-std::unique_ptr<Method> make_integrator_method(const MethodSettings& entry,
-                                                       const HungCloth& cloth);
+std::unique_ptr<Method> make_integrator_method(const MethodSettings& entry, const HungCloth& cloth);
 
 }  // namespace weft::engine::lab

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "weft/error.h"
 #include "weft/core/hash.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine::lab {

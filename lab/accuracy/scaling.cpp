@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/benchmarks/machine.h"
-#include "weft/core/simd.h"
 #include "lab/accuracy/hung_cloth.h"
-#include "lab/report/plot.h"
 #include "lab/accuracy/reference.h"
+#include "lab/benchmarks/machine.h"
+#include "lab/report/plot.h"
+#include "weft/core/simd.h"
 
 namespace weft::engine::lab {
 namespace {

@@ -38,9 +38,8 @@ double mean(const std::vector<int>& values) {
 bool add_row(const std::string& name, const std::filesystem::path& file, const GarmentBenchOptions& options) {
   RunReport report;
   try {
-    report = run_scene(
-        read_scene(file),
-        {.frames = options.frames, .threads = options.threads, .check_passages = false});
+    report = run_scene(read_scene(file),
+                       {.frames = options.frames, .threads = options.threads, .check_passages = false});
   } catch (const InputError& error) {
     std::string why = error.what();
     std::replace(why.begin(), why.end(), '\n', ' ');

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "lab/accuracy/hung_cloth.h"
 #include "lab/benchmarks/machine.h"
 #include "weft/core/simd.h"
 #include "weft/integrators/integrator.h"
-#include "lab/accuracy/hung_cloth.h"
 
 namespace weft::engine::lab {
 namespace {

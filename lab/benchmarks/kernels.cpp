@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <string>
 
+#include "lab/accuracy/hung_cloth.h"
 #include "lab/benchmarks/machine.h"
 #include "weft/core/simd.h"
 #include "weft/forces/potential.h"
 #include "weft/integrators/scalar_preconditioner.h"
-#include "lab/accuracy/hung_cloth.h"
 #include "weft/solvers/conjugate_gradients.h"
 
 namespace weft::engine::lab {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "weft/core/random.h"
 #include "lab/accuracy/hung_cloth.h"
+#include "weft/core/random.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine::lab {

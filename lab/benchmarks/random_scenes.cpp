@@ -12,9 +12,10 @@
 namespace weft::engine::lab {
 namespace {
 
-constexpr double kMostOfOneStep = 0.1, kMostOfTenSteps = 0.01;  // energy gain, share of energy in motion
-constexpr double kMostOfSpeed = 0.01;                           // of free fall
-constexpr int kWindow = 10;                                     // steps
+constexpr double kMaxGainOfOneStep = 0.1,
+                 kMaxGainOfTenSteps = 0.01;  // energy gain, share of energy in motion
+constexpr double kMaxSpeedError = 0.01;      // of free fall
+constexpr int kWindow = 10;                  // steps
 
 /// Maxima over the steps of a scene.
 struct Outcome {
@@ -77,8 +78,8 @@ bool bench_random(const RandomBenchOptions& options) {
     const auto seed = static_cast<std::uint64_t>(options.first_seed + s);
     const RandomScene scene = make_random_scene(seed);
     const Outcome o = run(scene, options);
-    const bool gains = o.gain > kMostOfOneStep, gains_on_average = o.mean_gain > kMostOfTenSteps;
-    const bool falls_wrong = o.speed && *o.speed > kMostOfSpeed;
+    const bool gains = o.gain > kMaxGainOfOneStep, gains_on_average = o.mean_gain > kMaxGainOfTenSteps;
+    const bool falls_wrong = o.speed && *o.speed > kMaxSpeedError;
     infinite += !o.is_finite;
     gaining += gains;
     gaining_on_average += gains_on_average;

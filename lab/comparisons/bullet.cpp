@@ -87,22 +87,20 @@ class BulletContestant final : public Method {
 }  // namespace
 
 std::vector<MethodSettings> list_bullet_entries() {
-  constexpr int kMostParticles = 130 * 130;
+  constexpr int kMaxParticles = 130 * 130;
   std::vector<MethodSettings> entries;
   for (const int n : {25, 50, 100, 200})
-    entries.push_back({"Bullet", std::to_string(n) + " substeps", {}, n, kMostParticles});
+    entries.push_back({"Bullet", std::to_string(n) + " substeps", {}, n, kMaxParticles});
   return entries;
 }
 
-std::unique_ptr<Method> make_bullet_contestant(const MethodSettings& entry, const HungCloth& cloth) {
+std::unique_ptr<Method> make_bullet_method(const MethodSettings& entry, const HungCloth& cloth) {
   return std::make_unique<BulletContestant>(entry, cloth);
 }
 #else
 std::vector<MethodSettings> list_bullet_entries() { return {}; }
 
-std::unique_ptr<Method> make_bullet_contestant(const MethodSettings&, const HungCloth&) {
-  return nullptr;
-}
+std::unique_ptr<Method> make_bullet_method(const MethodSettings&, const HungCloth&) { return nullptr; }
 #endif
 
 }  // namespace weft::engine::lab

@@ -16,7 +16,7 @@ Comparison::Comparison(const SectionOptions& options, const HungCloth& cloth, co
 
 void Comparison::add(const MethodSettings& entry, const std::string& engine, const std::string& how,
                      const Make& make) {
-  options_.tell(engine + ", " + entry.setting);
+  options_.report_progress(engine + ", " + entry.setting);
   add_row(engine, how, measure_method([&] { return make(entry, cloth_); }, entry, cloth_, reference_));
 }
 
@@ -24,11 +24,11 @@ void Comparison::add(const Peer& peer) {
   for (const PeerSetting& setting : peer.settings) {
     const bool is_only = setting.solver.empty();
     const std::string method = is_only ? peer.engine : peer.engine + "'s " + setting.solver;
-    options_.tell(method + ", " + setting.words);
+    options_.report_progress(method + ", " + setting.words);
     const auto run = run_peer({peer.interpreter, peer.script, setting.arguments},
                               cloth_.model->num_particles(), kComparedFrames);
     if (!run) return add_absence(peer.engine, "did not run; is it installed? (" + peer.install + ")");
-    MethodResult result = judge(*run);
+    MethodResult result = evaluate(*run);
     result.method = method;
     result.setting = setting.words;
     add_row(is_only ? run->engine : run->engine + ", " + setting.solver, setting.how, result);
@@ -48,7 +48,7 @@ void Comparison::add_row(const std::string& engine, const std::string& how, cons
   table_.rows.push_back({engine, result.setting, how, measured[0], measured[1], measured[2]});
 }
 
-MethodResult Comparison::judge(const PeerRun& run) const {
+MethodResult Comparison::evaluate(const PeerRun& run) const {
   MethodResult result{.cpu_ms = run.cpu_ms};
   ClothState state = cloth_.state;
   for (int f = 0; f < kComparedFrames; ++f) {
@@ -64,8 +64,8 @@ MethodResult Comparison::judge(const PeerRun& run) const {
   return result;
 }
 
-void Comparison::tell(const std::vector<std::pair<std::string, std::string>>& figure_of_method,
-                      Hypothesis& hypothesis) const {
+void Comparison::add_results(const std::vector<std::pair<std::string, std::string>>& figure_of_method,
+                             Hypothesis& hypothesis) const {
   const auto find = [&](const std::string& method) {
     return find_time(method, results_, [](const MethodResult& r) { return r.error / kEqualError; });
   };
@@ -77,8 +77,8 @@ void Comparison::tell(const std::vector<std::pair<std::string, std::string>>& fi
     words += fmt::format("{}{} {:.1f}", words.empty() ? "" : ", ", method, *time / *newton);
   }
   if (!words.empty())
-    hypothesis.text.push_back(fmt::format("CPU time at an error of {} m, as a multiple of that of `newton`: {}.",
-                                     kEqualError, words));
+    hypothesis.text.push_back(fmt::format(
+        "CPU time at an error of {} m, as a multiple of that of `newton`: {}.", kEqualError, words));
   hypothesis.found.tables.push_back(table_);
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "lab/accuracy/measure_method.h"
 #include "lab/comparisons/peer_scripts.h"
 #include "lab/report/sections.h"
-#include "lab/accuracy/measure_method.h"
 
 namespace weft::engine::lab {
 
@@ -38,8 +38,7 @@ class Comparison {
   using Make = std::function<std::unique_ptr<Method>(const MethodSettings&, const HungCloth&)>;
 
   /// `engine` and `how` are cells of the table.
-  void add(const MethodSettings& entry, const std::string& engine, const std::string& how,
-           const Make& make);
+  void add(const MethodSettings& entry, const std::string& engine, const std::string& how, const Make& make);
 
   /// Adds a row per setting, or one row for an engine that does not run.
   void add(const Peer& peer);
@@ -49,11 +48,12 @@ class Comparison {
   /// Adds the time at equal error as a multiple of `newton`'s, for methods that reach it: as metrics with the
   /// given names, and as text. Then adds the table. The name of a method is that of its entry, "Engine", or
   /// "Engine's solver".
-  void tell(const std::vector<std::pair<std::string, std::string>>& figure_of_method, Hypothesis& hypothesis) const;
+  void add_results(const std::vector<std::pair<std::string, std::string>>& figure_of_method,
+                   Hypothesis& hypothesis) const;
 
  private:
   void add_row(const std::string& engine, const std::string& how, const MethodResult& result);
-  MethodResult judge(const PeerRun& run) const;
+  MethodResult evaluate(const PeerRun& run) const;
 
   const SectionOptions& options_;
   const HungCloth& cloth_;

@@ -74,12 +74,12 @@ std::optional<PeerRun> run_peer(const PeerScript& script, int num_particles, int
   // One thread, because idle threads of OpenMP count as busy.
   const auto printed = run(fmt::format("OMP_NUM_THREADS=1 {} {} {} {} 2>/dev/null", command_of(script),
                                        script.arguments, num_frames, quote(file.string())));
-  const nlohmann::json told = find_object(printed.value_or(""));
+  const nlohmann::json printed_result = find_object(printed.value_or(""));
   const auto frames = read_frames(file, num_particles, num_frames);
   std::error_code ignored;
   fs::remove(file, ignored);
-  if (told.is_null() || frames.empty()) return std::nullopt;
-  return PeerRun{told.at("engine"), told.at("cpu_ms_per_frame"), frames};
+  if (printed_result.is_null() || frames.empty()) return std::nullopt;
+  return PeerRun{printed_result.at("engine"), printed_result.at("cpu_ms_per_frame"), frames};
 }
 
 }  // namespace weft::engine::lab

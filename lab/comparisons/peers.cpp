@@ -6,8 +6,8 @@
 
 #include "lab/comparisons/bullet.h"
 #include "lab/comparisons/comparison.h"
-#include "weft/error.h"
 #include "lab/textile/specimen.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine::lab {
@@ -75,7 +75,8 @@ Peer describe_newton(int side, const std::vector<NewtonSetting>& settings) {
 // ---- the same springs
 
 Hypothesis compare_springs(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "The hanging sheet of springs: Bullet's soft body, Newton", .source = "Weft"};
+  Hypothesis hypothesis{.title = "The hanging sheet of springs: Bullet's soft body, Newton",
+                        .source = "Weft"};
   const int side = options.quick ? kQuickSide : 64;
   const HungCloth cloth = make_hung_sheet(side, "simplified", {});
   const Reference reference = find_explicit_reference(cloth, options);
@@ -96,7 +97,7 @@ Hypothesis compare_springs(const SectionOptions& options) {
     comparison.add(
         entry, "Bullet 3",
         "links; stiffness C/(W + 1/(h²k)), which is XPBD's; one position iteration per substep, no drag",
-        make_bullet_contestant);
+        make_bullet_method);
   if (list_bullet_entries().empty())
     comparison.add_absence("Bullet", "not there when this Weft was built (libbullet-dev)");
   std::vector<NewtonSetting> settings = {{kNewtonXpbd, 10, 10}, {kNewtonXpbd, 100, 1},
@@ -107,11 +108,11 @@ Hypothesis compare_springs(const SectionOptions& options) {
                 {kNewtonVbd, 10, 10},  {kNewtonVbd, 40, 5},    {kNewtonVbd, 40, 10},  {kNewtonVbd, 20, 40},
                 {kNewtonExplicit, 32}, {kNewtonExplicit, 200}, {kNewtonExplicit, 400}};
   comparison.add(describe_newton(side, settings));
-  comparison.tell({{"Bullet", "bullet_over_newton"},
-                   {"Newton's XPBD", "warp_xpbd_over_newton"},
-                   {"Newton's VBD", "warp_vbd_over_newton"},
-                   {"Newton's semi-implicit", "warp_semi_implicit_over_newton"}},
-                  hypothesis);
+  comparison.add_results({{"Bullet", "bullet_over_newton"},
+                          {"Newton's XPBD", "warp_xpbd_over_newton"},
+                          {"Newton's VBD", "warp_vbd_over_newton"},
+                          {"Newton's semi-implicit", "warp_semi_implicit_over_newton"}},
+                         hypothesis);
   return hypothesis;
 }
 
@@ -174,7 +175,7 @@ Peer describe_mujoco(int side, bool quick) {
 Hypothesis compare_membranes(const SectionOptions& options) {
   Hypothesis hypothesis{.title = "The hanging membrane: MuJoCo's flex, Newton", .source = "Weft"};
   const HungCloth cloth = make_hung_membrane(kQuickSide);
-  options.tell("membrane: reference");
+  options.report_progress("membrane: reference");
   const Reference reference = make_membrane_reference(cloth);
   hypothesis.text = {fmt::format(
       "{0}×{0} particles of 0.2 kg/m², an isotropic membrane of triangles (Young's modulus times "
@@ -192,10 +193,10 @@ Hypothesis compare_membranes(const SectionOptions& options) {
     settings = {{kNewtonVbdMembrane, 10, 10}, {kNewtonVbdMembrane, 40, 10}, {kNewtonVbdMembrane, 20, 40},
                 {kNewtonStyle3d, 2, 10},      {kNewtonStyle3d, 10, 4},      {kNewtonStyle3d, 4, 100}};
   comparison.add(describe_newton(kQuickSide, settings));
-  comparison.tell({{"MuJoCo", "mujoco_over_newton"},
-                   {"Newton's VBD", "warp_vbd_membrane_over_newton"},
-                   {"Newton's Style3D", "warp_style3d_over_newton"}},
-                  hypothesis);
+  comparison.add_results({{"MuJoCo", "mujoco_over_newton"},
+                          {"Newton's VBD", "warp_vbd_membrane_over_newton"},
+                          {"Newton's Style3D", "warp_style3d_over_newton"}},
+                         hypothesis);
   return hypothesis;
 }
 
@@ -240,7 +241,7 @@ Hypothesis compare_even_springs(const SectionOptions& options) {
   Comparison comparison(options, cloth, reference);
   add_newton(comparison, "springs");
   comparison.add(describe_blender(kQuickSide, options.quick));
-  comparison.tell({{"Blender", "blender_over_newton"}}, hypothesis);
+  comparison.add_results({{"Blender", "blender_over_newton"}}, hypothesis);
   return hypothesis;
 }
 
@@ -260,7 +261,7 @@ Section study_peers(const SectionOptions& options) {
                       "Each engine gets the same cloth or the nearest it knows, with the settings that its "
                       "authors would use for it; they stand in the tables."};
   section.hypotheses = {compare_springs(options), compare_membranes(options), compare_even_springs(options),
-                    what_was_not_measured()};
+                        what_was_not_measured()};
   return section;
 }
 

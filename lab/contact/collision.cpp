@@ -202,7 +202,7 @@ struct Peers {
 };
 
 Peers measure_peers(const Shape& shape, double seconds) {
-  constexpr std::size_t kMostForBruteForce = 9000;
+  constexpr std::size_t kMaxForBruteForce = 9000;
   Peers peers;
   const std::vector<Aabb> boxes = triangle_boxes(shape, 0);
   UniformGrid grid;
@@ -215,7 +215,7 @@ Peers measure_peers(const Shape& shape, double seconds) {
   peers.grid = median_time(seconds, run_grid);
   peers.pairs = search.pairs;
   std::sort(peers.pairs.begin(), peers.pairs.end());
-  if (boxes.size() <= kMostForBruteForce) {
+  if (boxes.size() <= kMaxForBruteForce) {
     std::vector<ItemPair> pairs;
     peers.brute = median_time(seconds / 4, [&] { find_by_brute_force(boxes, shape.triangles, pairs); });
     peers.agree = pairs == peers.pairs;

@@ -4,12 +4,10 @@
 
 #include <string>
 
-#include "weft/world/world.h"
 #include "weft/core/vec.h"
+#include "weft/world/world.h"
 
 namespace weft::engine::lab {
-
-
 
 struct ContactExperiment {
   std::string integrator = "newton";

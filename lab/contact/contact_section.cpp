@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/report/sections.h"
 #include "lab/contact/contact_experiments.h"
+#include "lab/report/sections.h"
 #include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
@@ -15,7 +15,8 @@ namespace weft::engine::lab {
 namespace {
 
 Hypothesis nothing_crosses(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "Nothing crosses, whatever happens", .source = "the paper, section 5, and Weft"};
+  Hypothesis hypothesis{.title = "Nothing crosses, whatever happens",
+                        .source = "the paper, section 5, and Weft"};
   const int most_frames = options.quick ? 8 : 90;
   hypothesis.text = {
       fmt::format("The first {} frames of every scene in `scenes/contact`, {} thread{}, every frame given to "
@@ -32,10 +33,10 @@ Hypothesis nothing_crosses(const SectionOptions& options) {
   double deepest = 0;
   for (const ShippedScene& shipped : list_scenes()) {
     if (!shipped.name.starts_with("contact/")) continue;
-    options.tell(shipped.name);
+    options.report_progress(shipped.name);
     const SceneDesc scene = read_scene(shipped.file);
-    const RunReport r = run_scene(scene, {.frames = std::min(most_frames, scene.num_frames()),
-                                          .threads = options.threads});
+    const RunReport r =
+        run_scene(scene, {.frames = std::min(most_frames, scene.num_frames()), .threads = options.threads});
     const std::size_t impossible = r.infeasible ? r.infeasible->size() : 0;
     crossings += r.intersections.value_or(0);
     deepest = std::max(deepest, r.penetration_max.value_or(0));
@@ -52,13 +53,13 @@ Hypothesis nothing_crosses(const SectionOptions& options) {
       {"contact_deepest", 1e6 * deepest, "µm", "≤ 1", 1},
       {"contact_infeasible", static_cast<double>(infeasible), "1", "0 but for self_crossing_body", 0.5}};
   hypothesis.verdict = crossings > 0                      ? Verdict::fails
-                  : infeasible > 0 || deepest > 1e-6 ? Verdict::holds_in_part
-                                                     : Verdict::holds;
+                       : infeasible > 0 || deepest > 1e-6 ? Verdict::holds_in_part
+                                                          : Verdict::holds;
   return hypothesis;
 }
 
 Hypothesis friction_is_coulombs(const SectionOptions& options) {
-  options.tell("friction");
+  options.report_progress("friction");
   Hypothesis hypothesis{.title = "Friction is Coulomb's", .source = "Weft"};
   const ContactExperiment setup;
   hypothesis.text = {fmt::format(
@@ -82,20 +83,21 @@ Hypothesis friction_is_coulombs(const SectionOptions& options) {
     const Capstan drum = pull_over_drum(setup, friction);
     const double off = 100 * (drum.ratio / drum.expected - 1);
     capstan = std::max(capstan, std::abs(off));
-    hypothesis.found.tables[0].rows.push_back({"capstan, ratio", fmt::format("{}", friction),
-                                    fmt::format("{:.3f}", drum.ratio), fmt::format("{:.3f}", drum.expected),
-                                    fmt::format("{:+.1f}", off)});
+    hypothesis.found.tables[0].rows.push_back(
+        {"capstan, ratio", fmt::format("{}", friction), fmt::format("{:.3f}", drum.ratio),
+         fmt::format("{:.3f}", drum.expected), fmt::format("{:+.1f}", off)});
   }
-  hypothesis.found.metrics = {{"incline_error", incline, "%", "≤ 3", 1}, {"capstan_error", capstan, "%", "≤ 5", 1.5}};
+  hypothesis.found.metrics = {{"incline_error", incline, "%", "≤ 3", 1},
+                              {"capstan_error", capstan, "%", "≤ 5", 1.5}};
   const int met = (incline <= 3) + (capstan <= 5) + sticks;
   hypothesis.verdict = met == 3                       ? Verdict::holds
-                  : incline <= 3 || capstan <= 5 ? Verdict::holds_in_part
-                                                 : Verdict::fails;
+                       : incline <= 3 || capstan <= 5 ? Verdict::holds_in_part
+                                                      : Verdict::fails;
   return hypothesis;
 }
 
 Hypothesis ball_takes_cloth_along(const SectionOptions& options) {
-  options.tell("a ball that turns");
+  options.report_progress("a ball that turns");
   Hypothesis hypothesis{.title = "A ball takes cloth along as far as friction says", .source = "Weft"};
   hypothesis.text = {
       "A sheet on a ball that is spun up to half a turn per second within a second: how far both have turned "
@@ -105,9 +107,9 @@ Hypothesis ball_takes_cloth_along(const SectionOptions& options) {
   for (const double friction : {0.02, 0.03, 0.6}) {
     const Spin spin = spin_ball({}, friction);
     worst = std::max(worst, std::abs(spin.turned_sheet / spin.expected - 1));
-    hypothesis.found.tables[0].rows.push_back({fmt::format("{}", friction), fmt::format("{:.3f}", spin.turned_ball),
-                                    fmt::format("{:.3f}", spin.turned_sheet),
-                                    fmt::format("{:.3f}", spin.expected)});
+    hypothesis.found.tables[0].rows.push_back(
+        {fmt::format("{}", friction), fmt::format("{:.3f}", spin.turned_ball),
+         fmt::format("{:.3f}", spin.turned_sheet), fmt::format("{:.3f}", spin.expected)});
   }
   hypothesis.found.metrics = {{"worst_error", worst, "1", "0", 0.05}};
   hypothesis.verdict = worst < 0.05 ? Verdict::holds : Verdict::holds_in_part;
@@ -128,7 +130,7 @@ Hypothesis cloth_comes_to_rest(const SectionOptions& options) {
   double energy = 0, drift = 0, force = 0;
   for (const auto& [name, support] :
        {std::pair("a floor", Support::floor), std::pair("a ball", Support::ball)}) {
-    options.tell(std::string("rest on ") + name);
+    options.report_progress(std::string("rest on ") + name);
     const RestingSheet rest = rest_on({}, support, seconds);
     energy = std::max(energy, rest.kinetic);
     drift = std::max(drift, 1000 * rest.drift);
@@ -138,14 +140,14 @@ Hypothesis cloth_comes_to_rest(const SectionOptions& options) {
          fmt::format("{:.4f}", 1000 * rest.rise), fmt::format("{:.4f}", rest.force)});
   }
   hypothesis.found.metrics = {{"rest_kinetic_energy", energy, "J/kg", "< 1e-6", 0},
-                   {"rest_drift", drift, "mm", "< 1", 0},
-                   {"rest_force_error", force, "1", "0", 0.02}};
+                              {"rest_drift", drift, "mm", "< 1", 0},
+                              {"rest_force_error", force, "1", "0", 0.02}};
   hypothesis.verdict = energy < 1e-6 && drift < 1 ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
 }
 
 Hypothesis momentum_is_kept(const SectionOptions& options) {
-  options.tell("momentum");
+  options.report_progress("momentum");
   Hypothesis hypothesis{.title = "Contact keeps momentum", .source = "Weft"};
   const FoldedFall fall = drop_fold({}, 0.5);
   const Collision collision = collide_sheets({}, 0.5);
@@ -157,8 +159,9 @@ Hypothesis momentum_is_kept(const SectionOptions& options) {
                   "one sheet's.",
                   collision.contacts)};
   hypothesis.found.metrics = {{"fold_gain_error", gain, "%", "≤ 0.1", 0.1},
-                   {"collision_momentum_change", collision.momentum_change, "1", "≤ 1e-5", 1e-5}};
-  hypothesis.verdict = gain <= 0.1 && collision.momentum_change <= 1e-5 ? Verdict::holds : Verdict::holds_in_part;
+                              {"collision_momentum_change", collision.momentum_change, "1", "≤ 1e-5", 1e-5}};
+  hypothesis.verdict =
+      gain <= 0.1 && collision.momentum_change <= 1e-5 ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
 }
 
@@ -170,8 +173,9 @@ Section study_contact(const SectionOptions& options) {
                   .introduction =
                       "\"It is not allowed that cloth is embedded in itself or in the objects in the "
                       "scene\": what Weft makes of it."};
-  section.hypotheses = {nothing_crosses(options), friction_is_coulombs(options), ball_takes_cloth_along(options),
-                    cloth_comes_to_rest(options), momentum_is_kept(options)};
+  section.hypotheses = {nothing_crosses(options), friction_is_coulombs(options),
+                        ball_takes_cloth_along(options), cloth_comes_to_rest(options),
+                        momentum_is_kept(options)};
   return section;
 }
 

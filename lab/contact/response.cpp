@@ -69,8 +69,8 @@ double time_step(Stack& stack, double stretch) {
     }
   }
   begin = seconds_now();
-  stack.contact.take_solved({});
-  stack.contact.hold_off(*stack.jobs);
+  stack.contact.read_solution({});
+  stack.contact.project_contacts(*stack.jobs);
   return seconds + seconds_now() - begin;
 }
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <complex>
 
-#include "weft/core/random.h"
 #include "lab/accuracy/hung_cloth.h"
 #include "lab/paper/paper_hypotheses.h"
 #include "lab/report/plot.h"
+#include "weft/core/random.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine::lab::paper {
@@ -80,7 +80,8 @@ Hypothesis gravity_is_filtered() {
       "a = h²Σk/m, a particle whose neighbours share its a gets (1 + 2a)/(1 + a)² of it. Measured: the first "
       "step of a free sheet of 17² particles from rest, its middle particle; and the largest deviation of "
       "any particle, border and all, from its own formula Δv = g h [1 + h²/m Σ k/(1 + a_j)]/(1 + a)."};
-  hypothesis.found.tables = {{{"a", "share of g measured", "formula", "largest deviation of any particle"}, {}}};
+  hypothesis.found.tables = {
+      {{"a", "share of g measured", "formula", "largest deviation of any particle"}, {}}};
   constexpr int kSide = 17;
   constexpr std::size_t kMiddle = kSide * kSide / 2;
   const HungCloth sheet = make_hung_sheet(kSide, "simplified", {});
@@ -100,26 +101,26 @@ Hypothesis gravity_is_filtered() {
     measured.points.push_back({a, got, ""});
     formula.points.push_back({a, gravity_factor(a), ""});
     hypothesis.found.tables[0].rows.push_back({fmt::format("{:g}", a), fmt::format("{:.5f}", got),
-                                    fmt::format("{:.5f}", gravity_factor(a)),
-                                    fmt::format("{:.1e}", deviation)});
+                                               fmt::format("{:.5f}", gravity_factor(a)),
+                                               fmt::format("{:.1e}", deviation)});
   }
   hypothesis.found.metrics = {{"gravity_share_at_a_100", at_100, "1", "1; formula 0.0197", 1e-4},
-                   {"gravity_formula_deviation", worst, "1", "0", 1e-5}};
+                              {"gravity_formula_deviation", worst, "1", "0", 1e-5}};
   hypothesis.text.push_back(
       "Real fabric has a = 56 000 at 60 steps per second: it hangs in the air, stable and wrong. The fix "
       "keeps all uniform acceleration outside the filter (`paper_fixed`); an exact solve of Eq. 12 "
       "(`desbrun`) needs none, for the rows of H sum to zero.");
   hypothesis.found.pictures = {{"paper_gravity.svg", "Share of gravity that Eq. 16 lets through.",
-                     to_svg({.x_title = "a = h²Σk/m",
-                             .y_title = "share of gravity",
-                             .panels = {{"first step from rest", {measured, formula}}},
-                             .line = PlotLine::through_all})}};
+                                to_svg({.x_title = "a = h²Σk/m",
+                                        .y_title = "share of gravity",
+                                        .panels = {{"first step from rest", {measured, formula}}},
+                                        .line = PlotLine::through_all})}};
   return hypothesis;
 }
 
 Hypothesis no_damping_of_its_own() {
   Hypothesis hypothesis{.title = "Between Eq. 9 and Eq. 12 a term is lost, and with it the damping",
-              .source = "not in the paper"};
+                        .source = "not in the paper"};
   hypothesis.text = {
       "Implicit Euler damps fast swings: per step of ω h = x their amplitude falls to 1/√(1 + x²). It owes "
       "that to the term h·H·v, which Eq. 9 has and Eq. 12 has not. Measured: two particles on a spring, "
@@ -148,9 +149,10 @@ Hypothesis no_damping_of_its_own() {
     row.push_back(theory ? fmt::format("{:.4f}", *theory) : "–");
     hypothesis.found.tables[0].rows.push_back(row);
   }
-  hypothesis.found.metrics = {{"paper_growth", paper, "1", "1 without the term, 0.8944 with it", 1e-3},
-                   {"desbrun_growth", desbrun, "1", "0.8944", 1e-3},
-                   {"newton_growth", newton, "1", fmt::format("{:.4f} (BDF2)", bdf2_growth(0.5)), 1e-3}};
+  hypothesis.found.metrics = {
+      {"paper_growth", paper, "1", "1 without the term, 0.8944 with it", 1e-3},
+      {"desbrun_growth", desbrun, "1", "0.8944", 1e-3},
+      {"newton_growth", newton, "1", fmt::format("{:.4f} (BDF2)", bdf2_growth(0.5)), 1e-3}};
   hypothesis.text.emplace_back(
       "So cloth moved by Eq. 16 needs damping of its own springs, d > 0, or it never comes to rest. "
       "`paper_fixed` and `desbrun` keep the term.");
@@ -182,7 +184,7 @@ Hypothesis damping_feeds_motion() {
     return energy(state) / energy(start);
   };
   hypothesis.found.metrics = {{"energy_ratio_as_printed", ratio(true), "1", "< 1", 0},
-                   {"energy_ratio_corrected", ratio(false), "1", "< 1", 0.01}};
+                              {"energy_ratio_corrected", ratio(false), "1", "< 1", 0.01}};
   hypothesis.text.emplace_back(
       "We correct it to d (v_j − v_i); `solver.paper.damping_sign = \"as_printed\"` restores it.");
   return hypothesis;

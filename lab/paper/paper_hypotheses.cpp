@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "weft/core/random.h"
 #include "lab/accuracy/measure_method.h"
 #include "lab/paper/paper_hypotheses.h"
 #include "lab/report/plot.h"
+#include "weft/core/random.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
 #include "weft/run/stopwatch.h"
@@ -136,7 +136,7 @@ std::string time_cell(const std::optional<double>& ms) {
 }  // namespace
 
 Hypothesis one_shear_spring(const SectionOptions& options) {
-  options.tell("one shear spring");
+  options.report_progress("one shear spring");
   const ShearModel basic{"basic, two diagonals", "basic"},
       models[] = {{"simplified, as given", "simplified"},
                   {"simplified, doubled", "simplified", 2},
@@ -183,21 +183,22 @@ Hypothesis one_shear_spring(const SectionOptions& options) {
     }
   }
   hypothesis.found.metrics = {{"simplified_distance", simplified, "m", "0", 0.01},
-                   {"simplified_askew", askew, "%", "0", 1},
-                   {"alternating_distance", alternating, "m", "0", 0.005},
-                   {"simplified_over_alternating", simplified / alternating, "1", "", 0}};
+                              {"simplified_askew", askew, "%", "0", 1},
+                              {"alternating_distance", alternating, "m", "0", 0.005},
+                              {"simplified_over_alternating", simplified / alternating, "1", "", 0}};
   hypothesis.verdict = askew < 0.5 ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.text.push_back(
       fmt::format("It saves a sixth of the springs and looks like cloth, but not like the same cloth: it "
                   "hangs askew by {:.1f} % of its side. Letting the diagonal alternate from cell to cell "
                   "costs as little, keeps the symmetry, and is {:.1f} times closer to two diagonals.",
                   askew, simplified / alternating));
-  hypothesis.found.pictures = {{"paper_askew.svg", "How far the sheet is from its mirror image.", to_svg(plot)}};
+  hypothesis.found.pictures = {
+      {"paper_askew.svg", "How far the sheet is from its mirror image.", to_svg(plot)}};
   return hypothesis;
 }
 
 Hypothesis large_steps(const SectionOptions& options) {
-  options.tell("largest stable steps");
+  options.report_progress("largest stable steps");
   Hypothesis hypothesis{.title = "Large steps are stable", .source = "the paper, sections 1 and 4"};
   const int side = 17;
   const std::vector<double> stiffnesses =
@@ -208,7 +209,8 @@ Hypothesis large_steps(const SectionOptions& options) {
       "and `xpbd`. Theory for `explicit`: 2/ω, with the bound ω² = 2 max Σk/m.",
       side, kLongestStep)};
   hypothesis.found.tables = {{{"integrator"}, {}}};
-  for (const double k : stiffnesses) hypothesis.found.tables[0].head.push_back(fmt::format("{:.0f} N/m: ms", k));
+  for (const double k : stiffnesses)
+    hypothesis.found.tables[0].head.push_back(fmt::format("{:.0f} N/m: ms", k));
   const auto hung = [&](double k) {
     return make_hung_sheet(side, "simplified", {.structural = k, .shear = k / 2, .bend = k / 100});
   };
@@ -231,8 +233,9 @@ Hypothesis large_steps(const SectionOptions& options) {
     hypothesis.found.tables[0].rows.push_back(row);
     if (name == "explicit") hypothesis.found.tables[0].rows.push_back(theory);
   }
-  hypothesis.found.metrics = {{"explicit_limit_over_theory", measured / predicted, "1", "≥ 1: the bound is safe", 0.3},
-                   {"paper_limit", paper, "s", fmt::format("{} s, the longest tried", kLongestStep), 0.01}};
+  hypothesis.found.metrics = {
+      {"explicit_limit_over_theory", measured / predicted, "1", "≥ 1: the bound is safe", 0.3},
+      {"paper_limit", paper, "s", fmt::format("{} s, the longest tried", kLongestStep), 0.01}};
   hypothesis.verdict = paper >= kLongestStep ? Verdict::holds : Verdict::fails;
   hypothesis.text.push_back(
       "Eq. 16 is stable at any step that was tried. But stable is not right: what it does to the sheet then "
@@ -241,9 +244,9 @@ Hypothesis large_steps(const SectionOptions& options) {
 }
 
 Hypothesis faster_than_implicit(const SectionOptions& options) {
-  options.tell("speed at equal step and at equal error");
+  options.report_progress("speed at equal step and at equal error");
   Hypothesis hypothesis{.title = "Eq. 16 is faster than general implicit integration",
-              .source = "the paper, section 4"};
+                        .source = "the paper, section 4"};
   const int side = options.quick ? 17 : 64;
   const HungCloth cloth = make_hung_sheet(side, "simplified", {});
   const Reference reference =
@@ -251,12 +254,12 @@ Hypothesis faster_than_implicit(const SectionOptions& options) {
   std::vector<MethodResult> results;
   for (const MethodSettings& entry : list_integrator_entries()) {
     if (entry.method == "xpbd" || cloth.model->num_particles() > entry.most_particles) continue;
-    results.push_back(measure_method([&] { return make_integrator_method(entry, cloth); }, entry,
-                                         cloth, reference));
+    results.push_back(
+        measure_method([&] { return make_integrator_method(entry, cloth); }, entry, cloth, reference));
   }
-  hypothesis.found.tables = {{{"integrator", "CPU ms per step of 1/60 s", "CPU ms per frame at an error of 0.045 m",
-                    "least error reached, m"},
-                   {}}};
+  hypothesis.found.tables = {{{"integrator", "CPU ms per step of 1/60 s",
+                               "CPU ms per frame at an error of 0.045 m", "least error reached, m"},
+                              {}}};
   double paper = 0, desbrun = 0;
   std::optional<double> paper_equal, newton_equal;
   for (const std::string name : {"paper", "paper_fixed", "desbrun", "implicit_euler", "newton"}) {
@@ -298,12 +301,13 @@ Hypothesis faster_than_implicit(const SectionOptions& options) {
 }
 
 Hypothesis linear_cost(const SectionOptions& options) {
-  options.tell("cost against size");
+  options.report_progress("cost against size");
   Hypothesis hypothesis{.title = "Cost is linear in the number of springs", .source = "the paper, section 4"};
   const std::vector<int> sides =
       options.quick ? std::vector<int>{32, 64, 128} : std::vector<int>{32, 64, 128, 256, 512};
   hypothesis.found.tables = {{{"integrator"}, {}}};
-  for (const int side : sides) hypothesis.found.tables[0].head.push_back(fmt::format("{}²: ms per step", side));
+  for (const int side : sides)
+    hypothesis.found.tables[0].head.push_back(fmt::format("{}²: ms per step", side));
   hypothesis.found.tables[0].head.emplace_back("exponent");
   Plot plot{.x_title = "particles",
             .y_title = "CPU ms per step",
@@ -334,7 +338,8 @@ Hypothesis linear_cost(const SectionOptions& options) {
       "axes. `desbrun` keeps its factorised matrix from step to step here, which is its best case."};
   hypothesis.found.metrics = {{"paper_cost_exponent", paper, "1", "1", 0}};
   hypothesis.verdict = paper < 1.15 ? Verdict::holds : Verdict::holds_in_part;
-  hypothesis.found.pictures = {{"paper_cost.svg", "Time of a step against the number of particles.", to_svg(plot)}};
+  hypothesis.found.pictures = {
+      {"paper_cost.svg", "Time of a step against the number of particles.", to_svg(plot)}};
   return hypothesis;
 }
 
@@ -348,17 +353,20 @@ Hypothesis real_time(const SectionOptions& options) {
   double slowest = 1e9;
   for (const ShippedScene& shipped : list_scenes()) {
     if (!shipped.name.starts_with("paper/")) continue;
-    options.tell(shipped.name);
+    options.report_progress(shipped.name);
     RunOptions run;
     if (options.quick) run.frames = 15;
     const RunReport report = run_scene(read_scene(shipped.file), run);
     const double rate = 1000 / report.ms_per_frame_median;
     if (!shipped.name.ends_with("_real")) slowest = std::min(slowest, rate);
     hypothesis.found.tables[0].rows.push_back({"`" + shipped.name + "`", "`" + report.integrator + "`",
-                                    fmt::format("{}", report.particles), fmt::format("{:.0f}", rate)});
+                                               fmt::format("{}", report.particles),
+                                               fmt::format("{:.0f}", rate)});
   }
   hypothesis.found.metrics = {{"slowest_paper_scene", slowest, "frames/s", "60", 0}};
-  hypothesis.verdict = slowest >= 60 ? Verdict::holds : slowest >= 24 ? Verdict::holds_in_part : Verdict::fails;
+  hypothesis.verdict = slowest >= 60   ? Verdict::holds
+                       : slowest >= 24 ? Verdict::holds_in_part
+                                       : Verdict::fails;
   return hypothesis;
 }
 
@@ -394,7 +402,8 @@ Hypothesis parameters_change_freely() {
     };
     const double kept = measure(false), changed = measure(true);
     hypothesis.found.tables[0].rows.push_back({"`" + name + "`", fmt::format("{:.3f}", kept),
-                                    fmt::format("{:.3f}", changed), fmt::format("{:.2f}", changed / kept)});
+                                               fmt::format("{:.3f}", changed),
+                                               fmt::format("{:.2f}", changed / kept)});
     if (name == "paper") paper = changed / kept;
   }
   hypothesis.found.metrics = {{"paper_change_over_kept", paper, "1", "1", 0}};
@@ -424,7 +433,7 @@ Hypothesis figures_remade(const SectionOptions& options) {
     hypothesis.found.pictures.push_back({file, "The " + model + " model.", ""});
   }
   for (const std::string name : {"fig3_horizontal", "fig4_vertical", "fig5_falling", "fig6_ball"}) {
-    options.tell("painting " + name);
+    options.report_progress("painting " + name);
     RunOptions run;
     run.frames = options.quick ? 30 : 90;
     FilmSink film;

@@ -14,9 +14,9 @@ Section study_paper(const SectionOptions& options) {
           "hung by two corners and let go from horizontal."};
   using namespace paper;
   section.hypotheses = {one_shear_spring(options), large_steps(options),  faster_than_implicit(options),
-                    linear_cost(options),      real_time(options),    parameters_change_freely(),
-                    figures_remade(options),   gravity_is_filtered(), no_damping_of_its_own(),
-                    damping_feeds_motion()};
+                        linear_cost(options),      real_time(options),    parameters_change_freely(),
+                        figures_remade(options),   gravity_is_filtered(), no_damping_of_its_own(),
+                        damping_feeds_motion()};
   return section;
 }
 

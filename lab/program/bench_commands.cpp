@@ -2,18 +2,18 @@
 
 #include <memory>
 
-#include "lab/contact/collision.h"
-#include "lab/contact/contact_benchmark.h"
 #include "lab/accuracy/frontier.h"
+#include "lab/accuracy/scaling.h"
 #include "lab/benchmarks/garments.h"
 #include "lab/benchmarks/integrators.h"
 #include "lab/benchmarks/kernels.h"
 #include "lab/benchmarks/pictures.h"
 #include "lab/benchmarks/random_scenes.h"
-#include "lab/accuracy/scaling.h"
+#include "lab/contact/collision.h"
+#include "lab/contact/contact_benchmark.h"
 #include "lab/program/commands.h"
-#include "weft/error.h"
 #include "weft/core/simd.h"
+#include "weft/error.h"
 
 namespace weft::engine::lab {
 namespace {

@@ -7,15 +7,15 @@
 #include <memory>
 #include <optional>
 
+#include "apps/common/command_line.h"
 #include "lab/comparisons/peers.h"
 #include "lab/program/commands.h"
-#include "apps/common/command_line.h"
-#include "weft/pictures/painter.h"
-#include "weft/error.h"
+#include "lab/report/sections.h"
 #include "weft/core/simd.h"
 #include "weft/core/staged_file.h"
 #include "weft/core/version.h"
-#include "lab/report/sections.h"
+#include "weft/error.h"
+#include "weft/pictures/painter.h"
 #include "weft/render/device.h"
 #include "weft/run/stopwatch.h"
 

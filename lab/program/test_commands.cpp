@@ -3,13 +3,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "lab/program/commands.h"
 #include "apps/common/command_line.h"
-#include "weft/pictures/painter.h"
-#include "weft/error.h"
-#include "weft/core/staged_file.h"
-#include "weft/io/obj_reader.h"
+#include "lab/program/commands.h"
 #include "lab/textile/laboratory_tests.h"
+#include "weft/core/staged_file.h"
+#include "weft/error.h"
+#include "weft/io/obj_reader.h"
+#include "weft/pictures/painter.h"
 #include "weft/render/device.h"
 #include "weft/scene/fabric_reader.h"
 
@@ -48,7 +48,7 @@ void add_metrics(const Findings& result, Json& json) {
 
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-void write_shape(const fs::path& file, const AnimatedMesh& mesh) {
+void write_shape(const fs::path& file, const AnimatedCloth& mesh) {
   TriangleMesh shape{.positions = {}, .triangles = mesh.triangles};
   const std::vector<float>& x = mesh.frames.at(0);
   for (std::size_t i = 0; i < x.size(); i += 3) shape.positions.emplace_back(x[i], x[i + 1], x[i + 2]);
@@ -61,7 +61,8 @@ void write_files(const fs::path& folder, const Json& json, const Findings& resul
     if (!picture.animation) continue;
     const std::string& file = picture.file;
     write_shape(folder / (file + ".obj"), picture.animation->cloths.at(0));
-    Painter painter(*picture.animation, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
+    Painter painter(*picture.animation, {.view = {.elevation_deg = 30}, .zoom = 0.9},
+                    make_offscreen_device());
     painter.write_pictures(folder / (file + ".png"), {0}, 1);
   }
 }
@@ -148,10 +149,9 @@ void add_study_command(CLI::App& app) {
                             return test_tensile(fabric, options.specimen);
                           });
   add_membrane_option(*tensile, *pulled);
-  CLI::App* shear = add(*studies, "shear", "g between clamps that slide", sheared,
-                        [](const Fabric& fabric, const StudyOptions& options) {
-                          return test_shear(fabric, options.specimen);
-                        });
+  CLI::App* shear = add(
+      *studies, "shear", "g between clamps that slide", sheared,
+      [](const Fabric& fabric, const StudyOptions& options) { return test_shear(fabric, options.specimen); });
   add_membrane_option(*shear, *sheared);
   add(*studies, "buckling", "Load at which an upright strip tips over", make_options(),
       [](const Fabric& fabric, const StudyOptions& options) {

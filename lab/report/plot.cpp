@@ -15,7 +15,7 @@ namespace {
 constexpr double kWidth = 400, kHeight = 300;  // of a panel's axes
 constexpr double kLeft = 60, kTop = 40, kPitchX = kWidth + 90, kPitchY = kHeight + 95;
 constexpr double kLegendPitch = 20;
-constexpr std::size_t kMostDots = 40;  // longer series have no dots
+constexpr std::size_t kMaxDots = 40;  // longer series have no dots
 constexpr const char* kColours[] = {"#c0392b", "#2060b0", "#2e8b57", "#8e44ad",
                                     "#d08000", "#555555", "#10a0a0", "#a06040"};
 
@@ -157,7 +157,7 @@ class SvgWriter {
     }
     text_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
                          points, colour(series.name));
-    if (series.points.size() > kMostDots) return;
+    if (series.points.size() > kMaxDots) return;
     for (const PlotPoint& p : series.points) {
       text_ += fmt::format(
           "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}</title></circle>\n", px(p.x),

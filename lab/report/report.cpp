@@ -19,9 +19,10 @@ using Json = nlohmann::ordered_json;
 constexpr Verdict kVerdicts[] = {Verdict::holds, Verdict::holds_in_part, Verdict::fails, Verdict::finding};
 
 Json json_of(const Hypothesis& hypothesis) {
-  Json json = {{"title", hypothesis.title},     {"source", hypothesis.source},   {"verdict", to_string(hypothesis.verdict)},
-               {"text", hypothesis.text},       {"figures", Json::array()}, {"tables", Json::array()},
-               {"pictures", Json::array()}};
+  Json json = {
+      {"title", hypothesis.title}, {"source", hypothesis.source}, {"verdict", to_string(hypothesis.verdict)},
+      {"text", hypothesis.text},   {"figures", Json::array()},    {"tables", Json::array()},
+      {"pictures", Json::array()}};
   for (const Metric& f : hypothesis.found.metrics) {
     json["figures"].push_back(
         {{"name", f.name}, {"value", f.value}, {"unit", f.unit}, {"aim", f.aim}, {"tolerance", f.tolerance}});
@@ -62,10 +63,12 @@ Hypothesis hypothesis_of(const Json& json) {
       .title = json.at("title"), .source = json.at("source"), .verdict = verdict_of(json.at("verdict"))};
   hypothesis.text = json.at("text").get<std::vector<std::string>>();
   for (const Json& f : json.at("figures"))
-    hypothesis.found.metrics.push_back({f.at("name"), f.at("value"), f.at("unit"), f.at("aim"), f.at("tolerance")});
+    hypothesis.found.metrics.push_back(
+        {f.at("name"), f.at("value"), f.at("unit"), f.at("aim"), f.at("tolerance")});
   for (const Json& t : json.at("tables")) {
     hypothesis.found.tables.push_back({t.at("head").get<std::vector<std::string>>(),
-                            t.at("rows").get<std::vector<std::vector<std::string>>>(), t.at("title")});
+                                       t.at("rows").get<std::vector<std::vector<std::string>>>(),
+                                       t.at("title")});
   }
   for (const Json& p : json.at("pictures"))
     hypothesis.found.pictures.push_back({p.at("file"), p.at("caption"), p.at("svg")});
@@ -133,7 +136,8 @@ void add_table(const Table& table, std::string& text) {
 }
 
 void add_hypothesis(const Hypothesis& hypothesis, const std::string& pictures, std::string& text) {
-  text += fmt::format("### {}\n\n*{}* — **{}**\n\n", hypothesis.title, hypothesis.source, to_string(hypothesis.verdict));
+  text += fmt::format("### {}\n\n*{}* — **{}**\n\n", hypothesis.title, hypothesis.source,
+                      to_string(hypothesis.verdict));
   for (const std::string& paragraph : hypothesis.text) text += paragraph + "\n\n";
   for (const Table& table : tables_of(hypothesis)) add_table(table, text);
   for (const ReportPicture& p : hypothesis.found.pictures)
@@ -210,8 +214,9 @@ std::string table_html(const Table& table) {
 }
 
 std::string hypothesis_html(const Hypothesis& hypothesis, const std::filesystem::path& folder) {
-  std::string html = "<h3>" + inline_html(hypothesis.title) + "</h3>\n<p><em>" + inline_html(hypothesis.source) +
-                     "</em> — <strong>" + to_string(hypothesis.verdict) + "</strong></p>\n";
+  std::string html = "<h3>" + inline_html(hypothesis.title) + "</h3>\n<p><em>" +
+                     inline_html(hypothesis.source) + "</em> — <strong>" + to_string(hypothesis.verdict) +
+                     "</strong></p>\n";
   for (const std::string& paragraph : hypothesis.text) html += "<p>" + inline_html(paragraph) + "</p>\n";
   for (const Table& table : tables_of(hypothesis)) html += table_html(table);
   for (const ReportPicture& picture : hypothesis.found.pictures) html += picture_html(picture, folder);

@@ -39,7 +39,7 @@ struct Table {
 struct ReportPicture {
   std::string file;  // beside the report; .svg or .jpg
   std::string caption;
-  std::string svg = {};                                   // the plot itself; empty: a painted file
+  std::string svg = {};                                  // the plot itself; empty: a painted file
   std::shared_ptr<const Animation> animation = nullptr;  // one frame to paint; null: a plot, or painted
 };
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
-#include "weft/io/animation.h"
 #include "lab/report/report.h"
+#include "weft/io/animation.h"
 #include "weft/model/cloth_model.h"
 
 namespace weft::engine::lab {
@@ -22,7 +22,7 @@ struct SectionOptions {
                      std::shared_ptr<const ClothTopology> springs)>
       paint;
 
-  void tell(const std::string& what) const {
+  void report_progress(const std::string& what) const {
     if (say) say(what);
   }
 };

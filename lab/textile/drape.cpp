@@ -16,7 +16,7 @@ constexpr double kPi = 3.141592653589793;
 constexpr double kCrease = 2e-4;       // of the specimens at the start [m]
 constexpr double kCrookedness = 0.25;  // of random meshes, as a share of the distance of rings [1]
 constexpr double kFps = 960,
-                 kMostSeconds = 8;   // short steps, because the formation of folds determines the final shape
+                 kMaxSeconds = 8;    // short steps, because the formation of folds determines the final shape
 constexpr double kAirRate = 10;      // damping rate by air drag: about half of critical [1/s]
 constexpr double kRestSpeed = 1e-3;  // [m/s]
 constexpr double kPixel = 5e-4;      // of the shadow [m]
@@ -88,7 +88,7 @@ double largest_speed(const ClothState& state) {
 }
 
 bool settle(World& world) {
-  for (int step = 0; step < kFps * kMostSeconds; ++step) {
+  for (int step = 0; step < kFps * kMaxSeconds; ++step) {
     world.step(1 / kFps);
     if (step > kFps && largest_speed(world.state(world.cloth(0))) < kRestSpeed) return true;
   }
@@ -144,7 +144,7 @@ double compute_shadow(const std::vector<Triangle>& triangles, const ClothState& 
 }
 
 Animation show_specimen(const ClothModel& model, const ClothState& state) {
-  AnimatedMesh cloth{
+  AnimatedCloth cloth{
       .name = "specimen", .triangles = model.topology->mesh.triangles, .color = {0.04, 0.12, 0.30}};
   cloth.frames.emplace_back();
   for (std::size_t i = 0; i < state.x.size(); ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 /// One specimen of the drape test, and its measurements.
 
-#include "weft/io/animation.h"
 #include "lab/textile/specimen.h"
+#include "weft/io/animation.h"
 
 namespace weft::engine::lab {
 

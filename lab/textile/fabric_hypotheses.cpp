@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "weft/fabric.h"
 #include "lab/report/plot.h"
 #include "lab/textile/drape.h"
 #include "lab/textile/hung_strip.h"
 #include "lab/textile/laboratory_tests.h"
+#include "weft/fabric.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine::lab {
@@ -91,11 +91,13 @@ double mean_of(const std::vector<double>& values) {
 
 Findings fabric_constants(const SectionOptions& options) {
   Findings result;
-  Table table{{"fabric", "membrane, mesh", "c11", "of", "c22", "of", "c12", "of", "g", "of"}, {}, "What tensile and shear tests give back [N/m]"};
+  Table table{{"fabric", "membrane, mesh", "c11", "of", "c22", "of", "c12", "of", "g", "of"},
+              {},
+              "What tensile and shear tests give back [N/m]"};
   const std::vector<const char*> names =
       options.quick ? std::vector<const char*>{"denim"}
-                     : std::vector<const char*>{"silk", "denim", "11oz_black_denim", "gray_interlock",
-                                                "pink_ribbon_brown"};
+                    : std::vector<const char*>{"silk", "denim", "11oz_black_denim", "gray_interlock",
+                                               "pink_ribbon_brown"};
   for (const SpecimenMembrane membrane : {SpecimenMembrane::triangle, SpecimenMembrane::springs}) {
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       const bool has_springs = membrane == SpecimenMembrane::springs, is_grid = mesh == SpecimenMesh::grid;
@@ -105,7 +107,7 @@ Findings fabric_constants(const SectionOptions& options) {
         const Fabric& f = find_fabric(name);
         if (has_springs && f.c11 <= f.g) continue;  // not representable by springs
         const std::string kind = std::string(has_springs ? "springs, " : "triangle, ") + name_of(mesh);
-        options.tell(std::string(name) + ", " + kind);
+        options.report_progress(std::string(name) + ", " + kind);
         const Findings tensile = test_tensile(f, specimen);
         const double c11 = find_metric(tensile, "c11"), c22 = find_metric(tensile, "c22"),
                      c12 = find_metric(tensile, "c12"), g = find_metric(test_shear(f, specimen), "g");
@@ -127,13 +129,16 @@ Findings fabric_constants(const SectionOptions& options) {
 
 Findings fabric_cantilever(const SectionOptions& options) {
   Findings result;
-  Table table{{"fabric", "mesh", "cells", "warp", "weft", "bias"}, {}, "H/W of a strip cut along warp, weft and bias, the elastica's being 0.88473"};
+  Table table{{"fabric", "mesh", "cells", "warp", "weft", "bias"},
+              {},
+              "H/W of a strip cut along warp, weft and bias, the elastica's being 0.88473"};
   const std::vector<int> resolutions = options.quick ? std::vector{10} : std::vector{10, 25, 50};
   for (const char* name : {"denim", "silk"}) {
     if (options.quick && name != std::string("denim")) continue;
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       for (const int cells : resolutions) {
-        options.tell(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) + " cells");
+        options.report_progress(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) +
+                                " cells");
         std::vector<double> ratio;
         for (const StripDirection direction :
              {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
@@ -160,12 +165,14 @@ Findings fabric_cantilever(const SectionOptions& options) {
 Findings fabric_drape(const SectionOptions& options) {
   Findings result;
   const std::vector<int> rings = options.quick ? std::vector{10, 15} : std::vector{15, 20, 30, 45};
-  Table table{{"rings", "regular", "folds", "crooked", "folds"}, {}, "Drape coefficient of denim, mean and spread of five specimens [%]"};
+  Table table{{"rings", "regular", "folds", "crooked", "folds"},
+              {},
+              "Drape coefficient of denim, mean and spread of five specimens [%]"};
   PlotPanel panel{"drape coefficient of denim", {{"regular rings", {}}, {"crooked rings", {}}}};
   for (const int n : rings) {
     std::vector<std::string> row = {std::to_string(n)};
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
-      options.tell("denim, " + std::to_string(n) + " rings");
+      options.report_progress("denim, " + std::to_string(n) + " rings");
       const Findings test =
           test_drape(find_fabric("denim"), {.mesh = mesh, .resolution = n}, options.threads);
       const double coefficient = find_metric(test, "drape_coefficient");
@@ -195,10 +202,12 @@ Findings fabric_drape(const SectionOptions& options) {
 Findings fabric_meshes(const SectionOptions& options) {
   Findings result;
   Fabric fabric = find_fabric("cotton_shirting");
-  Table table{{"mesh", "drape coefficient [%]", "folds", "sag [m]", "swing [s]"}, {}, "Cotton shirting on five meshes"};
+  Table table{{"mesh", "drape coefficient [%]", "folds", "sag [m]", "swing [s]"},
+              {},
+              "Cotton shirting on five meshes"};
   std::vector<double> drapes, sags, periods;
   for (const MeshCase& mesh : five_meshes(options.quick)) {
-    options.tell("cotton shirting on " + mesh.name);
+    options.report_progress("cotton shirting on " + mesh.name);
     const Findings drape =
         test_drape(fabric, {.mesh = mesh.mesh, .resolution = rings_like(mesh.cells)}, options.threads);
     drapes.push_back(find_metric(drape, "drape_coefficient"));
@@ -207,9 +216,10 @@ Findings fabric_meshes(const SectionOptions& options) {
     table.rows.push_back({mesh.name, digits(drapes.back(), 3), digits(find_metric(drape, "drape_nodes"), 2),
                           digits(sags.back(), 4), digits(periods.back(), 4)});
   }
-  result.metrics = {expect("drape_spread_over_meshes", spread_of(drapes), "%", 0, 3),
-                    expect("sag_spread_over_meshes", 100 * spread_of(sags) / mean_of(sags), "%", 0, 2),
-                    expect("period_spread_over_meshes", 100 * spread_of(periods) / mean_of(periods), "%", 0, 1)};
+  result.metrics = {
+      expect("drape_spread_over_meshes", spread_of(drapes), "%", 0, 3),
+      expect("sag_spread_over_meshes", 100 * spread_of(sags) / mean_of(sags), "%", 0, 2),
+      expect("period_spread_over_meshes", 100 * spread_of(periods) / mean_of(periods), "%", 0, 1)};
   result.tables.push_back(std::move(table));
   return result;
 }
@@ -217,13 +227,16 @@ Findings fabric_meshes(const SectionOptions& options) {
 Findings fabric_strain_limit(const SectionOptions& options) {
   constexpr double kLimit = 0.01, kAllowed = 1.5;  // [1], [%]
   Findings result;
-  Table table{{"fabric", "mesh", "cells", "stretch", "Newton steps", "stretch without a limit"}, {}, "Largest principal stretch less one [%] and Newton steps per frame with strain_limit = 0.01"};
+  Table table{{"fabric", "mesh", "cells", "stretch", "Newton steps", "stretch without a limit"},
+              {},
+              "Largest principal stretch less one [%] and Newton steps per frame with strain_limit = 0.01"};
   const std::vector<int> resolutions = options.quick ? std::vector{12} : std::vector{16, 32, 64};
   double worst = 0;
   for (const char* name : {"gray_interlock", "cotton_shirting"}) {
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       for (const int cells : resolutions) {
-        options.tell(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) + " cells");
+        options.report_progress(std::string(name) + ", " + name_of(mesh) + " of " + std::to_string(cells) +
+                                " cells");
         Fabric fabric = find_fabric(name);
         const Swing free = swing_sheet(fabric, cells, mesh);
         fabric.strain_limit = kLimit;
@@ -246,7 +259,7 @@ Findings fabric_steps(const SectionOptions& options) {
   const int cells = options.quick ? 12 : 32;
   std::vector<double> sags;
   for (const int steps_per_second : {60, 120, 240}) {
-    options.tell("denim at " + std::to_string(steps_per_second) + " steps per second");
+    options.report_progress("denim at " + std::to_string(steps_per_second) + " steps per second");
     Specimen specimen = make_hammock(denim, cells, SpecimenMesh::grid);
     specimen.environment.wind.drag = 5 * denim.density;
     const auto integrator = make_newton({});

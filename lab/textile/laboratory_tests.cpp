@@ -118,8 +118,7 @@ std::array<double, 2> stretch(const Fabric& fabric, const SpecimenSettings& sett
 
 }  // namespace
 
-Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings,
-                             StripDirection direction) {
+Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction) {
   Strip strip = make_strip(fabric, settings, warp_angle(direction));
   Findings result;
   warn_unsettled(settle(strip.specimen, strip.overhang), result);

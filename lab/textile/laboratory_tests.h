@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/textile/specimen.h"
 #include "lab/report/report.h"
+#include "lab/textile/specimen.h"
 
 namespace weft::engine::lab {
 
@@ -23,8 +23,7 @@ enum class StripDirection { warp, weft, bias };
 ///                            overhang          L [m]
 ///
 /// The elastica has H/W = 0.88473 at this angle. Specimen: 25 cells along, 4 across.
-Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings,
-                             StripDirection direction);
+Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction);
 
 /// Biaxial tensile test: stretching along warp and along weft by 0.1 %, all sides clamped. c11, c22, c12 from
 /// the forces at the clamps [N/m]. Specimen: 10 cm, 10 × 10 cells.

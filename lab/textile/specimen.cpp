@@ -15,7 +15,7 @@ namespace {
 constexpr int kIterations = 60;    // of conjugate gradients per step
 constexpr double kSettled = 1e-5;  // of the size
 constexpr int kStepsPerLook = 30;  // between two checks for rest
-constexpr int kMostLooks = 200;
+constexpr int kMaxLooks = 200;
 constexpr double kStepPerRoot = 0.04;  // step over √size: a fortieth of a strip's period [s/√m]
 constexpr std::uint64_t kMeshSeed = 1;
 
@@ -117,7 +117,7 @@ bool settle(Specimen& specimen, double size) {
   const double step = kStepPerRoot * std::sqrt(size);
   double energy = 0;
   std::vector<Vec3> before = positions(specimen.state);
-  for (int look = 0; look < kMostLooks; ++look) {
+  for (int look = 0; look < kMaxLooks; ++look) {
     for (int s = 0; s < kStepsPerLook; ++s) {
       integrator->advance(*specimen.model, specimen.environment, step, *jobs, specimen.state);
       const double now = compute_kinetic_energy(*specimen.model, specimen.state);

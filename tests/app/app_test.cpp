@@ -382,9 +382,9 @@ TEST_F(App, VerifyAgreesWithTheReport) {
 
 TEST_F(App, VerifyFindsPlantedCrossings) {
   weft::engine::Animation animation;
-  weft::engine::AnimatedMesh sheet{.name = "sheet", .triangles = {{0, 1, 2}}, .frames = {}};
+  weft::engine::AnimatedCloth sheet{.name = "sheet", .triangles = {{0, 1, 2}}, .frames = {}};
   sheet.frames.assign(3, {-1, 0, -1, 1, 0, -1, 0, 0, 2});
-  weft::engine::AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  weft::engine::AnimatedCloth blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
   for (const float tip : {0.1f, 0.1f, -0.1f}) blade.frames.push_back({0, 1, 0, 0.1f, 1, 0, 0, tip, 0.1f});
   animation.cloths = {sheet, blade};
   weft::engine::write_glb("planted.glb", animation);

@@ -47,11 +47,11 @@ struct Particles {
     const ContactCloth cloth{model.get(), &state, &is_pinned};
     contact.begin_step({&cloth, 1}, colliders, step);
     move();
-    contact.take_solved({});
-    contact.hold_off(*make_serial_jobs());
+    contact.read_solution({});
+    contact.project_contacts(*make_serial_jobs());
   }
 
-  void hold_off(const std::vector<Collider>& colliders, const ContactStep& step) {
+  void project_contacts(const std::vector<Collider>& colliders, const ContactStep& step) {
     this->step(colliders, step, [] {});
   }
 
@@ -127,7 +127,7 @@ TEST(ContactSystem, LeavesPinnedParticlesWhereTheyAre) {
   Particles particles({{0, 0.2, 0}, {0.1, 0.2, 0}}, 0.002);
   particles.is_pinned[0] = 1;
   const Vec3 before = particles.state.position(0);
-  particles.hold_off(colliders, {.time = 1, .step = 0.01});
+  particles.project_contacts(colliders, {.time = 1, .step = 0.01});
   EXPECT_EQ(particles.state.position(0), before);
   EXPECT_GE(particles.state.position(1).norm(), 0.5);
 }

@@ -58,7 +58,7 @@ struct Scene {
 
   Proximity make_proximity() const {
     Surface finished = surface;
-    finished.build_fans();
+    finished.build_one_rings();
     Patches patches;
     for (const Sheet& sheet : sheets) {
       const int end = sheet.first_triangle + 2 * sheet.grid.cells_x * sheet.grid.cells_z;
@@ -99,8 +99,8 @@ class BruteForce {
     for (int m = 0; m < kMoments; ++m) add_moment(m / double{kMoments - 1});
   }
 
-  Pairs vertex_triangle, edge_edge;          // of triangles that are not neighbours
-  Pairs fan_vertex_triangle, fan_edge_edge;  // of triangles that share a sharp vertex
+  Pairs vertex_triangle, edge_edge;                    // of triangles that are not neighbours
+  Pairs one_ring_vertex_triangle, one_ring_edge_edge;  // of triangles that share a sharp vertex
 
  private:
   static bool are_near(const Vec3& a_min, const Vec3& a_max, const Vec3& b_min, const Vec3& b_max) {
@@ -120,7 +120,7 @@ class BruteForce {
         if (v >= num_cloth_vertices_ && i >= num_cloth_vertices_) continue;
         if (!are_near(x[v], x[v], low, high)) continue;
         if (point_triangle_distance(x[v], x[i], x[j], x[k]).distance() > kGap) continue;
-        add({v, t}, vertex_owner_[v], t, is_at_end ? &x : nullptr, vertex_triangle, fan_vertex_triangle);
+        add({v, t}, vertex_owner_[v], t, is_at_end ? &x : nullptr, vertex_triangle, one_ring_vertex_triangle);
       }
     }
     for (int e = 0; e < static_cast<int>(surface_.edges.size()); ++e) {
@@ -132,28 +132,28 @@ class BruteForce {
         if (i >= num_cloth_vertices_ && k >= num_cloth_vertices_) continue;
         if (!are_near(low, high, x[k].cwiseMin(x[l]), x[k].cwiseMax(x[l]))) continue;
         if (edge_edge_distance(x[i], x[j], x[k], x[l]).distance() > kGap) continue;
-        add({e, f}, edge_owner_[e], edge_owner_[f], is_at_end ? &x : nullptr, edge_edge, fan_edge_edge);
+        add({e, f}, edge_owner_[e], edge_owner_[f], is_at_end ? &x : nullptr, edge_edge, one_ring_edge_edge);
       }
     }
   }
 
   void add(const std::array<int, 2>& pair, int owner_a, int owner_b, const std::vector<Vec3>* x, Pairs& pairs,
-           Pairs& fan_pairs) const {
+           Pairs& one_ring_pairs) const {
     const Triangle &a = surface_.triangles[owner_a], &b = surface_.triangles[owner_b];
     const int shared = num_shared_vertices(a, b);
     if (shared == 0) pairs.insert(pair);
     if (shared != 1 || !x) return;
     const int v =
         *std::find_if(a.begin(), a.end(), [&](int i) { return i == b[0] || i == b[1] || i == b[2]; });
-    if (is_sharp(v, *x)) fan_pairs.insert(pair);
+    if (is_sharp(v, *x)) one_ring_pairs.insert(pair);
   }
 
   /// Whether a triangle around v deviates by more than 45° from the sum of normals, as in proximity.h.
   bool is_sharp(int v, const std::vector<Vec3>& x) const {
     std::vector<Vec3> normals;
     Vec3 sum = Vec3::Zero();
-    for (int f = surface_.fan_begin[v]; f < surface_.fan_begin[v + 1]; ++f) {
-      const auto [i, j, k] = surface_.triangles[surface_.fan[f]];
+    for (int f = surface_.one_ring_begin[v]; f < surface_.one_ring_begin[v + 1]; ++f) {
+      const auto [i, j, k] = surface_.triangles[surface_.one_ring[f]];
       normals.push_back((x[j] - x[i]).cross(x[k] - x[i]).stableNormalized());
       sum += normals.back();
     }
@@ -183,7 +183,7 @@ Pairs missing(const Pairs& wanted, const Pairs& found) {
 
 /// Compares the lists with brute force; returns the number of close pairs.
 std::size_t check(Proximity& proximity, const Scene& scene, const SurfaceMotion& motion,
-                  const std::string& where, bool with_fans = false) {
+                  const std::string& where, bool with_one_ring_pairs = false) {
   const BruteForce brute_force(proximity, scene.num_cloth_vertices, motion);
   const Pairs vt = as_set(proximity.vertex_triangle()), ee = as_set(proximity.edge_edge());
   const auto is_sorted = [](const std::vector<FeaturePair>& pairs) {
@@ -195,9 +195,9 @@ std::size_t check(Proximity& proximity, const Scene& scene, const SurfaceMotion&
   EXPECT_TRUE(is_sorted(proximity.edge_edge())) << where;
   EXPECT_EQ(missing(brute_force.vertex_triangle, vt).size(), 0u) << where;
   EXPECT_EQ(missing(brute_force.edge_edge, ee).size(), 0u) << where;
-  if (with_fans) {
-    EXPECT_EQ(missing(brute_force.fan_vertex_triangle, vt).size(), 0u) << where;
-    EXPECT_EQ(missing(brute_force.fan_edge_edge, ee).size(), 0u) << where;
+  if (with_one_ring_pairs) {
+    EXPECT_EQ(missing(brute_force.one_ring_vertex_triangle, vt).size(), 0u) << where;
+    EXPECT_EQ(missing(brute_force.one_ring_edge_edge, ee).size(), 0u) << where;
   }
   double longest = 0;
   for (const auto& [i, j] : proximity.surface().edges) {

@@ -118,7 +118,7 @@ TEST(ContactRules, NameWhatIsWrong) {
   EXPECT_EQ(message("sheet", "bal", 0.1), "no cloth or collider is named \"bal\"");
   EXPECT_NE(message("ball", "ball", 0.1).find("one of the two must be a cloth"), std::string::npos);
   EXPECT_NE(message("sheet", "ball", -1).find("must be 0 or more"), std::string::npos);
-  EXPECT_TRUE(world.passing_pairs().empty());
+  EXPECT_TRUE(world.non_colliding_pairs().empty());
 }
 
 }  // namespace

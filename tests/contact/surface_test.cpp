@@ -23,7 +23,7 @@ Surface make_surface() {
   const TriangleMesh ball = make_sphere_mesh(Vec3::Zero(), 1, 3);
   surface.add(ball.triangles, ball.num_vertices());
   surface.add({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, 6);  // vertex 5 belongs to no triangle
-  surface.build_fans();
+  surface.build_one_rings();
   return surface;
 }
 
@@ -99,8 +99,8 @@ TEST(Surface, FansHoldTheTrianglesAroundEachVertex) {
     for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
       if (has(surface.triangles[t], v)) around.push_back(t);
     }
-    EXPECT_EQ(std::vector<int>(surface.fan.begin() + surface.fan_begin[v],
-                               surface.fan.begin() + surface.fan_begin[v + 1]),
+    EXPECT_EQ(std::vector<int>(surface.one_ring.begin() + surface.one_ring_begin[v],
+                               surface.one_ring.begin() + surface.one_ring_begin[v + 1]),
               around);
   }
 }

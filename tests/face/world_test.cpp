@@ -47,8 +47,8 @@ std::string error_of(const Call& call) {
   return {};
 }
 
-void expect_contains(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
+void expect_contains(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
 /// Two triangles with duplicate vertices along their common edge, and one unused vertex.

@@ -4,8 +4,8 @@
 
 #include "tests/forces/sheets.h"
 #include "tests/support.h"
-#include "weft/error.h"
 #include "weft/core/simd.h"
+#include "weft/error.h"
 #include "weft/forces/bending.h"
 #include "weft/forces/potential.h"
 
@@ -187,7 +187,7 @@ TEST(ElementPotential, DampedForceIsTheGradientOfItsEnergy) {
     for (int i = 0; i < sheet.model->num_particles(); ++i) {
       moved.set(i, test::random_vector(random, 0.005));
       start.set(i, x[i] + test::random_vector(random, 0.005));
-      bent.potential.lag.set(bent.at(i), test::random_vector(random, 0.005));
+      bent.potential.velocity_offset.set(bent.at(i), test::random_vector(random, 0.005));
     }
     bent.potential.remember(start, moved, 1.0 / 3, *bent.jobs);
     Vec3Array force(bent.e.size()), there = bent.e, back = bent.e;
@@ -215,7 +215,7 @@ double viscous_energy(const ClothModel& model, const std::vector<Vec3>& start, c
     const int at = potential.rows().index(i);
     x.set(i, start[i]);
     potential.target.set(at, end[i]);
-    potential.lag.set(at, end[i] - start[i]);
+    potential.velocity_offset.set(at, end[i] - start[i]);
   }
   potential.remember(x, displacement, 0, *jobs);
   const double damped = potential.energy(e, *jobs);

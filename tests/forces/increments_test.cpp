@@ -125,7 +125,7 @@ TEST(Increments, FilterIsTheJacobiSweepOfEquation14) {
     }
     const ClothState before = state;
     apply_filtered_increments(*model, u, step, to_padded_floats(weight),
-                              {.keep = 0.5f, .gain = {0.1, 0.2, 0.3}}, *jobs, state);
+                              {.drag_factor = 0.5f, .velocity_gain = {0.1, 0.2, 0.3}}, *jobs, state);
     for (int i = 0; i < model->num_particles(); ++i) {
       EXPECT_LT((state.v.get(i) - expected[i]).norm(), 2e-6) << c.name << ", particle " << i;
       EXPECT_LT((state.x.get(i) - before.x.get(i) - step * expected[i]).norm(), 2e-7) << c.name;

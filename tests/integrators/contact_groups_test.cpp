@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 #include "weft/forces/potential.h"
-#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/floating_components.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
@@ -57,14 +57,14 @@ struct FreeBodiesTest : testing::Test {
   const std::shared_ptr<const ClothModel> model =
       build_cloth_model(build_grid_topology(test::square(1), SpringModel::basic), {});
   const PaddedRows rows = padded_rows_of(*model->topology);
-  FreePieces pieces;
+  FloatingComponents components;
   std::vector<float> weight = std::vector<float>(rows.size(), 1);
   Vec3Array moved[2] = {Vec3Array(rows.size()), Vec3Array(rows.size())};
   FreeBodies bodies;
 
   void SetUp() override {
-    pieces.find(*model, {});
-    const FreeBodies::Member member{.pieces = &pieces, .rows = &rows, .weight = &weight};
+    components.find(*model, {});
+    const FreeBodies::Member member{.components = &components, .rows = &rows, .weight = &weight};
     bodies.begin(std::vector{member, member});
     for (const int m : {0, 1}) {
       for (int i = 0; i < model->num_particles(); ++i) moved[m].set(rows.index(i), Vec3(1 + 2 * m, 0, 0));

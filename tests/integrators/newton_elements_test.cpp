@@ -160,8 +160,8 @@ TEST(NewtonElements, VibrateWithTheFrequencyOfTheirStiffnessAndTheDampingOfTheir
 
 TEST(NewtonElements, HaveTheSameBitsForAnyNumberOfThreadsAndEveryVectorWidth) {
   constexpr int kCells = 96;  // several chunks of work
-  for (const auto& model : {on_grid(square(kCells), find_fabric("denim")),
-                            on_mesh(square(kCells), find_fabric("denim"))}) {
+  for (const auto& model :
+       {on_grid(square(kCells), find_fabric("denim")), on_mesh(square(kCells), find_fabric("denim"))}) {
     std::vector<std::uint64_t> hashes;
     for (const SimdLevel level : {SimdLevel::baseline, best_simd_level()}) {
       for (const int threads : {1, 4}) {

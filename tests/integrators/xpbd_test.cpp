@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "tests/support.h"
-#include "weft/error.h"
 #include "weft/core/hash.h"
 #include "weft/core/simd.h"
+#include "weft/error.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {

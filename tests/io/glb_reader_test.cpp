@@ -14,10 +14,10 @@
 namespace weft::engine {
 namespace {
 
-AnimatedMesh make_cloth(int num_frames) {
+AnimatedCloth make_cloth(int num_frames) {
   const TriangleMesh grid =
       build_grid_mesh({.size_x = 1, .size_z = 1, .cells_x = 3, .cells_z = 4}, GridDiagonals::alternating);
-  AnimatedMesh cloth{.name = "sheet", .triangles = grid.triangles, .color = {0.5, 0.5, 0.5}, .frames = {}};
+  AnimatedCloth cloth{.name = "sheet", .triangles = grid.triangles, .color = {0.5, 0.5, 0.5}, .frames = {}};
   for (int k = 0; k < num_frames; ++k) {
     auto& frame = cloth.frames.emplace_back();
     for (const Vec3& x : grid.positions) {
@@ -27,8 +27,9 @@ AnimatedMesh make_cloth(int num_frames) {
   return cloth;
 }
 
-RigidMesh make_body(const std::string& name, std::optional<SolidShape> shape, int num_poses = 1) {
-  RigidMesh body{.name = name, .mesh = make_sphere_mesh({0, 0, 0}, 0.3, 6), .color = {0, 0, 1}, .poses = {}};
+AnimatedBody make_body(const std::string& name, std::optional<SolidShape> shape, int num_poses = 1) {
+  AnimatedBody body{
+      .name = name, .mesh = make_sphere_mesh({0, 0, 0}, 0.3, 6), .color = {0, 0, 1}, .poses = {}};
   body.shape = shape;
   for (int k = 0; k < num_poses; ++k) {
     body.poses.push_back(
@@ -86,7 +87,7 @@ TEST(GlbReader, GivesBackWhatWasWritten) {
       EXPECT_NEAR(read.cloths[0].frames[k][i], written.cloths[0].frames[k][i], 1e-7);
     }
   }
-  const RigidMesh& ball = read.bodies[0];
+  const AnimatedBody& ball = read.bodies[0];
   EXPECT_EQ(ball.name, "ball");
   EXPECT_EQ(ball.mesh.triangles, written.bodies[0].mesh.triangles);
   ASSERT_EQ(ball.poses.size(), 5u);

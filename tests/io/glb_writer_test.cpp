@@ -18,9 +18,9 @@ namespace {
 constexpr Grid kGrid{.size_x = 1, .size_z = 2, .cells_x = 6, .cells_z = 8};
 
 /// A cloth that waves, turns and travels.
-AnimatedMesh make_flag(int num_frames) {
+AnimatedCloth make_flag(int num_frames) {
   const TriangleMesh grid = build_grid_mesh(kGrid, GridDiagonals::alternating);
-  AnimatedMesh flag{.name = "flag", .triangles = grid.triangles, .color = {0.8, 0.1, 0.1}, .frames = {}};
+  AnimatedCloth flag{.name = "flag", .triangles = grid.triangles, .color = {0.8, 0.1, 0.1}, .frames = {}};
   for (int k = 0; k < num_frames; ++k) {
     auto& frame = flag.frames.emplace_back();
     for (const Vec3& x : grid.positions) {
@@ -31,8 +31,8 @@ AnimatedMesh make_flag(int num_frames) {
   return flag;
 }
 
-RigidMesh make_ball(int num_poses) {
-  RigidMesh ball{
+AnimatedBody make_ball(int num_poses) {
+  AnimatedBody ball{
       .name = "ball", .mesh = make_sphere_mesh({0, 0, 0}, 0.3, 6), .color = {0.2, 0.4, 0.9}, .poses = {}};
   for (int k = 0; k < num_poses; ++k) {
     ball.poses.push_back(
@@ -86,7 +86,7 @@ std::vector<float> blend(const tinygltf::Model& model, const char* attribute,
 
 TEST(GlbWriter, GivesEveryFrameBackToRoundOff) {
   const int num_frames = 5;
-  const AnimatedMesh flag = make_flag(num_frames);
+  const AnimatedCloth flag = make_flag(num_frames);
   const auto model =
       write_and_read("frames", {.title = "", .frames_per_second = 25, .cloths = {flag}, .bodies = {}});
   ASSERT_EQ(model.animations.size(), 1u);
@@ -108,7 +108,7 @@ TEST(GlbWriter, GivesEveryFrameBackToRoundOff) {
 }
 
 TEST(GlbWriter, BlendsUnitNormalsThatFollowTheCloth) {
-  const AnimatedMesh flag = make_flag(3);
+  const AnimatedCloth flag = make_flag(3);
   const auto model = write_and_read("normals", {.title = "", .cloths = {flag}, .bodies = {}});
   const auto normals = blend(model, "NORMAL", {0, 1});
   for (size_t v = 0; v < normals.size(); v += 3) {
@@ -164,7 +164,7 @@ TEST(GlbWriter, WritesBodiesWithoutCloth) {
 }
 
 TEST(GlbWriter, GivesVerticesWithoutAreaAUnitNormal) {
-  AnimatedMesh cloth{.name = "flat", .triangles = {{0, 1, 2}, {0, 0, 3}}, .color = {1, 1, 1}, .frames = {}};
+  AnimatedCloth cloth{.name = "flat", .triangles = {{0, 1, 2}, {0, 0, 3}}, .color = {1, 1, 1}, .frames = {}};
   cloth.frames = {{0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 5, 5}, {0, 0, 0, 1, 0, 0, 2, 1, 0, 5, 5, 5}};
   const auto model = write_and_read("no_area", {.title = "", .cloths = {cloth}, .bodies = {}});
   const auto normals = floats(model, primitive(model, 0).attributes.at("NORMAL"));
@@ -215,10 +215,10 @@ TEST(GlbWriter, RefusesAnimationsThatNoViewerCouldShow) {
   refuses({.title = "", .cloths = {make_flag(2)}, .bodies = {make_ball(3)}});
   refuses({.title = "", .cloths = {make_flag(0)}, .bodies = {}});
   refuses({.title = "", .frames_per_second = 0, .cloths = {make_flag(2)}, .bodies = {}});
-  AnimatedMesh broken = make_flag(2);
+  AnimatedCloth broken = make_flag(2);
   broken.frames[1][7] = std::numeric_limits<float>::quiet_NaN();
   refuses({.title = "", .cloths = {broken}, .bodies = {}});
-  AnimatedMesh torn = make_flag(2);
+  AnimatedCloth torn = make_flag(2);
   torn.triangles[0][1] = 1000;
   refuses({.title = "", .cloths = {torn}, .bodies = {}});
 }

@@ -7,7 +7,7 @@ import { createRequire } from 'node:module';
 import path from 'node:path';
 
 const kSeverities = ['error', 'warning', 'info', 'hint'];
-const kMostShown = 20;
+const kMaxShown = 20;
 
 const modules = process.env.WEFT_NODE_MODULES;
 const require = createRequire(modules ? path.join(path.resolve(modules), 'x.js') : import.meta.url);
@@ -24,7 +24,7 @@ for (const file of files) {
   const report = await validator.validateBytes(new Uint8Array(await readFile(file)));
   const { numErrors, numWarnings, numInfos, messages } = report.issues;
   console.log(`${path.basename(file)}: ${numErrors} errors, ${numWarnings} warnings, ${numInfos} infos`);
-  for (const { severity, pointer, message } of messages.slice(0, kMostShown)) {
+  for (const { severity, pointer, message } of messages.slice(0, kMaxShown)) {
     console.log(`  ${kSeverities[severity]} ${pointer ?? ''}: ${message}`);
   }
   failed ||= numErrors > 0 || numWarnings > 0;

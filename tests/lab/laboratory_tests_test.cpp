@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "weft/fabric.h"
 #include "lab/textile/drape.h"
 #include "lab/textile/hung_strip.h"
+#include "weft/fabric.h"
 #include "weft/mesh/sample_meshes.h"
 
 namespace weft::engine::lab {

@@ -7,23 +7,23 @@
 #include <filesystem>
 #include <fstream>
 
-#include "weft/error.h"
 #include "lab/report/plot.h"
 #include "lab/report/report.h"
+#include "weft/error.h"
 
 namespace weft::engine::lab {
 namespace {
 
 Section example() {
-  const Hypothesis hypothesis{.title = "Cloth < steel",
-                    .source = "nobody",
-                    .verdict = Verdict::holds_in_part,
-                    .text = {"With `code` and **weight** & <care>."},
-                    .found = {.metrics = {{"stretch", 0.1234567, "m", "0", 0.01}, {"count", 3, "1", "", 0}},
-                              .tables = {{{"cloth", "mm"}, {{"silk", "1.5"}, {"denim", "2.5"}}}},
-                              .pictures = {{"plot.svg", "A plot.",
-                                            "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>"},
-                                           {"photo.jpg", "A picture.", ""}}}};
+  const Hypothesis hypothesis{
+      .title = "Cloth < steel",
+      .source = "nobody",
+      .verdict = Verdict::holds_in_part,
+      .text = {"With `code` and **weight** & <care>."},
+      .found = {.metrics = {{"stretch", 0.1234567, "m", "0", 0.01}, {"count", 3, "1", "", 0}},
+                .tables = {{{"cloth", "mm"}, {{"silk", "1.5"}, {"denim", "2.5"}}}},
+                .pictures = {{"plot.svg", "A plot.", "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>"},
+                             {"photo.jpg", "A picture.", ""}}}};
   return {.name = "example",
           .title = "An example",
           .introduction = "Of a chapter.",

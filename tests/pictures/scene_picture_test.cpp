@@ -36,7 +36,7 @@ TEST(ScenePictures, DrawALevelPlaneAsGroundAtItsHeight) {
   const Animation animation = simulate("contact/rotating_ball", 1);
   const Picture picture = ScenePictures(animation).at(0, {});
   const Plane* floor = nullptr;
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedBody& body : animation.bodies) {
     if (body.shape && std::holds_alternative<Plane>(*body.shape)) floor = &std::get<Plane>(*body.shape);
   }
   ASSERT_NE(floor, nullptr) << "the scene has a floor";

@@ -78,7 +78,7 @@ TEST_P(Video, HasAsManyFramesAsWereAdded) {
 INSTANTIATE_TEST_SUITE_P(AllKinds, Video, testing::Values("mp4", "webp", "gif"),
                          [](const auto& kind) { return std::string(kind.param); });
 
-TEST(VideoTrouble, KeepsAnEarlierFileUnlessFinished) {
+TEST(VideoErrors, KeepsAnEarlierFileUnlessFinished) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   fs::create_directories(kFolder);
   const fs::path file = kFolder / "kept.mp4";
@@ -91,7 +91,7 @@ TEST(VideoTrouble, KeepsAnEarlierFileUnlessFinished) {
   EXPECT_FALSE(fs::exists(file.string() + ".part"));
 }
 
-TEST(VideoTrouble, SignalsToTheWholeGroupLeaveFfmpegAtWork) {
+TEST(VideoErrors, SignalsToTheWholeGroupLeaveFfmpegAtWork) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   fs::create_directories(kFolder);
   const fs::path file = kFolder / "signalled.mp4";
@@ -106,7 +106,7 @@ TEST(VideoTrouble, SignalsToTheWholeGroupLeaveFfmpegAtWork) {
   EXPECT_GT(fs::file_size(file), 100u);
 }
 
-TEST(VideoTrouble, IsNamed) {
+TEST(VideoErrors, IsNamed) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   EXPECT_THROW(VideoWriter("film.avi", 64, 48, 20), InputError);
   const auto write_nowhere = [] {
@@ -117,7 +117,7 @@ TEST(VideoTrouble, IsNamed) {
   EXPECT_THROW(write_nowhere(), InputError) << "and the program goes on";
 }
 
-TEST(VideoTrouble, WithoutFfmpegSaysWhatToInstall) {
+TEST(VideoErrors, WithoutFfmpegSaysWhatToInstall) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
   std::string said;

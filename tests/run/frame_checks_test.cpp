@@ -55,10 +55,10 @@ TEST(FrameChecks, KnowTheInsideOfClosedMeshes) {
 /// One triangle above a rising sphere; at frame 3 it is 0.05 deep.
 Animation make_animation() {
   Animation animation;
-  AnimatedMesh cloth{.name = "rag", .triangles = {{0, 1, 2}}, .frames = {}};
+  AnimatedCloth cloth{.name = "rag", .triangles = {{0, 1, 2}}, .frames = {}};
   cloth.frames.assign(5, {-1, 1, -1, 1, 1, -1, 0, 1, 2});
   animation.cloths.push_back(cloth);
-  RigidMesh ball{.name = "ball", .mesh = make_sphere_mesh({0, 0, 0}, 0.5, 4), .poses = {}};
+  AnimatedBody ball{.name = "ball", .mesh = make_sphere_mesh({0, 0, 0}, 0.5, 4), .poses = {}};
   ball.shape = Sphere{Vec3::Zero(), 0.5};
   for (const double height : {0.1, 0.2, 0.3, 0.55, 0.5}) {
     ball.poses.push_back({{0, height, 0}, Eigen::Quaterniond::Identity()});
@@ -82,7 +82,7 @@ TEST(FrameChecks, TellTheDeepestFrameOfAnAnimation) {
 
 TEST(FrameChecks, CountFramesThatCross) {
   Animation animation = make_animation();
-  AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  AnimatedCloth blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
   for (const float depth : {0.0f, 0.5f, 0.0f, 0.5f, 0.5f}) {
     blade.frames.push_back({0.1f, 2, 0, 0.2f, 2, 0, 0.1f, 1.2f - depth, 0.1f});
   }
@@ -97,18 +97,18 @@ TEST(FrameChecks, CountFramesThatCross) {
 
 TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
   Animation animation = make_animation();
-  AnimatedMesh blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
+  AnimatedCloth blade{.name = "blade", .triangles = {{0, 1, 2}}, .frames = {}};
   for (const float depth : {0.0f, 5.0f, 5.0f, 0.0f, 0.0f})  // completely below the rag, and back
     blade.frames.push_back({0.1f, 4 - depth, 0, 0.2f, 4 - depth, 0, 0.1f, 3 - depth, 0.1f});
   animation.cloths.push_back(blade);
   const AnimationCheck check = check_animation(animation, {.tolerance = 1});
   EXPECT_EQ(check.intersections, 0);
   EXPECT_EQ(check.passages, 6) << "three corners, twice";
-  ASSERT_EQ(check.may_passed.size(), 2u);
-  EXPECT_EQ(check.may_passed[0].frame, 1);
-  EXPECT_EQ(check.may_passed[0].what,
+  ASSERT_EQ(check.possible_passages.size(), 2u);
+  EXPECT_EQ(check.possible_passages[0].frame, 1);
+  EXPECT_EQ(check.possible_passages[0].what,
             "cloth \"blade\" particle 0 passes through cloth \"rag\" triangle 0 (and 2 more)");
-  EXPECT_EQ(check.may_passed[1].frame, 3);
+  EXPECT_EQ(check.possible_passages[1].frame, 3);
   EXPECT_TRUE(check.is_clean) << "straight lines between frames are a guess";
   EXPECT_FALSE(check_animation(animation, {.tolerance = 1, .passages_offend = true}).is_clean);
 }

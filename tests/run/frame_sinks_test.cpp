@@ -136,7 +136,7 @@ TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
   FilmSink film;
   run_scene(shipped("two_layers", {"cloth[0].grid.cells=[6, 6]", "cloth[1].grid.cells=[6, 6]"}),
             {.frames = 3}, {&obj, &film});
-  for (const AnimatedMesh& cloth : film.animation().cloths) {
+  for (const AnimatedCloth& cloth : film.animation().cloths) {
     std::string name = cloth.name;  // "upper sheet"
     std::replace(name.begin(), name.end(), ' ', '_');
     for (int k = 0; k <= 3; ++k) {
@@ -153,9 +153,8 @@ TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
 TEST_F(FrameSinks, GlbSaysAtTheStartHowManyFramesItHasRoomFor) {
   StagedFile file(folder_ / "animation.glb");
   GlbSink glb(file);
-  const RunReport report =
-      run_scene(shipped("paper/fig3_horizontal"), {.frames = 1000000}, {&glb},
-                [](const Progress& progress) { return progress.frame < 2; });
+  const RunReport report = run_scene(shipped("paper/fig3_horizontal"), {.frames = 1000000}, {&glb},
+                                     [](const Progress& progress) { return progress.frame < 2; });
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_NE(report.warnings[0].find("of 1000000 frames: a .glb is limited to 4 GiB"), std::string::npos)
       << report.warnings[0];

@@ -51,8 +51,8 @@ TEST(Problems, YarnsThatStayTooLong) {
   const RunProblem problem = finder.problems()[0];
   EXPECT_NEAR(problem.value, 0.2, 1e-5);
   EXPECT_EQ(problem.frames, 6);
-  EXPECT_NE(problem.sentence.find("cloth \"sheet\""), std::string::npos);
-  EXPECT_NE(problem.sentence.find("solver.max_steps_per_frame"), std::string::npos);
+  EXPECT_NE(problem.message.find("cloth \"sheet\""), std::string::npos);
+  EXPECT_NE(problem.message.find("solver.max_steps_per_frame"), std::string::npos);
 }
 
 TEST(Problems, TrianglesThatStayFlat) {
@@ -88,7 +88,7 @@ TEST(Problems, CrossingsThatAreLeft) {
   finder.add_frame(0);
   finder.set_crossings(12);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::crossings});
-  EXPECT_NE(finder.problems()[0].sentence.find("solver.untangle"), std::string::npos);
+  EXPECT_NE(finder.problems()[0].message.find("solver.untangle"), std::string::npos);
   finder.add_frame(0);
   finder.set_crossings(0);
   EXPECT_EQ(codes_of(finder), Codes()) << "what has come apart is no problem any more";

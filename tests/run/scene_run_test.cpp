@@ -124,8 +124,8 @@ TEST(SceneRun, RecordsTheStartAndEveryFrame) {
 }
 
 /// A body's vertices at a frame, in world coordinates.
-std::vector<Vec3> vertices(const RigidMesh& body, std::size_t frame) {
-  const RigidMesh::Pose& pose = body.poses.at(std::min(frame, body.poses.size() - 1));
+std::vector<Vec3> vertices(const AnimatedBody& body, std::size_t frame) {
+  const AnimatedBody::Pose& pose = body.poses.at(std::min(frame, body.poses.size() - 1));
   std::vector<Vec3> placed;
   for (const Vec3& p : body.mesh.positions) placed.push_back(pose.rotation * p + pose.translation);
   return placed;

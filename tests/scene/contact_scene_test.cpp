@@ -46,9 +46,9 @@ TEST(ContactRules, OfASceneReachTheWorldAndSilenceTheWarning) {
   const SceneWorld passing = build("[[contact]]\nbetween = [\"ball\", \"sheet\"]\ncollide = false\n");
   EXPECT_TRUE(passing.warnings.empty());
   using Pairs = std::vector<std::array<std::string, 2>>;
-  EXPECT_EQ(passing.world.passing_pairs(), (Pairs{{"sheet", "ball"}}));
+  EXPECT_EQ(passing.world.non_colliding_pairs(), (Pairs{{"sheet", "ball"}}));
   const SceneWorld rubbing = build("[[contact]]\nbetween = [\"ball\", \"sheet\"]\nfriction = 0.1\n");
-  EXPECT_TRUE(rubbing.world.passing_pairs().empty());
+  EXPECT_TRUE(rubbing.world.non_colliding_pairs().empty());
 }
 
 class DeformingMesh : public testing::Test {

@@ -91,8 +91,8 @@ TEST(FabricScenes, MakeSpringsThatStretchAsTheFabricDoes) {
     const SceneWorld scene =
         built("fabric = \"denim\"\nmembrane = \"springs\"\nmodel = \"" + std::string(spring_model) + "\"\n");
     const ClothModel& model = scene.world.model(scene.world.cloth(0));
-    const auto is_told = [](const std::string& w) { return w.find("c12 = g") != std::string::npos; };
-    EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
+    const auto is_reported = [](const std::string& w) { return w.find("c12 = g") != std::string::npos; };
+    EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_reported));
     for (const bool along_x : {true, false}) {
       const double e = 0.001;
       double energy = 0;
@@ -190,8 +190,8 @@ TEST(FabricScenes, MakeSpringsOfAMeshsEdges) {
     EXPECT_EQ(model.stiffness(static_cast<int>(s)), 0) << "bending is the fabric's own";
   }
   EXPECT_GT(model.stiffness_sum[0], 100) << "[N/m], of a fabric of 2000";
-  const auto is_told = [](const std::string& w) { return w.find("on average") != std::string::npos; };
-  EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_told));
+  const auto is_reported = [](const std::string& w) { return w.find("on average") != std::string::npos; };
+  EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), is_reported));
   // Regions multiply the stiffness of edges.
   const SceneWorld stiffer = built_with_uv(1, 0, 0,
                                            "membrane = \"springs\"\nstiffen = [{ select = { sphere = { "

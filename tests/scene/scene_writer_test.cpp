@@ -220,7 +220,7 @@ TEST_F(SceneWriter, ChecksASceneByTheSentencesOfTheReader) {
   scene.solver.integrator = "newtn";
   const std::vector<std::string> found = check_scene(scene);
   std::string all;
-  for (const std::string& sentence : found) all += sentence + '\n';
+  for (const std::string& message : found) all += message + '\n';
   EXPECT_NE(all.find("scene.fps: expected a number above 0"), std::string::npos) << all;
   EXPECT_NE(all.find("cloth[0].g: expected"), std::string::npos) << all;
   EXPECT_NE(all.find("did you mean \"newton\"?"), std::string::npos) << all;

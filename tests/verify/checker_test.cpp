@@ -57,17 +57,17 @@ TEST(Checker, LeavesOutWhatMayGoThroughEachOther) {
   Frame frame{{cloth("low", low), cloth("high", high), cloth("across", across)},
               {{"ball", Sphere{{0.2, 0.1, 0.5}, 0.15}}, {"ground", Plane{{0, 0.05, 0}, {0, 1, 0}}}}};
   const FrameCheck all = check_frame(frame);
-  frame.passing = {{"across", "low"}};
+  frame.non_colliding = {{"across", "low"}};
   const FrameCheck some = check_frame(frame);
   EXPECT_GT(some.intersections, 0) << "with the higher sheet";
   EXPECT_LT(some.intersections, all.intersections);
-  frame.passing.push_back({"high", "across"});
+  frame.non_colliding.push_back({"high", "across"});
   EXPECT_EQ(check_frame(frame).intersections, 0) << "in whatever order they are named";
   EXPECT_NEAR(check_frame(frame).penetration(), 0.15, 1e-12) << "low in the ball";
-  frame.passing.push_back({"low", "ball"});
+  frame.non_colliding.push_back({"low", "ball"});
   const FrameCheck left = check_frame(frame);
   EXPECT_NEAR(left.penetration(), 0.05, 1e-6) << "high in the ball, across in the ground";
-  frame.passing.push_back({"high", "ball"});
+  frame.non_colliding.push_back({"high", "ball"});
   EXPECT_EQ(describe(frame, *check_frame(frame).deepest).substr(0, 14), "cloth \"across\"");
 }
 

@@ -151,7 +151,7 @@ TEST(PairMotion, OfAPointAndAClosedSurfaceIsOddWhereItGoesInOrOut) {
   // point goes through corners and edges, along faces, and so on, exactly.
   Random random(2);
   const std::vector<Triangle> faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
-  int num_judged = 0, num_changed = 0, num_graze = 0;
+  int num_tested = 0, num_changed = 0, num_graze = 0;
   for (int i = 0; i < 100000; ++i) {
     const int reach = 1 + i % 3;
     std::array<PointMotion, 4> corner;
@@ -174,13 +174,13 @@ TEST(PairMotion, OfAPointAndAClosedSurfaceIsOddWhereItGoesInOrOut) {
       ++num_graze;
       continue;
     }
-    ++num_judged;
+    ++num_tested;
     const bool is_changed =
         InsideOfMesh(start, faces).contains(p.start) != InsideOfMesh(end, faces).contains(p.end);
     num_changed += is_changed;
     ASSERT_EQ(num_passed % 2 == 1, is_changed) << i;
   }
-  EXPECT_GT(num_judged, 50000);
+  EXPECT_GT(num_tested, 50000);
   EXPECT_GT(num_changed, 1000);
   EXPECT_GT(num_graze, 10000);
 }
@@ -201,7 +201,7 @@ std::optional<bool> are_linked(const std::array<Vec3, 3>& a, const std::array<Ve
 
 TEST(PairMotion, OfTwoClosedLoopsIsOddWhereTheyAreLinkedOrFreed) {
   Random random(3);
-  int num_judged = 0, num_changed = 0;
+  int num_tested = 0, num_changed = 0;
   for (int i = 0; i < 200000; ++i) {
     const int reach = 2 + i % 3;
     std::array<std::array<PointMotion, 3>, 2> loops;
@@ -222,11 +222,11 @@ TEST(PairMotion, OfTwoClosedLoopsIsOddWhereTheyAreLinkedOrFreed) {
             test_edge_edge({loops[0][k], loops[0][(k + 1) % 3]}, {loops[1][l], loops[1][(l + 1) % 3]}).passes;
       }
     }
-    ++num_judged;
+    ++num_tested;
     num_changed += *before != *after;
     ASSERT_EQ(num_passed % 2 == 1, *before != *after) << i;
   }
-  EXPECT_GT(num_judged, 20000);
+  EXPECT_GT(num_tested, 20000);
   EXPECT_GT(num_changed, 2000);
 }
 

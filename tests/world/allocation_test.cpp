@@ -41,11 +41,11 @@ TEST(World, StepsOfTheFastIntegratorsAllocateNothing) {
       const ClothId cloth =
           world.add_cloth({.topology = topology, .material = {.structural = 20, .shear = 10}});
       world.set_pins(cloth, {{.particles = {0, 12}, .motion = RigidMotion({{.time = 0}, {.time = 1}})}});
-      const Grab hand = make_grab(world.model(cloth), world.state(cloth), 100, {0.2, 0.3, 0.5});
-      world.set_grabs(cloth, {hand});
+      const Attachment hand = make_attachment(world.model(cloth), world.state(cloth), 100, {0.2, 0.3, 0.5});
+      world.set_attachments(cloth, {hand});
       const auto make_steps = [&] {
         for (int s = 0; s < 100; ++s) {
-          world.set_grab_target(cloth, 0, hand.target + Vec3(0, 1e-4 * s, 0));
+          world.set_attachment_target(cloth, 0, hand.target + Vec3(0, 1e-4 * s, 0));
           world.step(1.0 / 600);
         }
       };

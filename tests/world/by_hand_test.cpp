@@ -214,7 +214,7 @@ TEST(Removal, KeepsRulesWithThoseTheyAreOf) {
   world.set_collision("gone", "floor", false);
   world.remove(gone);
   world.remove(first);
-  EXPECT_EQ(world.passing_pairs(), (std::vector<std::array<std::string, 2>>{{"passing", "floor"}}));
+  EXPECT_EQ(world.non_colliding_pairs(), (std::vector<std::array<std::string, 2>>{{"passing", "floor"}}));
   for (int n = 0; n < 64; ++n) ASSERT_TRUE(world.step(kStep).ok);
   EXPECT_LT(compute_lowest_y(world.state(passing)), -1);
   EXPECT_GT(compute_lowest_y(world.state(held)), -0.06);

@@ -140,13 +140,13 @@ TEST(StepDivision, SaysWhenTheShortestPartIsTooLong) {
   World::Snapshot fast = world.snapshot();
   for (std::size_t i = 0; i < fast.states[0].v.size(); ++i) fast.states[0].v.set(i, {0, -40, 0});
   world.restore(fast);
-  bool is_told = false;
+  bool is_reported = false;
   for (int frame = 0; frame < 10; ++frame) {
     const StepReport report = world.step(kFrame);
     EXPECT_LE(report.divisions, 2);
-    for (const StepWarning& w : report.warnings) is_told |= w.code == WarningCode::cap_reached;
+    for (const StepWarning& w : report.warnings) is_reported |= w.code == WarningCode::cap_reached;
   }
-  EXPECT_TRUE(is_told);
+  EXPECT_TRUE(is_reported);
 }
 
 TEST(StepDivision, JoinsAgainWhenCalm) {

@@ -251,13 +251,13 @@ TEST(EnergyAudit, OfASheetAtItsTerminalSpeedHasTheAirTakeWhatGravityGives) {
 TEST(EnergyAudit, OfASheetThatAHandLiftsHasTheHandGiveWhatItGains) {
   World world = make_world("implicit_euler");
   const ClothId sheet = add_hanging_sheet(world);
-  const Grab grab = make_grab(world.model(sheet), world.state(sheet), 7, {0.2, 0.3, 0.5});
-  world.set_grabs(sheet, {grab});
+  const Attachment attachment = make_attachment(world.model(sheet), world.state(sheet), 7, {0.2, 0.3, 0.5});
+  world.set_attachments(sheet, {attachment});
   audit(world, 300, 60);
   EnergyAudit lift;
   const double before = compute_energy(world).gravitational;
   for (int s = 1; s <= 120; ++s) {
-    world.set_grab_target(sheet, 0, grab.target + Vec3(0, 0.2 * s / 60, 0));
+    world.set_attachment_target(sheet, 0, attachment.target + Vec3(0, 0.2 * s / 60, 0));
     lift += audit(world, 1, 60).sum;
   }
   const double gained = lift.energy.gravitational - before;

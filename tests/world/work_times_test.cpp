@@ -26,7 +26,7 @@ void spend(double seconds) {
 /// A level sheet of 12×12 cells at this height [m].
 ClothParts make_sheet(double height) {
   ClothParts desc{.topology = build_grid_topology(square(12), SpringModel::alternating),
-                 .material = {.structural = 2000, .shear = 1000, .bend = 20, .thickness = 2e-3}};
+                  .material = {.structural = 2000, .shear = 1000, .bend = 20, .thickness = 2e-3}};
   desc.positions = desc.topology->mesh.positions;
   for (Vec3& p : desc.positions) p.y() += height;
   return desc;

@@ -28,8 +28,8 @@ std::string error_of(const Call& call) {
   return {};
 }
 
-void expect_names(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
+void expect_names(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
 TriangleMesh tetrahedron() {

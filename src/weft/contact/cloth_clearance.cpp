@@ -18,7 +18,7 @@ constexpr int kFarthest = 3;    // blocks up to this far apart are tested by the
 constexpr float kRounding = 2e-6f, kRoundingOfGradient = 1e-3f;
 
 /// Limit of motion against itself, as a share of the cloth's size.
-constexpr float kMostOfSize = 0.99f;
+constexpr float kMaxRelativeMotion = 0.99f;
 
 /// Per column, the minima of a quantity and of its negative over the rows of a block.
 struct Minima {
@@ -314,7 +314,7 @@ bool ClothClearance::find_uncertain(std::span<const ClothMotion> cloths, double 
     bounds_.merge(cloth.box(cloth.top(), {0, 0}));
     all.merge(cloth.all().box);
   }
-  if (!((all.way_max - all.way_min).norm() < kMostOfSize * (all.max - all.min).norm())) return false;
+  if (!((all.way_max - all.way_min).norm() < kMaxRelativeMotion * (all.max - all.min).norm())) return false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Cloth& cloth = cloths_[c];
     if (!search_block(cloth, cloth.top(), {0, 0})) return false;

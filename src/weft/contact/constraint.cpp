@@ -15,8 +15,8 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
                          std::vector<Constraint>& constraints, std::vector<Vec3>& positions,
                          std::vector<int>& near) {
   double first = 0, largest = 0;
-  const auto project = [&](Constraint& c, double lack) {
-    const double push = std::max(0.0, c.push + lack / c.inverse_mass);
+  const auto project = [&](Constraint& c, double shortfall) {
+    const double push = std::max(0.0, c.push + shortfall / c.inverse_mass);
     const double change = push - c.push;
     if (change == 0) return;
     c.push = push;
@@ -24,7 +24,7 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
     c.apply(change * c.normal, inverse_masses, positions);
     largest = std::max(largest, std::abs(change) * c.inverse_mass);
   };
-  const auto lack_of = [&](const Constraint& c) { return c.target - c.normal.dot(c.sum(positions)); };
+  const auto shortfall_of = [&](const Constraint& c) { return c.target - c.normal.dot(c.sum(positions)); };
   near.clear();
   for (int pass = 0; pass < passes; ++pass) {
     largest = 0;
@@ -32,12 +32,12 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
       for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
         Constraint& c = constraints[n];
         if (c.inverse_mass == 0) continue;
-        const double lack = lack_of(c);
-        if (pass == 1 && (c.push > 0 || lack > -kNear * first)) near.push_back(n);
-        project(c, lack);
+        const double shortfall = shortfall_of(c);
+        if (pass == 1 && (c.push > 0 || shortfall > -kNear * first)) near.push_back(n);
+        project(c, shortfall);
       }
     } else {
-      for (const int n : near) project(constraints[n], lack_of(constraints[n]));
+      for (const int n : near) project(constraints[n], shortfall_of(constraints[n]));
     }
     if (pass == 0) first = largest;
     if (largest < kPositionTolerance) break;

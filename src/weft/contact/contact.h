@@ -11,7 +11,7 @@
 namespace weft::engine {
 
 /// Contact tolerance: a solve may leave a contact short of its gap by at most this share of the gap [1].
-constexpr double kMaxLack = 0.3;
+constexpr double kMaxShortfall = 0.3;
 
 /// Half-space constraint on a cloth point, or on the difference of two, for one step.
 ///
@@ -20,12 +20,12 @@ constexpr double kMaxLack = 0.3;
 ///     / / / / / / / / / / / / /
 ///
 /// Stencils: a particle (1), a triangle's point (w0, w1, w2), a particle over a triangle (1, −w0, −w1, −w2),
-/// two edges (1−s, s, −(1−t), −t). Points on colliders enter `offset` and `grip`. Particles are numbered
-/// through all cloths, in their order.
+/// two edges (1−s, s, −(1−t), −t). Points on colliders enter `offset` and `stick_point`. Particles are
+/// numbered through all cloths, in their order.
 ///
 /// Integrators apply the force stiffness · (offset − n · Σ w_i x_i) where that is positive, times w_i on each
 /// particle, and friction of up to `friction` times that force against sliding away from the stick point
-/// `grip`.
+/// `stick_point`.
 struct Contact {
   int num_particles = 1;  // 1 to 4
   std::array<int, 4> particle = {0, 0, 0, 0};
@@ -36,11 +36,11 @@ struct Contact {
   double depth_before = 0;                      // at the start of the step, where meaningful [m]
   double stiffness = 0;                         // [N/m]
   double friction = 0;                          // Coulomb's coefficient [1]
-  Vec3 grip = Vec3::Zero();                     // stick point of Σ w_i x_i [m]
+  Vec3 stick_point = Vec3::Zero();              // stick point of Σ w_i x_i [m]
 
   // Results of the solve.
   bool has_pushed = false;    // at any time during the solve
-  bool is_solved = false;     // all contacts of its group are within kMaxLack
+  bool is_solved = false;     // all contacts of its group are within kMaxShortfall
   Vec3 force = Vec3::Zero();  // on Σ w_i x_i, friction included; if requested [N]
 
   /// Cloth–cloth contact: Σ w_i = 0, else ±1.
@@ -56,7 +56,7 @@ struct Contact {
 
   /// Tangential displacement from the stick point [m].
   Vec3 slide_at(const Vec3& point) const {
-    const Vec3 moved = point - grip;
+    const Vec3 moved = point - stick_point;
     return moved - moved.dot(normal) * normal;
   }
 

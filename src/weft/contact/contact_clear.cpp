@@ -26,11 +26,11 @@ constexpr double kRoomFromColliders = 1e-4;
 
 /// One component of the predicted ends: x + h v + gain · share, where `share` is the share of the
 /// acceleration that acted in the last step.
-WEFT_ALWAYS_INLINE void coast_body(const float* x, const float* v, const float* share, float step, float gain,
-                                   int count, float* ends) {
+WEFT_ALWAYS_INLINE void predict_ballistic_body(const float* x, const float* v, const float* share, float step,
+                                               float gain, int count, float* ends) {
   for (int i = 0; i < count; ++i) ends[i] = x[i] + step * v[i] + gain * share[i];
 }
-WEFT_MULTIVERSION(coast,
+WEFT_MULTIVERSION(predict_ballistic,
                   (const float* x, const float* v, const float* share, float step, float gain, int count,
                    float* ends),
                   (x, v, share, step, gain, count, ends))
@@ -86,8 +86,8 @@ void ContactSystem::expect_ends(const Vec3& acceleration, std::span<const Vec3> 
                                                                                     state.v.z()};
     float* const end[] = {ends.x(), ends.y(), ends.z()};
     for (int k = 0; k < 3; ++k)
-      coast(x[k], v[k], felt_.data(), static_cast<float>(h), static_cast<float>(h * h * acceleration[k]),
-            count, end[k]);
+      predict_ballistic(x[k], v[k], felt_.data(), static_cast<float>(h),
+                        static_cast<float>(h * h * acceleration[k]), count, end[k]);
     const std::vector<char>& is_pinned = *cloths_[c].is_pinned;
     for (int i = 0; i < count && pin < pin_targets.size(); ++i) {
       if (is_pinned[i]) ends.set(i, pin_targets[pin++] - state.origin);

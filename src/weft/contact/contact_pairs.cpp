@@ -32,9 +32,9 @@ constexpr double kTouching = 1e-9;
 
 }  // namespace
 
-void ContactSystem::collect_pairs(JobSystem& jobs) {
+void ContactSystem::generate_pair_constraints(JobSystem& jobs) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
-  const auto collect = [&](const std::vector<FeaturePair>& pairs, const auto& make) {
+  const auto generate = [&](const std::vector<FeaturePair>& pairs, const auto& make) {
     collect_in_order(
         jobs, static_cast<int>(pairs.size()), kPairGrain, chunks_,
         [&](int p, std::vector<Constraint>& chunk) {
@@ -48,10 +48,11 @@ void ContactSystem::collect_pairs(JobSystem& jobs) {
   const std::vector<FeaturePair>& vertex_triangle = proximity_.vertex_triangle();
   const std::vector<FeaturePair>& edge_edge = proximity_.edge_edge();
   if (step_.clock) step_.clock->add_look(vertex_triangle.size() + edge_edge.size());
-  collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_triangle(vertex_triangle[p], c); });
-  collect(edge_edge, [&](int p, Constraint& c) { return make_edge_edge(edge_edge[p], c); });
+  generate(vertex_triangle,
+           [&](int p, Constraint& c) { return make_vertex_triangle(vertex_triangle[p], c); });
+  generate(edge_edge, [&](int p, Constraint& c) { return make_edge_edge(edge_edge[p], c); });
   if (!bodies_.empty())
-    collect(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_corner(p, c); });
+    generate(vertex_triangle, [&](int p, Constraint& c) { return make_vertex_corner(p, c); });
 }
 
 /// A cloth vertex that is nearest to an edge or a corner of a collider mesh, where no face lies below it. The
@@ -226,7 +227,7 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   const bool is_body = is_on_body(c);
   c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
   const Place cloth = place_of(std::min(first, last)), other = place_of(std::max(first, last));
-  set_friction(laws_[law_of(cloth, other)], c);
+  set_friction(pair_settings_[pair_index(cloth, other)], c);
   return true;
 }
 

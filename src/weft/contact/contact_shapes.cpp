@@ -38,7 +38,7 @@ bool ContactSystem::has_plain_shapes() const {
 }
 
 /// `stretch`: how much longer than in the lists an edge may be [m].
-void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
+void ContactSystem::generate_shape_constraints(double share_of_travel, double stretch) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   is_near_shape_ = false;
   if (!has_plain_shapes()) return;
@@ -51,7 +51,7 @@ void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
     clearance_.find_near(s, (1 + share_of_travel) * way, reach, near_shape_);
     if (near_shape_.empty()) continue;
     is_near_shape_ = true;
-    collect_shape(s, share_of_travel);
+    generate_constraints_of_shape(s, share_of_travel);
   }
 }
 
@@ -59,7 +59,7 @@ void ContactSystem::collect_shapes(double share_of_travel, double stretch) {
 /// that are nearer than their corners. For the solve on round shapes edge midpoints replace triangles: a
 /// triangle's nearest point moves across it as it tilts, and a solve that keeps an earlier point for a step
 /// jitters.
-void ContactSystem::collect_shape(int shape, double share_of_travel) {
+void ContactSystem::generate_constraints_of_shape(int shape, double share_of_travel) {
   const MovingShape& moving = shapes_[shape];
   shape_distance_.assign(first_vertex_.back(), std::numeric_limits<double>::infinity());
   int cloth = 0;
@@ -75,9 +75,9 @@ void ContactSystem::collect_shape(int shape, double share_of_travel) {
   const bool is_for_solve = share_of_travel > 0;
   const bool is_round = radius_of(moving.after) > kRound * longest_rest_edge_;
   if (is_for_solve && is_round) {
-    collect_edges(shape, share_of_travel);
+    generate_edge_constraints(shape, share_of_travel);
   } else {
-    collect_triangles(shape, share_of_travel);
+    generate_triangle_constraints(shape, share_of_travel);
   }
 }
 
@@ -86,7 +86,7 @@ double ContactSystem::shape_reach(int v, double share_of_travel) const {
   return 2 * motion_.half_thickness[v] + share_of_travel * (motion_.end[v] - motion_.start[v]).norm();
 }
 
-void ContactSystem::collect_edges(int shape, double share_of_travel) {
+void ContactSystem::generate_edge_constraints(int shape, double share_of_travel) {
   const double edge_reach = longest_edge_ / 2;
   int cloth = 0;
   for (const auto& [a, b] : proximity_.surface().edges) {
@@ -102,7 +102,7 @@ void ContactSystem::collect_edges(int shape, double share_of_travel) {
   }
 }
 
-void ContactSystem::collect_triangles(int shape, double share_of_travel) {
+void ContactSystem::generate_triangle_constraints(int shape, double share_of_travel) {
   const double triangle_reach = longest_edge_ / std::sqrt(3.0);
   const std::vector<Vec3>& x = motion_.end;
   int cloth = 0;
@@ -124,14 +124,14 @@ void ContactSystem::collect_triangles(int shape, double share_of_travel) {
 
 void ContactSystem::add_shape_constraint(int cloth, int shape, int num_vertices, const Triangle& vertices,
                                          const Nearest& nearest) {
-  const PairLaw& law = laws_[law_of({.cloth = cloth}, {.collider = shape})];
-  if (!law.collide) return;
+  const PairSettings& settings = pair_settings_[pair_index({.cloth = cloth}, {.collider = shape})];
+  if (!settings.collide) return;
   Constraint c;
   c.num_vertices = num_vertices;
   c.vertex = {vertices[0], vertices[1], vertices[2], 0};
   c.shape = shape;
-  take_plane(nearest, c);
-  set_friction(law, c);
+  update_plane(nearest, c);
+  set_friction(settings, c);
   if (c.inverse_mass > 0) constraints_.push_back(c);
 }
 
@@ -157,7 +157,7 @@ ContactSystem::Nearest ContactSystem::find_nearest(const ColliderShape& shape, c
 
 /// Tangent plane of the shape at its point nearest to the particle, edge or triangle at the end of the step
 /// (`at_end`). If that point lies beyond the shape's middle, the nearest point at the start is used.
-void ContactSystem::take_plane(const Nearest& at_end, Constraint& c) const {
+void ContactSystem::update_plane(const Nearest& at_end, Constraint& c) const {
   const MovingShape& moving = shapes_[c.shape];
   Nearest nearest = at_end;
   if (nearest.distance < 0) {
@@ -177,7 +177,7 @@ void ContactSystem::take_plane(const Nearest& at_end, Constraint& c) const {
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
 }
 
-/// Separating axes for the CCD fail-safe, from the triangles that hold_off found.
+/// Separating axes for the CCD fail-safe, from the triangles that project_contacts found.
 void ContactSystem::find_separations() {
   separations_.clear();
   for (const Constraint& c : constraints_) {

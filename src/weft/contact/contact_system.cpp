@@ -29,7 +29,7 @@ constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
 
 /// Verlet slack, how far cloth may move before pairs are searched again: a share of its cells or thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
-  constexpr double kMostOfEdge = 0.07, kNarrow = 0.3;
+  constexpr double kSlackPerEdge = 0.07, kNarrow = 0.3;
   double sum = 0;
   int count = 0;
   for (const Spring& s : topology.springs) {
@@ -38,7 +38,7 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
     ++count;
   }
   const double edge = count > 0 ? sum / count : 0.0;
-  return {std::max(thickness, kMostOfEdge * edge), thickness / 4, std::max(2 * thickness, kNarrow * edge)};
+  return {std::max(thickness, kSlackPerEdge * edge), thickness / 4, std::max(2 * thickness, kNarrow * edge)};
 }
 
 /// The part of the acceleration that the particle followed in the last step: from none, where it hung or lay,
@@ -59,7 +59,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   step_ = step;
   is_predicted_ = is_for_solve_ = false;
   pressed_in_ = 0;
-  touches_.clear();
+  contact_forces_.clear();
   shapes_.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
@@ -99,71 +99,76 @@ void ContactSystem::place() {
   clearance_.begin_step(shapes_, first_vertex_.back(), is_clearance_known_ ? std::sqrt(travel_sq) : unknown);
   is_clearance_known_ = true;
   place_bodies();
-  set_laws();
-  remember_velocities();
+  set_pair_settings();
+  store_velocities();
 }
 
 /// Default friction: for two cloths the geometric mean of both, for a cloth and a collider the collider's.
-void ContactSystem::set_laws() {
+void ContactSystem::set_pair_settings() {
   const int num_cloths = static_cast<int>(cloths_.size()), num_shapes = static_cast<int>(shapes_.size());
-  laws_.resize(num_cloths * (num_cloths + num_shapes));
+  pair_settings_.resize(num_cloths * (num_cloths + num_shapes));
   const auto own = [&](int cloth) { return cloths_[cloth].model->material.friction; };
   for (int c = 0; c < num_cloths; ++c) {
     for (int d = 0; d < num_cloths; ++d)
-      laws_[law_of({.cloth = c}, {.cloth = d})] = {.friction = std::sqrt(own(c) * own(d))};
+      pair_settings_[pair_index({.cloth = c}, {.cloth = d})] = {.friction = std::sqrt(own(c) * own(d))};
     for (int s = 0; s < num_shapes; ++s) {
       const Collider& collider = *shapes_[s].collider;
-      laws_[law_of({.cloth = c}, {.collider = s})] = {collider.friction, collider.static_friction};
+      pair_settings_[pair_index({.cloth = c}, {.collider = s})] = {collider.friction,
+                                                                   collider.static_friction};
     }
   }
   for (const ContactRule& rule : step_.rules) {
     const Place cloth{.cloth = rule.cloth}, other{.cloth = rule.other_cloth, .collider = rule.collider};
-    PairLaw& law = laws_[law_of(cloth, other)];
-    law = {rule.friction.value_or(law.friction), rule.static_friction.value_or(law.static_friction),
-           rule.collide};
-    if (rule.other_cloth >= 0) laws_[law_of(other, cloth)] = law;
+    PairSettings& settings = pair_settings_[pair_index(cloth, other)];
+    settings = {rule.friction.value_or(settings.friction),
+                rule.static_friction.value_or(settings.static_friction), rule.collide};
+    if (rule.other_cloth >= 0) pair_settings_[pair_index(other, cloth)] = settings;
   }
-  set_passes();
+  set_non_colliding();
 }
 
 /// Bodies are the cloths, followed by all colliders.
-void ContactSystem::set_passes() {
-  passes_.clear();
-  if (std::all_of(laws_.begin(), laws_.end(), [](const PairLaw& law) { return law.collide; }))
-    return proximity_.let_pass(passes_);
+void ContactSystem::set_non_colliding() {
+  non_colliding_.clear();
+  if (std::all_of(pair_settings_.begin(), pair_settings_.end(),
+                  [](const PairSettings& settings) { return settings.collide; }))
+    return proximity_.set_non_colliding(non_colliding_);
   const int num_cloths = static_cast<int>(cloths_.size()),
-            num_things = num_cloths + static_cast<int>(shapes_.size());
-  passes_.assign(num_things * num_things, 0);
+            num_bodies = num_cloths + static_cast<int>(shapes_.size());
+  non_colliding_.assign(num_bodies * num_bodies, 0);
   for (int c = 0; c < num_cloths; ++c) {
-    for (int t = 0; t < num_things; ++t)
-      passes_[c * num_things + t] = passes_[t * num_things + c] = !laws_[c * num_things + t].collide;
+    for (int t = 0; t < num_bodies; ++t)
+      non_colliding_[c * num_bodies + t] = non_colliding_[t * num_bodies + c] =
+          !pair_settings_[c * num_bodies + t].collide;
   }
-  proximity_.let_pass(passes_);
+  proximity_.set_non_colliding(non_colliding_);
 }
 
-/// Index into laws_ of a cloth and another cloth or collider.
-std::size_t ContactSystem::law_of(const Place& cloth, const Place& other) const {
+/// Index into pair_settings_ of a cloth and another cloth or collider.
+std::size_t ContactSystem::pair_index(const Place& cloth, const Place& other) const {
   const std::size_t num_cloths = cloths_.size();
   return cloth.cloth * (num_cloths + shapes_.size()) +
          (other.cloth >= 0 ? other.cloth : num_cloths + other.collider);
 }
 
 /// Applies the static coefficient if the two were not sliding at the start of the step.
-void ContactSystem::set_friction(const PairLaw& law, Constraint& c) const {
-  c.friction = law.friction;
-  if (law.static_friction <= law.friction) return;
+void ContactSystem::set_friction(const PairSettings& settings, Constraint& c) const {
+  c.friction = settings.friction;
+  if (settings.static_friction <= settings.friction) return;
   Vec3 slide = -c.surface_velocity;
   for (int k = 0; k < c.num_vertices; ++k) slide += c.weight[k] * velocity_before_[c.vertex[k]];
   slide -= slide.dot(c.normal) * c.normal;
-  if (slide.norm() < kSlidingSpeed) c.friction = law.static_friction;
+  if (slide.norm() < kSlidingSpeed) c.friction = settings.static_friction;
 }
 
 /// Stores velocities at the start of the step, for a mesh collider the mean over the step; only where static
 /// friction is set.
-void ContactSystem::remember_velocities() {
+void ContactSystem::store_velocities() {
   velocity_before_.clear();
-  const auto has_static = [](const PairLaw& law) { return law.static_friction > law.friction; };
-  if (std::none_of(laws_.begin(), laws_.end(), has_static)) return;
+  const auto has_static = [](const PairSettings& settings) {
+    return settings.static_friction > settings.friction;
+  };
+  if (std::none_of(pair_settings_.begin(), pair_settings_.end(), has_static)) return;
   for (const ContactCloth& cloth : cloths_) {
     for (int i = 0; i < cloth.model->num_particles(); ++i) velocity_before_.push_back(cloth.state->v.get(i));
   }
@@ -195,7 +200,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   closed_meshes_.clear();
   Surface surface;
   std::vector<Vec3> rest;
-  std::vector<int> things;  // (triangles)
+  std::vector<int> body_of_triangle;  // (triangles)
   std::vector<Grid> grids;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Proximity::Slack slack{kInfinity, kInfinity, 0};
@@ -204,7 +209,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     numbered_cloths_.push_back(cloth.model->topology);
     first_vertex_.push_back(surface.num_vertices);
     surface.add(topology.mesh.triangles, topology.num_particles());
-    things.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
+    body_of_triangle.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
     rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
     if (topology.grid) grids.push_back(*topology.grid);
     const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
@@ -232,9 +237,9 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
       closed_meshes_.push_back(
           {body.first_vertex, body.end_vertex, first_triangle, static_cast<int>(surface.triangles.size())});
     }
-    things.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
+    body_of_triangle.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
   }
-  surface.build_fans();
+  surface.build_one_rings();
   const Patches patches = build_patches(surface, rest);
   longest_rest_edge_ = 0;
   for (const auto& [i, j] : surface.edges) {
@@ -252,7 +257,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   is_touched_.assign(n, 0);
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
-  proximity_.set_things(std::move(things));
+  proximity_.set_bodies(std::move(body_of_triangle));
   has_grids_ = grids.size() == cloths_.size();
   cloth_clearance_.reset(grids);
   starts_.resize(cloths_.size());
@@ -296,14 +301,14 @@ void ContactSystem::read_ends() {
   }
 }
 
-void ContactSystem::take_solved(std::span<const Contact> contacts) {
+void ContactSystem::read_solution(std::span<const Contact> contacts) {
   if (is_placed_) read_ends();
   is_solved_.assign(cloths_.size(), is_predicted_);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact& c = contacts[n];
     for (const int v : {c.particle[0], c.particle[c.num_particles - 1]})
       is_solved_[mesh_of(first_vertex_, v)] = c.is_solved;
-    add_touch(constraints_[found_[n]], c.force);
+    add_contact_force(constraints_[found_[n]], c.force);
     if (step_.clock && c.has_pushed) ++step_.clock->times.active;
   }
 }
@@ -326,12 +331,12 @@ void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Ve
   expect_motion(acceleration, pin_targets);
   update_lists(jobs);
   constraints_.clear();
-  if (proximity_.wildest() >= 0) return;
+  if (proximity_.diverged_vertex() >= 0) return;
   // Cloth on a shape is predicted to fall into it, and the solve lifts it out; cloth on cloth stays in place.
-  std::swap(motion_.end, fallen_);
-  collect_shapes(1.0, step_.step * step_.step * acceleration.norm());
-  std::swap(motion_.end, fallen_);
-  collect_pairs(jobs);
+  std::swap(motion_.end, ballistic_);
+  generate_shape_constraints(1.0, step_.step * step_.step * acceleration.norm());
+  std::swap(motion_.end, ballistic_);
+  generate_pair_constraints(jobs);
   if (constraints_.empty()) return;
   // Cloth that is stopped far from its predicted end is hit by the cloth behind it: search pairs at the more
   // likely positions.
@@ -346,24 +351,24 @@ void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Ve
   if (!is_far) return;
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(motion_, jobs);
-  collect_pairs(jobs);
+  generate_pair_constraints(jobs);
 }
 
-/// Predicts motion_.end with the acceleration that acted in the last step, fallen_ with all of it.
+/// Predicts motion_.end with the acceleration that acted in the last step, ballistic_ with all of it.
 void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
   const double h = step_.step;
-  fallen_ = motion_.end;
+  ballistic_ = motion_.end;
   std::size_t pin = 0;
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
       if ((*cloths_[c].is_pinned)[i]) {
-        motion_.end[v] = fallen_[v] = pin_targets[pin++];
+        motion_.end[v] = ballistic_[v] = pin_targets[pin++];
         continue;
       }
-      const Vec3 coasting = motion_.start[v] + h * state.v.get(i);
-      motion_.end[v] = coasting + h * h * felt_acceleration(state, i, acceleration);
-      fallen_[v] = coasting + h * h * acceleration;
+      const Vec3 inertial = motion_.start[v] + h * state.v.get(i);
+      motion_.end[v] = inertial + h * h * felt_acceleration(state, i, acceleration);
+      ballistic_[v] = inertial + h * h * acceleration;
     }
   }
 }
@@ -389,7 +394,7 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
     contact.offset = c.target;
     contact.gap = kept_gap(c);
     contact.depth_before = depth_at_start(c);
-    contact.grip = h * c.surface_velocity;
+    contact.stick_point = h * c.surface_velocity;
     contact.friction = c.friction;
     contact.stiffness = (c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h);
     for (int k = 0; k < c.num_vertices; ++k) {
@@ -400,10 +405,10 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
         contact.particle[contact.num_particles] = v;
         contact.weight[contact.num_particles++] = w;
         contact.offset -= w * c.normal.dot(origin);
-        contact.grip += w * (motion_.start[v] - origin);
+        contact.stick_point += w * (motion_.start[v] - origin);
       } else {
         contact.offset -= w * c.normal.dot(motion_.end[v]);
-        contact.grip -= w * (motion_.end[v] - motion_.start[v]);
+        contact.stick_point -= w * (motion_.end[v] - motion_.start[v]);
       }
     }
   }
@@ -416,8 +421,9 @@ double ContactSystem::depth_at_start(const Constraint& c) const {
   return clearance_of(c) - find_nearest(shapes_[c.shape].before, c, motion_.start).distance;
 }
 
-int ContactSystem::wild_cloth() const {
-  return is_clear_ || proximity_.wildest() < 0 ? -1 : mesh_of(first_vertex_, proximity_.wildest());
+int ContactSystem::diverged_cloth() const {
+  return is_clear_ || proximity_.diverged_vertex() < 0 ? -1
+                                                       : mesh_of(first_vertex_, proximity_.diverged_vertex());
 }
 
 /// Whether the solve separated all cloths of a constraint.
@@ -442,11 +448,11 @@ bool ContactSystem::mark_unsolved(const Constraint& c) {
 }
 
 /// Whether the solve separated all cloths, and each ended where contacts were searched.
-bool ContactSystem::went_as_expected() const {
+bool ContactSystem::matches_prediction() const {
   if (expected_.empty()) return false;
   if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
   for (int v = 0; v < first_vertex_.back(); ++v) {
-    const double most = 0.5 * kMaxLack * motion_.half_thickness[v];
+    const double most = 0.5 * kMaxShortfall * motion_.half_thickness[v];
     if ((motion_.end[v] - expected_[v]).squaredNorm() > most * most) return false;
   }
   return true;
@@ -456,7 +462,7 @@ bool ContactSystem::went_as_expected() const {
 void ContactSystem::leave_out_solved() {
   if (!is_predicted_) return;
   for (const Constraint& c : constraints_) {
-    if (c.target - c.normal.dot(c.sum(motion_.end)) > kMaxLack * kept_gap(c)) mark_unsolved(c);
+    if (c.target - c.normal.dot(c.sum(motion_.end)) > kMaxShortfall * kept_gap(c)) mark_unsolved(c);
   }
   for (bool is_spreading = true; is_spreading;) {
     is_spreading = false;
@@ -467,7 +473,7 @@ void ContactSystem::leave_out_solved() {
   std::erase_if(constraints_, [&](const Constraint& c) { return is_solved(c); });
 }
 
-void ContactSystem::hold_off(JobSystem& jobs) {
+void ContactSystem::project_contacts(JobSystem& jobs) {
   is_for_solve_ = is_clear_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
   if (is_surveyed_ || !is_placed_) {
@@ -480,12 +486,12 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   }
   update_lists(jobs);
   constraints_.clear();
-  if (proximity_.wildest() >= 0) return;
+  if (proximity_.diverged_vertex() >= 0) return;
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
   is_clear_ = lists_are_empty && !has_plain_shapes();
-  if (is_clear_ || went_as_expected()) return;
-  collect_pairs(jobs);
-  collect_shapes(0.0);
+  if (is_clear_ || matches_prediction()) return;
+  generate_pair_constraints(jobs);
+  generate_shape_constraints(0.0);
   is_clear_ = lists_are_empty && !is_near_shape_;
   leave_out_solved();
   if (constraints_.empty()) return;
@@ -493,20 +499,21 @@ void ContactSystem::hold_off(JobSystem& jobs) {
   store_touched();
 }
 
-LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
+CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
   if (is_clear_) return {};
   origins_.clear();
   read_ends();
   for (const ContactCloth& cloth : cloths_) origins_.push_back(cloth.state->origin);
-  if (proximity_.wildest() >= 0 || !is_of_this_world()) return {};
+  if (proximity_.diverged_vertex() >= 0 || !is_within_ccd_range()) return {};
   const WorkScope scope(step_.clock, &WorkTimes::ccd);
   find_separations();
-  const LastLineReport report =
-      last_line_.hold({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &closed_meshes_, &passes_,
-                       &clearance_, thickest_, separations_, step_.clock},
-                      proximity_, motion_, jobs);
+  const CcdFailSafeReport report =
+      ccd_fail_safe_.resolve({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &closed_meshes_,
+                              &non_colliding_, &clearance_, thickest_, separations_, step_.clock},
+                             proximity_, motion_, jobs);
   if (report.hits == 0) return report;
-  for (const Constraint& c : last_line_.pushes()) add_touch(c, c.push / (step_.step * step_.step) * c.normal);
+  for (const Constraint& c : ccd_fail_safe_.pushes())
+    add_contact_force(c, c.push / (step_.step * step_.step) * c.normal);
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     ClothState& state = *cloths_[c].state;
     for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
@@ -522,7 +529,7 @@ LastLineReport ContactSystem::stop_crossings(JobSystem& jobs) {
 
 /// CCD range: beyond a kilometre, floats are too coarse to separate cloth, and displacements of tens of
 /// metres per step are no cloth motion.
-bool ContactSystem::is_of_this_world() const {
+bool ContactSystem::is_within_ccd_range() const {
   constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
@@ -541,7 +548,7 @@ void ContactSystem::settle_positions() {
     if (moved < kSettled) return;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
-      take_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), c);
+      update_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), c);
       c.push = 0;
     }
   }
@@ -559,11 +566,11 @@ void ContactSystem::project(JobSystem& jobs) {
   }
   velocity_projection_.project(inverse_mass_, constraints_, velocity_, slowed_);
   for (const Constraint& c : constraints_)
-    add_touch(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
+    add_contact_force(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
   if (step_.clock && !is_predicted_)
     step_.clock->times.active += std::count_if(constraints_.begin(), constraints_.end(),
                                                [](const Constraint& c) { return c.is_active; });
-  take_back_slides();
+  undo_slides();
   settle_positions();
   mark_touched();
   // Vertices that were moved far may now touch features beyond the search radius.
@@ -571,8 +578,8 @@ void ContactSystem::project(JobSystem& jobs) {
     arrived_ = motion_.end;
     proximity_.update(motion_, jobs);
     constraints_.clear();
-    collect_pairs(jobs);
-    collect_shapes(0.0);
+    generate_pair_constraints(jobs);
+    generate_shape_constraints(0.0);
     leave_out_solved();
     settle_positions();
     mark_touched();
@@ -590,7 +597,7 @@ bool ContactSystem::has_left_reach() const {
 }
 
 /// Friction also removes this step's sliding displacement, so that sticking cloth does not creep.
-void ContactSystem::take_back_slides() {
+void ContactSystem::undo_slides() {
   mark_touched();
   for (int v = 0; v < first_vertex_.back(); ++v) {
     if (is_touched_[v]) motion_.end[v] += step_.step * slowed_[v].to_vec3();

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "weft/contact/ccd_fail_safe.h"
 #include "weft/contact/cloth_clearance.h"
 #include "weft/contact/collider.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/contact.h"
 #include "weft/contact/contact_point.h"
-#include "weft/contact/last_line.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
 #include "weft/contact/shape_clearance.h"
@@ -50,12 +50,12 @@ struct ContactStep {
 
 /// Contact of all cloths with all colliders and with each other, in this order each step:
 ///
-///     begin_step        stores the start positions and moves the colliders through the step
-///     predict           for integrators that resolve contacts: finds the likely contacts
-///     find_contacts     … and returns them as half-space constraints
-///     take_solved       reads the cloths after the integrator's solve
-///     hold_off          contact projection of positions and velocities
-///     stop_crossings    CCD fail-safe for everything that would still intersect (see last_line.h)
+///     begin_step           stores the start positions and moves the colliders through the step
+///     predict              for integrators that resolve contacts: finds the likely contacts
+///     find_contacts        … and returns them as half-space constraints
+///     read_solution        reads the cloths after the integrator's solve
+///     project_contacts     contact projection of positions and velocities
+///     run_ccd_fail_safe    CCD fail-safe for everything that would still intersect (see ccd_fail_safe.h)
 ///
 /// Cloth keeps half its thickness from colliders, and half of both thicknesses from other cloth. Pinned
 /// particles push others, and are not pushed. Work space is kept between steps; results depend on the
@@ -74,24 +74,24 @@ class ContactSystem {
 
   /// Reads the cloths' states as the ends of the step. `contacts` are those from find_contacts, solved for,
   /// or none.
-  void take_solved(std::span<const Contact> contacts);
+  void read_solution(std::span<const Contact> contacts);
 
   /// Contact projection: separates positions that are too close, removes approaching velocities, and applies
   /// friction to sliding ones (see constraint.h). Call it when every cloth is at its end position.
-  void hold_off(JobSystem& jobs);
+  void project_contacts(JobSystem& jobs);
 
   /// CCD fail-safe: stops all penetrations since begin_step. Call it last.
-  LastLineReport stop_crossings(JobSystem& jobs);
+  CcdFailSafeReport run_ccd_fail_safe(JobSystem& jobs);
 
   /// All contacts since begin_step, if the step is tracked, each feature pair once: the mean force over the
-  /// step from the solve, hold_off and the impulses of stop_crossings. The effect of rigid impact zones is
-  /// not included.
+  /// step from the solve, project_contacts and the impulses of run_ccd_fail_safe. The effect of rigid impact
+  /// zones is not included.
   std::vector<ContactPoint> contact_points() const;
 
   /// Finds the intersections of the present state, with colliders at their present pose, and repairs them
   /// (see untangle.h).
-  Knots find_knots(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                   const ContactStep& now);
+  Intersections find_intersections(std::span<const ContactCloth> cloths,
+                                   const std::vector<Collider>& colliders, const ContactStep& now);
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                           const ContactStep& now);
   const Surface& surface() const { return proximity_.surface(); }
@@ -105,7 +105,7 @@ class ContactSystem {
   Place place_of_triangle(int triangle) const;
 
   /// The diverged cloth: it moved too far in this step for contact detection; -1 if none did.
-  int wild_cloth() const;
+  int diverged_cloth() const;
 
  private:
   struct Body {
@@ -125,7 +125,7 @@ class ContactSystem {
     double reach;
   };
 
-  struct PairLaw {
+  struct PairSettings {
     double friction = 0;         // [1]
     double static_friction = 0;  // of sticking contacts, if larger [1]
     bool collide = true;
@@ -139,15 +139,15 @@ class ContactSystem {
   };
 
   /// A contact force between two features, or on one.
-  struct Touch {
+  struct ContactForce {
     std::array<int, 4> vertex;  // as in Constraint
     std::array<double, 4> weight;
     int num_vertices, shape;
     Vec3 normal;
     Vec3 force;  // on the feature with positive weights [N]
   };
-  void add_touch(const Constraint& c, const Vec3& force);
-  ContactPoint describe(const Touch& touch) const;
+  void add_contact_force(const Constraint& c, const Vec3& force);
+  ContactPoint describe(const ContactForce& contact) const;
 
   static Nearest nearest_of(const SignedDistance& d, const Vec3& p, const std::array<double, 4>& weight);
   static Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c);
@@ -164,12 +164,12 @@ class ContactSystem {
   bool are_bodies_far(double fall) const;
   void place();
   void renumber(const std::vector<Collider>& colliders);
-  Tangle make_tangle() const;
+  RepairInput make_repair_input() const;
   std::vector<Vec3> positions_now() const;
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
-  void collect_pairs(JobSystem& jobs);
+  void generate_pair_constraints(JobSystem& jobs);
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
@@ -182,38 +182,38 @@ class ContactSystem {
   double share_nearby(const Constraint& c) const;
   double relative_travel(const Constraint& c) const;
   bool finish_pair(double distance, double gap, Constraint& c) const;
-  void set_laws();
-  void set_passes();
-  void set_friction(const PairLaw& law, Constraint& c) const;
-  void remember_velocities();
-  std::size_t law_of(const Place& cloth, const Place& other) const;
+  void set_pair_settings();
+  void set_non_colliding();
+  void set_friction(const PairSettings& settings, Constraint& c) const;
+  void store_velocities();
+  std::size_t pair_index(const Place& cloth, const Place& other) const;
   const Body& body_of(int vertex) const;
   bool is_on_body(const Constraint& c) const;
   bool is_on_closed_body(int vertex) const;
-  void collect_shapes(double share_of_travel, double stretch = 0);
+  void generate_shape_constraints(double share_of_travel, double stretch = 0);
   bool has_plain_shapes() const;
-  void collect_shape(int shape, double share_of_travel);
+  void generate_constraints_of_shape(int shape, double share_of_travel);
   void find_separations();
   double shape_reach(int v, double share_of_travel) const;
-  void collect_edges(int shape, double share_of_travel);
-  void collect_triangles(int shape, double share_of_travel);
+  void generate_edge_constraints(int shape, double share_of_travel);
+  void generate_triangle_constraints(int shape, double share_of_travel);
   void add_shape_constraint(int cloth, int shape, int num_vertices, const Triangle& vertices,
                             const Nearest& nearest);
-  void take_plane(const Nearest& at_end, Constraint& c) const;
+  void update_plane(const Nearest& at_end, Constraint& c) const;
   double clearance_of(const Constraint& c) const;
   double kept_gap(const Constraint& c) const;
   double depth_at_start(const Constraint& c) const;
-  bool is_of_this_world() const;
+  bool is_within_ccd_range() const;
   void read_ends();
   bool is_solved(const Constraint& c) const;
   bool mark_unsolved(const Constraint& c);
-  bool went_as_expected() const;
+  bool matches_prediction() const;
   void leave_out_solved();
   void find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs);
   void settle_positions();
   void project(JobSystem& jobs);
   bool has_left_reach() const;
-  void take_back_slides();
+  void undo_slides();
   void mark_touched();
   void store_touched();
 
@@ -223,9 +223,9 @@ class ContactSystem {
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<ClosedMesh> closed_meshes_;
-  std::vector<char> passes_;      // (bodies, bodies) 1: do not collide; empty: all collide
-  double longest_rest_edge_ = 0;  // of cloth [m]
-  bool has_grids_ = false;        // every cloth is a grid
+  std::vector<char> non_colliding_;  // (bodies, bodies) 1: do not collide; empty: all collide
+  double longest_rest_edge_ = 0;     // of cloth [m]
+  bool has_grids_ = false;           // every cloth is a grid
   Proximity proximity_;
   ClothClearance cloth_clearance_;
   ShapeClearance clearance_;
@@ -240,22 +240,22 @@ class ContactSystem {
   bool is_near_shape_ = false;     // some vertex may touch a primitive shape
   bool is_placed_ = false;         // motion_ and the members after it are this step's
   bool is_surveyed_ = false;       // only uncertain_ may meet in the motion surveyed last
-  bool is_clear_ = false;          // no contact is possible in the motion that hold_off checked
+  bool is_clear_ = false;          // no contact is possible in the motion that project_contacts checked
   int num_without_ = 0;            // number of upcoming steps without a survey
   double pressed_in_ = 0;          // share of the gap that may be missing now [1]
   std::vector<Vec3Array> starts_;  // (cloths) offsets of particles
   SurfaceMotion motion_;
   std::vector<Vec3> expected_;  // (cloth vertices) predicted ends used for the solve's contacts; or empty [m]
-  std::vector<Vec3> fallen_;    // (cloth vertices) ballistic prediction [m]
-  double thinnest_ = 0, thickest_ = 0;  // half thickness of the thinnest and the thickest cloth [m]
-  double longest_edge_ = 0;             // upper bound for cloth edges [m]
-  std::vector<double> inverse_mass_;    // (num_vertices) 0 where prescribed [1/kg]
-  std::vector<PairLaw> laws_;           // (cloths, cloths and then colliders)
-  std::vector<Vec3> velocity_before_;   // (num_vertices) [m/s]; empty without static friction
+  std::vector<Vec3> ballistic_;              // (cloth vertices) ballistic prediction [m]
+  double thinnest_ = 0, thickest_ = 0;       // half thickness of the thinnest and the thickest cloth [m]
+  double longest_edge_ = 0;                  // upper bound for cloth edges [m]
+  std::vector<double> inverse_mass_;         // (num_vertices) 0 where prescribed [1/kg]
+  std::vector<PairSettings> pair_settings_;  // (cloths, cloths and then colliders)
+  std::vector<Vec3> velocity_before_;        // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
-  std::vector<char> is_solved_;  // (cloths) the solve separated it from all its known contacts
-  std::vector<int> found_;       // indices of the constraints that find_contacts returned
-  std::vector<Touch> touches_;   // contact forces of this step
+  std::vector<char> is_solved_;               // (cloths) the solve separated it from all its known contacts
+  std::vector<int> found_;                    // indices of the constraints that find_contacts returned
+  std::vector<ContactForce> contact_forces_;  // contact forces of this step
 
   // Work space.
   std::vector<Vec3Array> ends_;       // (cloths) predicted offsets
@@ -271,7 +271,7 @@ class ContactSystem {
   std::vector<int> near_shape_;  // vertices
   std::vector<Separation> separations_;
   std::vector<Quad> velocity_, slowed_;
-  LastLine last_line_;
+  CcdFailSafe ccd_fail_safe_;
   std::vector<Vec3> origins_;  // (cloths)
   std::vector<Vec3> arrived_;  // positions of the last contact search
 };

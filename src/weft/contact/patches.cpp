@@ -290,7 +290,7 @@ bool Patches::are_neighbours(int a, int b) const {
 /// them, where the surface extends that far; others by a path between two corners plus the triangle sides.
 Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<Vec3>& rest,
                                       std::span<const int> members) const {
-  constexpr double kLeastFacing = 0.9;  // cosine limit for normals that point one way
+  constexpr double kMinFacing = 0.9;  // cosine limit for normals that point one way
   const auto is_sound = [&](int q) {
     const std::vector<TrianglePart>& parts = mesh_parts_[parts_[q].index].triangles;
     return std::all_of(parts.begin(), parts.end(), [](const TrianglePart& t) {
@@ -307,7 +307,7 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
     const auto [i, j, k] = surface.triangles[t];
     facing = std::min(facing, normal.dot((rest[j] - rest[i]).cross(rest[k] - rest[i]).stableNormalized()));
   }
-  const double around = facing > kLeastFacing ? reach_around(surface, rest, region, own, normal) : 0;
+  const double around = facing > kMinFacing ? reach_around(surface, rest, region, own, normal) : 0;
   Ways ways(surface, rest, region);
   double least = std::numeric_limits<double>::infinity(), detour = 1;
   for (std::size_t s = 0; s < own; ++s) {

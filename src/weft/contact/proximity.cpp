@@ -26,12 +26,12 @@ constexpr double kManyMoved = 0.4;
 constexpr double kSoon = 0.3;
 
 /// Limit of a vertex's motion relative to the others, in cloth sizes [1].
-constexpr double kMostOfSize = 10;
+constexpr double kMaxRelativeMotion = 10;
 
 /// The share of two neighbours' rest distance that contact may require.
 constexpr float kShareOfRest = 0.5f;
 
-constexpr int kFanGrain = 2048;  // triangle pairs of a one-ring per chunk
+constexpr int kOneRingGrain = 2048;  // triangle pairs of a one-ring per chunk
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void Proximity::reset(Surface surface, Patches patches, std::vector<Vec3> rest, 
     chunk.vertex_triangle.reserve(room / kChunks);
     chunk.edge_edge.reserve(room / kChunks);
   }
-  fans_.reserve(room);
+  one_ring_pairs_.reserve(room);
   moved_.reserve(surface_.num_vertices);
   const std::size_t patch_room = 32 * patches_.size();
   near_patches_.reserve(patch_room);
@@ -79,22 +79,22 @@ void Proximity::find_tight(const std::vector<double>& half_thickness, JobSystem&
   const double room = 4 * (thickest + slacks_.most);
   std::vector<double> low, high;  // (cloths)
   for (int v = 0; v < num_cloth_vertices_; ++v) {
-    const std::size_t thing = thing_of(v);
-    if (thing >= low.size()) {
-      low.resize(thing + 1, std::numeric_limits<double>::infinity());
-      high.resize(thing + 1, -low[thing]);
+    const std::size_t body = body_of(v);
+    if (body >= low.size()) {
+      low.resize(body + 1, std::numeric_limits<double>::infinity());
+      high.resize(body + 1, -low[body]);
     }
-    low[thing] = std::min(low[thing], rest_[v].x());
-    high[thing] = std::max(high[thing], rest_[v].x());
+    low[body] = std::min(low[body], rest_[v].x());
+    high[body] = std::max(high[body], rest_[v].x());
   }
   std::vector<double> shift;  // (cloths)
   double end = 0;
-  for (std::size_t thing = 0; thing < low.size(); ++thing) {
-    shift.push_back(end - low[thing]);
-    end += high[thing] - low[thing] + room;
+  for (std::size_t body = 0; body < low.size(); ++body) {
+    shift.push_back(end - low[body]);
+    end += high[body] - low[body] + room;
   }
   SurfaceMotion rest{.start = rest_, .end = {}, .half_thickness = half_thickness};
-  for (int v = 0; v < num_cloth_vertices_; ++v) rest.start[v].x() += shift[thing_of(v)];
+  for (int v = 0; v < num_cloth_vertices_; ++v) rest.start[v].x() += shift[body_of(v)];
   rest.start.resize(surface_.num_vertices, Vec3(end, 0, 0));
   rest.end = rest.start;
   rebuild(rest, jobs);
@@ -113,22 +113,22 @@ void Proximity::find_tight(const std::vector<double>& half_thickness, JobSystem&
 }
 
 /// The body of a cloth vertex; vertices of no triangle collide with none.
-int Proximity::thing_of(int vertex) const {
-  const std::span<const int> fan = surface_.triangles_at(vertex);
-  return fan.empty() || thing_of_triangle_.empty() ? 0 : thing_of_triangle_[fan[0]];
+int Proximity::body_of(int vertex) const {
+  const std::span<const int> one_ring = surface_.triangles_at(vertex);
+  return one_ring.empty() || body_of_triangle_.empty() ? 0 : body_of_triangle_[one_ring[0]];
 }
 
-void Proximity::let_pass(const std::vector<char>& passes) {
-  if (passes == passes_) return;
-  passes_ = passes;
-  num_things_ = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(passes.size()))));
+void Proximity::set_non_colliding(const std::vector<char>& non_colliding) {
+  if (non_colliding == non_colliding_) return;
+  non_colliding_ = non_colliding;
+  num_bodies_ = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(non_colliding.size()))));
   tight_for_.clear();
   made_for_.end.clear();
 }
 
-bool Proximity::pass(int triangle, int other) const {
-  if (passes_.empty()) return false;
-  return passes_[thing_of_triangle_[triangle] * num_things_ + thing_of_triangle_[other]] != 0;
+bool Proximity::is_non_colliding(int triangle, int other) const {
+  if (non_colliding_.empty()) return false;
+  return non_colliding_[body_of_triangle_[triangle] * num_bodies_ + body_of_triangle_[other]] != 0;
 }
 
 void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
@@ -143,7 +143,7 @@ void Proximity::update(const SurfaceMotion& motion, JobSystem& jobs) {
         static_cast<double>(moved_.size()) > kManyMoved * static_cast<double>(motion.end.size());
     if (are_many || is_among_ || slack_ != made_with_ || !renew(motion, jobs)) rebuild(motion, jobs);
   }
-  while (wildest_ < 0 && slack_ < made_with_) rebuild(motion, jobs);
+  while (diverged_vertex_ < 0 && slack_ < made_with_) rebuild(motion, jobs);
   if (clock_) ++clock_->times.list_renewals;
 }
 
@@ -268,7 +268,7 @@ bool Proximity::refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, J
 }
 
 /// Returns -1 if cloth moves against itself by less than its own size on average.
-int Proximity::find_wildest(const SurfaceMotion& motion) const {
+int Proximity::find_diverged_vertex(const SurfaceMotion& motion) const {
   if (num_cloth_vertices_ == 0) return -1;
   Vec3 low = motion.start[0], high = low, least = motion.end[0] - low, most = least;
   for (int v = 0; v < num_cloth_vertices_; ++v) {
@@ -283,17 +283,17 @@ int Proximity::find_wildest(const SurfaceMotion& motion) const {
   for (int v = 0; v < num_cloth_vertices_; ++v) drift += motion.end[v] - motion.start[v];
   drift /= num_cloth_vertices_;
   double sum = 0, farthest = 0;
-  int wildest = 0;
+  int fastest = 0;
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     const double travel = (motion.end[v] - motion.start[v] - drift).norm();
     sum += travel;
     if (travel <= farthest) continue;
     farthest = travel;
-    wildest = v;
+    fastest = v;
   }
   const double size =
       num_cloth_triangles_ > kFewTriangles ? (high - low).norm() : std::max((high - low).norm(), kFarthest);
-  return sum <= num_cloth_vertices_ * size && farthest <= kMostOfSize * size ? -1 : wildest;
+  return sum <= num_cloth_vertices_ * size && farthest <= kMaxRelativeMotion * size ? -1 : fastest;
 }
 
 void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
@@ -301,8 +301,8 @@ void Proximity::rebuild(const SurfaceMotion& motion, JobSystem& jobs) {
   edge_edge_.clear();
   patch_pairs_.clear();
   is_among_ = false;
-  wildest_ = find_wildest(motion);
-  if (wildest_ >= 0) return made_for_.end.clear();
+  diverged_vertex_ = find_diverged_vertex(motion);
+  if (diverged_vertex_ >= 0) return made_for_.end.clear();
   made_for_ = motion;
   made_with_ = slack_;
   origin_ = motion.start[0];
@@ -330,7 +330,7 @@ void Proximity::update_among(const SurfaceMotion& motion, std::span<const ItemPa
   vertex_triangle_.clear();
   edge_edge_.clear();
   patch_pairs_.clear();
-  wildest_ = -1;
+  diverged_vertex_ = -1;
   is_among_ = true;
   made_for_ = motion;
   made_with_ = slack;
@@ -369,7 +369,7 @@ void Proximity::mark_patches(std::span<const ItemPair> patch_pairs) {
 
 /// Searches only the pairs of moved_. Returns false if the tree has become loose: all pairs are searched.
 bool Proximity::renew(const SurfaceMotion& motion, JobSystem& jobs) {
-  if (find_wildest(motion) >= 0) return false;
+  if (find_diverged_vertex(motion) >= 0) return false;
   mark_moved(motion);
   measure_patches(jobs);
   if (!refit_tree(cloth_tree_, 0, AabbTree::Extent::marked, jobs)) return false;
@@ -473,13 +473,13 @@ void Proximity::find_pairs(JobSystem& jobs) {
   longest_edge_.reset();
   if (!patch_pairs_.empty()) measure_triangles(jobs);
   const auto add_near = [&](int p, PairChunk& chunk) { add_pairs_of_patches(patch_pairs_[p], chunk); };
-  const auto add_fan = [&](int p, PairChunk& chunk) {
-    const auto [a, b] = fans_[p];
+  const auto add_one_ring_pair = [&](int p, PairChunk& chunk) {
+    const auto [a, b] = one_ring_pairs_[p];
     add_pairs_of_triangles(a, b, box_of(surface_.triangles[a]), box_of(surface_.triangles[b]), true, chunk);
   };
   add_pairs(static_cast<int>(patch_pairs_.size()), kGrain, add_near, jobs);
-  find_fans(jobs);
-  add_pairs(static_cast<int>(fans_.size()), kFanGrain, add_fan, jobs);
+  find_one_ring_pairs(jobs);
+  add_pairs(static_cast<int>(one_ring_pairs_.size()), kOneRingGrain, add_one_ring_pair, jobs);
   // The shape of the tree, and so the order, depends on earlier steps; contact must not.
   put_in_order(surface_.num_vertices, vertex_triangle_);
   put_in_order(static_cast<int>(surface_.edges.size()), edge_edge_);
@@ -502,7 +502,7 @@ void Proximity::choose_slack() {
 /// Each end may move by the slack before edges are searched again.
 double Proximity::longest_edge() {
   if (longest_edge_) return *longest_edge_;
-  if (wildest_ >= 0) return std::numeric_limits<double>::infinity();
+  if (diverged_vertex_ >= 0) return std::numeric_limits<double>::infinity();
   double longest_sq = 0;
   for (const auto& [i, j] : surface_.edges) {
     if (i >= num_cloth_vertices_) break;
@@ -562,7 +562,7 @@ void Proximity::add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) co
       if (!box.may_meet(triangle_box_[t]) ||
           num_shared_vertices(surface_.triangles[s], surface_.triangles[t]) > 0)
         continue;
-      if (pass(s, t) || stay_apart(s, t)) continue;
+      if (is_non_colliding(s, t) || stay_apart(s, t)) continue;
       const auto [low, high] = std::minmax(s, t);
       add_pairs_of_triangles(low, high, triangle_box_[low], triangle_box_[high], false, chunk);
     }
@@ -590,16 +590,16 @@ bool Proximity::stay_apart(int first, int second) const {
 }
 
 void Proximity::add_pairs_of_triangles(int first, int second, const SweptBox& box_a, const SweptBox& box_b,
-                                       bool is_fan, PairChunk& chunk) const {
+                                       bool is_one_ring_pair, PairChunk& chunk) const {
   const Surface::OwnedFeatures &a = surface_.owned[first], &b = surface_.owned[second];
   const Triangle &ta = surface_.triangles[first], &tb = surface_.triangles[second];
   for (const int v : a.vertex) {
     if (v >= 0 && !has_vertex(tb, v) && box_of({&v, 1}).may_meet(box_b))
-      add_vertex_triangle(v, second, is_fan, chunk);
+      add_vertex_triangle(v, second, is_one_ring_pair, chunk);
   }
   for (const int v : b.vertex) {
     if (v >= 0 && !has_vertex(ta, v) && box_of({&v, 1}).may_meet(box_a))
-      add_vertex_triangle(v, first, is_fan, chunk);
+      add_vertex_triangle(v, first, is_one_ring_pair, chunk);
   }
   std::array<SweptBox, 3> sides;
   for (int k = 0; k < 3; ++k) {
@@ -610,7 +610,8 @@ void Proximity::add_pairs_of_triangles(int first, int second, const SweptBox& bo
     const SweptBox side = box_of(surface_.edges[e]);
     for (int k = 0; k < 3; ++k) {
       const int f = b.edge[k];
-      if (f >= 0 && side.may_meet(sides[k])) add_edge_edge(std::min(e, f), std::max(e, f), is_fan, chunk);
+      if (f >= 0 && side.may_meet(sides[k]))
+        add_edge_edge(std::min(e, f), std::max(e, f), is_one_ring_pair, chunk);
     }
   }
 }
@@ -633,18 +634,19 @@ double Proximity::reach_between(const std::array<int, kA>& a, const std::array<i
 /// neighbours may always come nearer than at rest, other layers of a cloth as near as at rest.
 template <std::size_t kA, std::size_t kB, class Distance>
 void Proximity::add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b,
-                         bool is_fan, const Distance& distance, std::vector<FeaturePair>& pairs) const {
+                         bool is_one_ring_pair, const Distance& distance,
+                         std::vector<FeaturePair>& pairs) const {
   const double reach = reach_between(a, b);
   if (distance(made_for_.start).distance_sq > reach * reach) return;
-  if (is_fan || are_tight(a[0], b[0])) {
-    const float share = is_fan || are_beside(a, b) ? kShareOfRest : 1.0f;
+  if (is_one_ring_pair || are_tight(a[0], b[0])) {
+    const float share = is_one_ring_pair || are_beside(a, b) ? kShareOfRest : 1.0f;
     pair.max_gap = share * static_cast<float>(distance(rest_).distance());
   }
   pairs.push_back(pair);
 }
 
 bool Proximity::are_tight(int vertex, int other) const {
-  return is_tight_[vertex] && is_tight_[other] && thing_of(vertex) == thing_of(other);
+  return is_tight_[vertex] && is_tight_[other] && body_of(vertex) == body_of(other);
 }
 
 /// Whether the two share a vertex, or are joined by an edge.
@@ -659,18 +661,19 @@ bool Proximity::are_beside(std::span<const int> a, std::span<const int> b) const
   return false;
 }
 
-void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const {
+void Proximity::add_vertex_triangle(int vertex, int triangle, bool is_one_ring_pair, PairChunk& chunk) const {
   const FeaturePair pair{vertex, triangle};
   const auto distance = [&](const std::vector<Vec3>& x) { return distance_to_triangle(pair, x); };
-  add_pair(pair, std::array{vertex}, surface_.triangles[triangle], is_fan, distance, chunk.vertex_triangle);
+  add_pair(pair, std::array{vertex}, surface_.triangles[triangle], is_one_ring_pair, distance,
+           chunk.vertex_triangle);
 }
 
-void Proximity::add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const {
+void Proximity::add_edge_edge(int a, int b, bool is_one_ring_pair, PairChunk& chunk) const {
   const std::array<int, 2>&e = surface_.edges[a], &f = surface_.edges[b];
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return;
   const FeaturePair pair{a, b};
   const auto distance = [&](const std::vector<Vec3>& x) { return distance_of_edges(pair, x); };
-  add_pair(pair, e, f, is_fan, distance, chunk.edge_edge);
+  add_pair(pair, e, f, is_one_ring_pair, distance, chunk.edge_edge);
 }
 
 PointTriangleDistance Proximity::distance_to_triangle(const FeaturePair& pair,
@@ -688,17 +691,17 @@ EdgeEdgeDistance Proximity::distance_of_edges(const FeaturePair& pair, const std
 /// Whether the cloth forms a sharp tip at a vertex, with vertices at x: seen along the sum of its normals, a
 /// triangle is tilted too far, or is too narrow to stay as it is.
 bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
-  constexpr std::size_t kMost = 16;  // one-ring triangles that are measured
-  const std::span<const int> fan = surface_.triangles_at(vertex);
-  if (fan.size() > kMost) return true;
+  constexpr std::size_t kMaxRingTriangles = 16;  // one-ring triangles that are measured
+  const std::span<const int> one_ring = surface_.triangles_at(vertex);
+  if (one_ring.size() > kMaxRingTriangles) return true;
   struct Shape {
     Eigen::Vector3f normal;
     float height;  // the least of three [m]
   };
-  std::array<Shape, kMost> shapes;
+  std::array<Shape, kMaxRingTriangles> shapes;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (std::size_t f = 0; f < fan.size(); ++f) {
-    const auto [i, j, k] = surface_.triangles[fan[f]];
+  for (std::size_t f = 0; f < one_ring.size(); ++f) {
+    const auto [i, j, k] = surface_.triangles[one_ring[f]];
     const Eigen::Vector3f a = (x[j] - x[i]).head<3>(), b = (x[k] - x[i]).head<3>(), area = a.cross(b);
     const float size = area.norm(),
                 longest_sq = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
@@ -707,7 +710,7 @@ bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
     sum += shapes[f].normal;
   }
   const float length = sum.norm(), width = static_cast<float>(slacks_.narrow);
-  for (std::size_t f = 0; f < fan.size(); ++f) {
+  for (std::size_t f = 0; f < one_ring.size(); ++f) {
     const float facing = shapes[f].normal.dot(sum);
     const bool is_flat = facing >= kSharp * length && facing * shapes[f].height > width * length;
     if (!is_flat) return true;  // NaN too
@@ -717,7 +720,7 @@ bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
 
 /// One-ring pairs (triangles that share a vertex) matter only where the cloth forms a sharp tip or a fold.
 /// Two that share an edge are found at both of its ends.
-void Proximity::find_fans(JobSystem& jobs) {
+void Proximity::find_one_ring_pairs(JobSystem& jobs) {
   constexpr int kGrain = 2048;
   is_in_fold_.assign(num_cloth_vertices_, 0);
   for (int p = 0; p < patches_.num_cloth(); ++p) {
@@ -730,13 +733,14 @@ void Proximity::find_fans(JobSystem& jobs) {
       if (is_in_fold_[v]) is_sharp_[v] = is_sharp(v, at_start_.x) || is_sharp(v, at_end_.x);
     }
   });
-  fans_.clear();
+  one_ring_pairs_.clear();
   for (int v = 0; v < num_cloth_vertices_; ++v) {
     if (!is_in_fold_[v] || !is_sharp_[v]) continue;
-    const std::span<const int> fan = surface_.triangles_at(v);
-    for (std::size_t f = 0; f < fan.size(); ++f) {
-      for (std::size_t g = f + 1; g < fan.size(); ++g) {
-        if (!pass(fan[f], fan[g])) fans_.push_back({fan[f], fan[g]});
+    const std::span<const int> one_ring = surface_.triangles_at(v);
+    for (std::size_t f = 0; f < one_ring.size(); ++f) {
+      for (std::size_t g = f + 1; g < one_ring.size(); ++g) {
+        if (!is_non_colliding(one_ring[f], one_ring[g]))
+          one_ring_pairs_.push_back({one_ring[f], one_ring[g]});
       }
     }
   }

@@ -49,14 +49,15 @@ class Proximity {
   void reset(Surface surface, Patches patches, std::vector<Vec3> rest, int num_cloth_vertices,
              int num_cloth_triangles, const Slack& slack);
 
-  /// Collision filter: the body of each triangle (triangles), and the symmetric table `passes` (bodies,
-  /// bodies) of those that do not collide; empty: all collide. Pairs of such bodies are not listed.
-  void set_things(std::vector<int> thing_of_triangle) { thing_of_triangle_ = std::move(thing_of_triangle); }
-  void let_pass(const std::vector<char>& passes);
+  /// Collision filter: the body of each triangle (triangles), and the symmetric table `non_colliding`
+  /// (bodies, bodies) of those that do not collide; empty: all collide. Pairs of such bodies are not listed.
+  void set_bodies(std::vector<int> body_of_triangle) { body_of_triangle_ = std::move(body_of_triangle); }
+  void set_non_colliding(const std::vector<char>& non_colliding);
 
   /// Updates the lists for this motion. If cloth of many triangles moves against itself by more than its own
-  /// size, all pairs are near: the lists are left empty, and wildest() returns a vertex. Cloth may be nearer
-  /// to itself at rest than its thickness (short edges, pleats, a lining) and stay so: FeaturePair::max_gap.
+  /// size, all pairs are near: the lists are left empty, and diverged_vertex() returns a vertex. Cloth may be
+  /// nearer to itself at rest than its thickness (short edges, pleats, a lining) and stay so:
+  /// FeaturePair::max_gap.
   void update(const SurfaceMotion& motion, JobSystem& jobs);
 
   /// As update(), but only the given pairs of cloth patches may meet, a <= b, each once: all others stay
@@ -68,7 +69,7 @@ class Proximity {
   void measure(WorkClock* clock) { clock_ = clock; }
 
   /// The fastest vertex when the last update gave up on diverged cloth, -1 if it did not.
-  int wildest() const { return wildest_; }
+  int diverged_vertex() const { return diverged_vertex_; }
 
   const Surface& surface() const { return surface_; }
   const std::vector<FeaturePair>& vertex_triangle() const { return vertex_triangle_; }
@@ -104,20 +105,20 @@ class Proximity {
   };
 
   void find_tight(const std::vector<double>& half_thickness, JobSystem& jobs);
-  int thing_of(int vertex) const;
+  int body_of(int vertex) const;
   void find_moved(const SurfaceMotion& motion);
   void find_drift(const SurfaceMotion& motion);
   void choose_slack();
   void rebuild(const SurfaceMotion& motion, JobSystem& jobs);
   void mark_patches(std::span<const ItemPair> patch_pairs);
-  bool pass(int triangle, int other) const;
+  bool is_non_colliding(int triangle, int other) const;
   bool renew(const SurfaceMotion& motion, JobSystem& jobs);
   void mark_moved(const SurfaceMotion& motion);
   void drop_pairs_of_moved();
   void measure_patches(JobSystem& jobs);
   void find_folded();
   SweptBox box_of(std::span<const int> vertices) const;
-  int find_wildest(const SurfaceMotion& motion) const;
+  int find_diverged_vertex(const SurfaceMotion& motion) const;
   void build_tree(AabbTree& tree, int begin, int end, JobSystem& jobs);
   bool refit_tree(AabbTree& tree, int begin, AabbTree::Extent extent, JobSystem& jobs);
   bool has_bodies() const { return patches_.size() > patches_.num_cloth(); }
@@ -130,12 +131,12 @@ class Proximity {
   void add_pairs_of_patches(const PatchPair& pair, PairChunk& chunk) const;
   bool stay_apart(int first, int second) const;
   void add_pairs_of_triangles(int first, int second, const SweptBox& box_a, const SweptBox& box_b,
-                              bool is_fan, PairChunk& chunk) const;
-  void add_vertex_triangle(int vertex, int triangle, bool is_fan, PairChunk& chunk) const;
-  void add_edge_edge(int a, int b, bool is_fan, PairChunk& chunk) const;
+                              bool is_one_ring_pair, PairChunk& chunk) const;
+  void add_vertex_triangle(int vertex, int triangle, bool is_one_ring_pair, PairChunk& chunk) const;
+  void add_edge_edge(int a, int b, bool is_one_ring_pair, PairChunk& chunk) const;
   template <std::size_t kA, std::size_t kB, class Distance>
-  void add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b, bool is_fan,
-                const Distance& distance, std::vector<FeaturePair>& pairs) const;
+  void add_pair(FeaturePair pair, const std::array<int, kA>& a, const std::array<int, kB>& b,
+                bool is_one_ring_pair, const Distance& distance, std::vector<FeaturePair>& pairs) const;
   PointTriangleDistance distance_to_triangle(const FeaturePair& pair, const std::vector<Vec3>& x) const;
   EdgeEdgeDistance distance_of_edges(const FeaturePair& pair, const std::vector<Vec3>& x) const;
   bool are_tight(int vertex, int other) const;
@@ -143,17 +144,17 @@ class Proximity {
   template <std::size_t kA, std::size_t kB>
   double reach_between(const std::array<int, kA>& a, const std::array<int, kB>& b) const;
   bool is_sharp(int vertex, const std::vector<Float4>& x) const;
-  void find_fans(JobSystem& jobs);
+  void find_one_ring_pairs(JobSystem& jobs);
 
   WorkClock* clock_ = nullptr;
   Surface surface_;
   std::vector<Vec3> rest_;
   int num_cloth_vertices_ = 0, num_cloth_triangles_ = 0;
-  std::vector<int> thing_of_triangle_;
+  std::vector<int> body_of_triangle_;
   std::vector<char> is_tight_;     // (num_vertices) nearer to its own cloth at rest than its thickness …
   std::vector<double> tight_for_;  // … for these half thicknesses; empty: out of date [m]
-  std::vector<char> passes_;
-  std::size_t num_things_ = 0;
+  std::vector<char> non_colliding_;
+  std::size_t num_bodies_ = 0;
   Slack slacks_;
   double slack_ = 0;       // for the next lists [m]
   double made_with_ = 0;   // of the present lists [m]
@@ -166,7 +167,7 @@ class Proximity {
   Vec3 origin_ = Vec3::Zero();       // of the boxes
   std::vector<FeaturePair> vertex_triangle_, edge_edge_;
   std::optional<double> longest_edge_;  // at the last search, if requested [m]
-  int wildest_ = -1;
+  int diverged_vertex_ = -1;
 
   // State at the last search.
   Moment at_start_, at_end_;
@@ -194,7 +195,8 @@ class Proximity {
   std::vector<PairChunk> chunks_;
   std::vector<int> begin_of_a_;
   std::vector<FeaturePair> ordered_;
-  std::vector<ItemPair> fans_;  // triangles that share a vertex at which the cloth forms a sharp tip
+  std::vector<ItemPair>
+      one_ring_pairs_;  // triangles that share a vertex at which the cloth forms a sharp tip
 };
 
 }  // namespace weft::engine

@@ -36,16 +36,16 @@ void Surface::add(const std::vector<Triangle>& mesh_triangles, int mesh_vertices
   num_vertices += mesh_vertices;
 }
 
-void Surface::build_fans() {
-  fan_begin.assign(num_vertices + 1, 0);
+void Surface::build_one_rings() {
+  one_ring_begin.assign(num_vertices + 1, 0);
   for (const Triangle& t : triangles) {
-    for (const int v : t) ++fan_begin[v + 1];
+    for (const int v : t) ++one_ring_begin[v + 1];
   }
-  for (int v = 0; v < num_vertices; ++v) fan_begin[v + 1] += fan_begin[v];
-  fan.resize(fan_begin[num_vertices]);
-  std::vector<int> next(fan_begin.begin(), fan_begin.end() - 1);
+  for (int v = 0; v < num_vertices; ++v) one_ring_begin[v + 1] += one_ring_begin[v];
+  one_ring.resize(one_ring_begin[num_vertices]);
+  std::vector<int> next(one_ring_begin.begin(), one_ring_begin.end() - 1);
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
-    for (const int v : triangles[t]) fan[next[v]++] = t;
+    for (const int v : triangles[t]) one_ring[next[v]++] = t;
   }
 }
 

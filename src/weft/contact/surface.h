@@ -24,13 +24,14 @@ struct Surface {
   std::vector<Triangle> triangles;        // vertices under the common numbering
   std::vector<std::array<int, 2>> edges;  // each once
   std::vector<OwnedFeatures> owned;       // (triangles)
-  std::vector<int> fan_begin;             // (vertices + 1) into `fan`
-  std::vector<int> fan;                   // one-rings: the triangles around each vertex
+  std::vector<int> one_ring_begin;        // (vertices + 1) into `one_ring`
+  std::vector<int> one_ring;              // one-rings: the triangles around each vertex
   int num_vertices = 0;
 
   /// The one-ring of a vertex: its triangles, in ascending order.
   std::span<const int> triangles_at(int vertex) const {
-    return std::span(fan).subspan(fan_begin[vertex], fan_begin[vertex + 1] - fan_begin[vertex]);
+    return std::span(one_ring).subspan(one_ring_begin[vertex],
+                                       one_ring_begin[vertex + 1] - one_ring_begin[vertex]);
   }
 
   /// Calls body(triangle number) for the triangles that have all of these vertices.
@@ -46,7 +47,7 @@ struct Surface {
   void add(const std::vector<Triangle>& mesh_triangles, int mesh_vertices);
 
   /// Builds the one-rings. Call it after the last add().
-  void build_fans();
+  void build_one_rings();
 };
 
 /// Number of vertices that the two triangles share, 0 to 3.

@@ -17,10 +17,10 @@ namespace {
 constexpr int kMinRounds = 60, kMaxRounds = 600;  // limits of rounds …
 constexpr int kMaxTriangles = 4'000'000;          // … and of triangles tested in them: some seconds
 constexpr int kPullPasses = 20;                   // over all edges in a round
-constexpr double kMostStretch = 1.1;              // of an edge, or its stretch at the start
-constexpr double kLeastGap = 1e-4;                // between cloth and the features it intersected [m]
-constexpr double kMostOfEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
-constexpr double kShortening = 0.1;  // of the mean edge: how far a cut's end moves in a round
+constexpr double kMaxStretch = 1.1;               // of an edge, or its stretch at the start
+constexpr double kMinGap = 1e-4;                  // between cloth and the features it intersected [m]
+constexpr double kMaxPushPerEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
+constexpr double kShortening = 0.1;      // of the mean edge: how far a cut's end moves in a round
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -38,68 +38,70 @@ struct Way {
 
 class Untangler {
  public:
-  Untangler(const Tangle& tangle, std::vector<Vec3>& x)
-      : tangle_(tangle), surface_(*tangle.surface), inverse_mass_(*tangle.inverse_mass), x_(x) {
+  Untangler(const RepairInput& input, std::vector<Vec3>& x)
+      : input_(input), surface_(*input.surface), inverse_mass_(*input.inverse_mass), x_(x) {
     measure_edges();
-    for (const Tangle::Solid& solid : tangle.solids) meshes_.push_back(build_mesh(solid));
+    for (const RepairInput::Solid& solid : input.solids) meshes_.push_back(build_mesh(solid));
     build_trees();
   }
 
   /// Keeps the best of all rounds.
   UntangleResult run() {
     UntangleResult result;
-    result.before = result.after = find_knots();
+    result.before = result.after = find_intersections();
     std::vector<Vec3> best = x_;
-    Knots knots = result.after;
+    Intersections intersections = result.after;
     const int num_triangles = static_cast<int>(surface_.triangles.size());
     const int most = std::clamp(kMaxTriangles / std::max(num_triangles, 1), kMinRounds, kMaxRounds);
-    while (!knots.empty() && result.rounds < most) {
+    while (!intersections.empty() && result.rounds < most) {
       ++result.rounds;
-      move_apart(knots);
-      knots = find_knots();
-      if (knots.size() >= result.after.size()) continue;
-      result.after = knots;
+      move_apart(intersections);
+      intersections = find_intersections();
+      if (intersections.size() >= result.after.size()) continue;
+      result.after = intersections;
       best = x_;
     }
     x_ = best;
     return result;
   }
 
-  Knots find_knots() {
-    Knots knots;
+  Intersections find_intersections() {
+    Intersections intersections;
     cloth_tree_.refit([&](int t) { return box_of(x_, surface_.triangles[t]); }, *jobs_);
     PairSearch search;
     cloth_tree_.find_self_pairs(*jobs_, search);
-    for (const auto& [s, t] : search.pairs) add_pierced(s, t, knots.pierced);
-    const int first = tangle_.num_cloth_triangles;
+    for (const auto& [s, t] : search.pairs) add_edge_face(s, t, intersections.edge_face);
+    const int first = input_.num_cloth_triangles;
     if (static_cast<int>(surface_.triangles.size()) > first) {
       cloth_tree_.find_pairs(body_tree_, *jobs_, search);
-      for (const auto& [s, t] : search.pairs) add_pierced(s, t + first, knots.pierced);
+      for (const auto& [s, t] : search.pairs) add_edge_face(s, t + first, intersections.edge_face);
     }
-    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
-      const std::span<const int> fan = surface_.triangles_at(v);
-      for (std::size_t f = 0; f < fan.size(); ++f) {
-        for (std::size_t g = f + 1; g < fan.size(); ++g) add_pierced(fan[f], fan[g], knots.pierced);
+    for (int v = 0; v < input_.num_cloth_vertices; ++v) {
+      const std::span<const int> one_ring = surface_.triangles_at(v);
+      for (std::size_t f = 0; f < one_ring.size(); ++f) {
+        for (std::size_t g = f + 1; g < one_ring.size(); ++g)
+          add_edge_face(one_ring[f], one_ring[g], intersections.edge_face);
       }
     }
-    std::sort(knots.pierced.begin(), knots.pierced.end());
-    knots.pierced.erase(std::unique(knots.pierced.begin(), knots.pierced.end()), knots.pierced.end());
+    std::sort(intersections.edge_face.begin(), intersections.edge_face.end());
+    intersections.edge_face.erase(std::unique(intersections.edge_face.begin(), intersections.edge_face.end()),
+                                  intersections.edge_face.end());
     for (std::size_t s = 0; s < meshes_.size(); ++s) {
       for (const int v : find_inside(s))
-        knots.inside.push_back({v, tangle_.solids[s].collider, way_out(s, x_[v]).depth});
+        intersections.inside.push_back({v, input_.solids[s].collider, way_out(s, x_[v]).depth});
     }
-    return knots;
+    return intersections;
   }
 
  private:
   /// A round.
-  void move_apart(const Knots& knots) {
+  void move_apart(const Intersections& intersections) {
     for (std::size_t s = 0; s < meshes_.size(); ++s) leave(s);
     push_ = std::vector<Vec3>(x_.size(), Vec3::Zero());
     count_ = std::vector<int>(x_.size(), 0);
-    find_cuts(knots.pierced);
-    for (const Pierced& p : knots.pierced) push_back(p);
-    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+    find_cuts(intersections.edge_face);
+    for (const EdgeFaceIntersection& p : intersections.edge_face) push_back(p);
+    for (int v = 0; v < input_.num_cloth_vertices; ++v) {
       if (count_[v] > 0) x_[v] += push_[v] / count_[v];
     }
     pull();
@@ -107,7 +109,7 @@ class Untangler {
     round();
   }
 
-  bool is_cloth(int v) const { return v < tangle_.num_cloth_vertices; }
+  bool is_cloth(int v) const { return v < input_.num_cloth_vertices; }
   bool is_free(int v) const { return inverse_mass_[v] > 0; }
 
   void measure_edges() {
@@ -119,8 +121,8 @@ class Untangler {
       neighbours_[i].push_back({j, edge});
       neighbours_[j].push_back({i, edge});
       const bool is_of_cloth = is_cloth(i);
-      const double rest = is_of_cloth ? (tangle_.rest[i] - tangle_.rest[j]).norm() : 0.0;
-      longest_.push_back(std::max(kMostStretch * rest, (x_[i] - x_[j]).norm()));
+      const double rest = is_of_cloth ? (input_.rest[i] - input_.rest[j]).norm() : 0.0;
+      longest_.push_back(std::max(kMaxStretch * rest, (x_[i] - x_[j]).norm()));
       if (!is_of_cloth) continue;
       sum += rest;
       ++count;
@@ -128,7 +130,7 @@ class Untangler {
     mean_edge_ = count > 0 ? sum / count : 0;
   }
 
-  SolidMesh build_mesh(const Tangle::Solid& solid) const {
+  SolidMesh build_mesh(const RepairInput::Solid& solid) const {
     SolidMesh result;
     const MeshShape* shape = std::get_if<MeshShape>(&solid.shape);
     if (!shape) return result;
@@ -146,7 +148,7 @@ class Untangler {
   }
 
   void build_trees() {
-    const int num_cloth = tangle_.num_cloth_triangles, num = static_cast<int>(surface_.triangles.size());
+    const int num_cloth = input_.num_cloth_triangles, num = static_cast<int>(surface_.triangles.size());
     std::vector<Aabb> boxes;
     for (const Triangle& t : surface_.triangles) boxes.push_back(box_of(x_, t));
     cloth_tree_.build({boxes.begin(), boxes.begin() + num_cloth},
@@ -156,12 +158,12 @@ class Untangler {
 
   // ---- Intersections ----
 
-  void add_pierced(int s, int t, std::vector<Pierced>& pierced) const {
-    if (tangle_.pass(surface_.triangles[s][0], surface_.triangles[t][0])) return;
+  void add_edge_face(int s, int t, std::vector<EdgeFaceIntersection>& edge_face) const {
+    if (input_.non_colliding(surface_.triangles[s][0], surface_.triangles[t][0])) return;
     for (const auto& [owner, other] : {std::pair(s, t), std::pair(t, s)}) {
       const Triangle& triangle = surface_.triangles[other];
       for (const int e : surface_.owned[owner].edge) {
-        if (e >= 0 && pierces(surface_.edges[e], triangle)) pierced.push_back({e, other});
+        if (e >= 0 && pierces(surface_.edges[e], triangle)) edge_face.push_back({e, other});
       }
     }
   }
@@ -175,22 +177,22 @@ class Untangler {
 
   /// Free cloth particles in a solid.
   std::vector<int> find_inside(std::size_t s) const {
-    const auto& [collider, shape, first_vertex, end_vertex] = tangle_.solids[s];
+    const auto& [collider, shape, first_vertex, end_vertex] = input_.solids[s];
     std::vector<int> found;
-    const std::vector<Vec3> cloth(x_.begin(), x_.begin() + tangle_.num_cloth_vertices);
+    const std::vector<Vec3> cloth(x_.begin(), x_.begin() + input_.num_cloth_vertices);
     std::vector<int> winding;
     if (std::holds_alternative<MeshShape>(shape)) winding = compute_winding_numbers(meshes_[s].mesh, cloth);
-    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
+    for (int v = 0; v < input_.num_cloth_vertices; ++v) {
       const bool is_inside =
           winding.empty() ? signed_distance(shape, cloth[v]).distance < 0 : winding[v] != 0;
-      if (is_inside && is_free(v) && !tangle_.pass_solid(v, collider)) found.push_back(v);
+      if (is_inside && is_free(v) && !input_.non_colliding_solid(v, collider)) found.push_back(v);
     }
     return found;
   }
 
   /// The way out for a particle that is inside.
   Way way_out(std::size_t s, const Vec3& p) const {
-    const ColliderShape& shape = tangle_.solids[s].shape;
+    const ColliderShape& shape = input_.solids[s].shape;
     if (!std::holds_alternative<MeshShape>(shape)) {
       const SignedDistance d = signed_distance(shape, p);
       return {-d.distance, d.normal};
@@ -210,7 +212,7 @@ class Untangler {
     return {depth, depth > 1e-9 ? Vec3((foot - p) / depth) : face};
   }
 
-  double gap(int v) const { return std::max(kLeastGap, (*tangle_.half_thickness)[v]); }
+  double gap(int v) const { return std::max(kMinGap, (*input_.half_thickness)[v]); }
 
   /// Moves all cloth out of a solid; triangles that only their corners have left are pushed out whole.
   void leave(std::size_t s) {
@@ -226,7 +228,7 @@ class Untangler {
         p += (ways[n].depth + gap(inside[n])) * ways[n].out;
       }
     }
-    const ColliderShape& shape = tangle_.solids[s].shape;
+    const ColliderShape& shape = input_.solids[s].shape;
     if (!std::holds_alternative<MeshShape>(shape)) lift_triangles(shape);
   }
 
@@ -255,19 +257,19 @@ class Untangler {
 
   /// Sphere tracing: no step is longer than the distance to the surface, so that the first way out is found.
   void go_along(std::size_t s, const Vec3& direction, Vec3& p) const {
-    constexpr int kMostSteps = 1000;
-    for (int step = 0; step < kMostSteps && is_in(s, p); ++step)
-      p += (way_out(s, p).depth + kLeastGap) * direction;
+    constexpr int kMaxSteps = 1000;
+    for (int step = 0; step < kMaxSteps && is_in(s, p); ++step)
+      p += (way_out(s, p).depth + kMinGap) * direction;
   }
 
   bool is_in(std::size_t s, const Vec3& p) const {
-    const ColliderShape& shape = tangle_.solids[s].shape;
+    const ColliderShape& shape = input_.solids[s].shape;
     if (!std::holds_alternative<MeshShape>(shape)) return signed_distance(shape, p).distance < 0;
     return compute_winding_numbers(meshes_[s].mesh, {p})[0] != 0;
   }
 
   void lift_triangles(const ColliderShape& shape) {
-    for (int t = 0; t < tangle_.num_cloth_triangles; ++t) {
+    for (int t = 0; t < input_.num_cloth_triangles; ++t) {
       const Triangle& v = surface_.triangles[t];
       const TriangleSignedDistance d = signed_distance(shape, x_[v[0]], x_[v[1]], x_[v[2]]);
       if (d.distance >= 0) continue;
@@ -275,7 +277,7 @@ class Untangler {
       for (int k = 0; k < 3; ++k) give += is_free(v[k]) ? d.weights[k] * d.weights[k] : 0.0;
       if (give == 0) continue;
       for (int k = 0; k < 3; ++k) {
-        if (is_free(v[k])) x_[v[k]] += (kLeastGap - d.distance) * d.weights[k] / give * d.normal;
+        if (is_free(v[k])) x_[v[k]] += (kMinGap - d.distance) * d.weights[k] / give * d.normal;
       }
     }
   }
@@ -284,19 +286,19 @@ class Untangler {
 
   bool is_solid(int triangle) const {
     const int v = surface_.triangles[triangle][0];
-    return std::any_of(tangle_.solids.begin(), tangle_.solids.end(),
-                       [&](const Tangle::Solid& s) { return v >= s.first_vertex && v < s.end_vertex; });
+    return std::any_of(input_.solids.begin(), input_.solids.end(),
+                       [&](const RepairInput::Solid& s) { return v >= s.first_vertex && v < s.end_vertex; });
   }
 
   /// The cut of a surface by another one, or by itself, with the lighter of its two parts.
   struct Cut {
     int mesh = 0;
-    std::vector<Pierced> crossings;
+    std::vector<EdgeFaceIntersection> crossings;
     int side = 0;               // of the cutting triangles on which the lighter part is: +1 along normals
     double weight = kInfinity;  // of the lighter part [kg]
   };
 
-  int mesh_at(int vertex) const { return mesh_of(tangle_.first_vertex, vertex); }
+  int mesh_at(int vertex) const { return mesh_of(input_.first_vertex, vertex); }
 
   int side_of(int vertex, const Triangle& t) const { return area(t).dot(x_[vertex] - x_[t[0]]) > 0 ? 1 : -1; }
 
@@ -304,7 +306,7 @@ class Untangler {
   /// the curve is 0.
   using CutKey = std::array<int, 3>;
 
-  CutKey key_of(const Pierced& p) const {
+  CutKey key_of(const EdgeFaceIntersection& p) const {
     const int a = mesh_at(surface_.edges[p.edge][0]), b = mesh_at(surface_.triangles[p.triangle][0]);
     return {a, b, a == b ? root_of(p.edge) : 0};
   }
@@ -314,10 +316,10 @@ class Untangler {
     return edge;
   }
 
-  void find_cuts(const std::vector<Pierced>& pierced) {
-    join_curves(pierced);
+  void find_cuts(const std::vector<EdgeFaceIntersection>& edge_face) {
+    join_curves(edge_face);
     cuts_.clear();
-    for (const Pierced& p : pierced) {
+    for (const EdgeFaceIntersection& p : edge_face) {
       if (!is_solid(p.triangle)) cuts_[key_of(p)].crossings.push_back(p);
     }
     for (auto& [key, cut] : cuts_) {
@@ -327,11 +329,11 @@ class Untangler {
   }
 
   /// Edges that are pierced at a common adjacent triangle belong to one curve.
-  void join_curves(const std::vector<Pierced>& pierced) {
+  void join_curves(const std::vector<EdgeFaceIntersection>& edge_face) {
     curve_.resize(surface_.edges.size());
     std::iota(curve_.begin(), curve_.end(), 0);
     std::map<int, int> edge_of_triangle;
-    for (const Pierced& p : pierced) {
+    for (const EdgeFaceIntersection& p : edge_face) {
       surface_.for_triangles_with(surface_.edges[p.edge], [&](int t) {
         const auto [known, is_new] = edge_of_triangle.try_emplace(t, p.edge);
         if (is_new) return;
@@ -344,10 +346,10 @@ class Untangler {
   /// Finds the lighter part: each particle takes the side of the nearest end of a cut edge on its side. This
   /// extends a cut that ends before the cloth's border.
   void weigh(Cut& cut) const {
-    const int begin = tangle_.first_vertex[cut.mesh], end = tangle_.first_vertex[cut.mesh + 1];
+    const int begin = input_.first_vertex[cut.mesh], end = input_.first_vertex[cut.mesh + 1];
     std::vector<int> side(end - begin, 0), queue;
     std::vector<char> is_cut(surface_.edges.size(), 0);
-    for (const Pierced& p : cut.crossings) {
+    for (const EdgeFaceIntersection& p : cut.crossings) {
       is_cut[p.edge] = 1;
       for (const int v : surface_.edges[p.edge]) {
         if (side[v - begin] == 0) queue.push_back(v);
@@ -373,7 +375,7 @@ class Untangler {
 
   /// The end of the edge that must move to the other side, if the lighter part of its own surface is lighter
   /// than that of the other one.
-  int find_wrong(const Pierced& p) const {
+  int find_wrong(const EdgeFaceIntersection& p) const {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
     const CutKey key = key_of(p);
@@ -405,7 +407,7 @@ class Untangler {
 
   // ---- Moves ----
 
-  void push_back(const Pierced& p) {
+  void push_back(const EdgeFaceIntersection& p) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
     if (is_solid(p.triangle)) return push_from_solid(p, area(t).stableNormalized());
@@ -421,11 +423,11 @@ class Untangler {
     const Vec3 point = x_[wrong] + d.s * (x_[right] - x_[wrong]);
     Vec3 normal = area(t).stableNormalized();
     if (normal.dot(x_[right] - x_[wrong]) < 0) normal = -normal;
-    const double lack = normal.dot(point - x_[wrong]) + gap(wrong) + gap(t[0]);
-    move(std::array{wrong}, std::array{1.0}, t, d.weights, limited(lack) * normal);
+    const double shortfall = normal.dot(point - x_[wrong]) + gap(wrong) + gap(t[0]);
+    move(std::array{wrong}, std::array{1.0}, t, d.weights, limited(shortfall) * normal);
   }
 
-  double limited(double length) const { return std::min(length, kMostOfEdge * mean_edge_); }
+  double limited(double length) const { return std::min(length, kMaxPushPerEdge * mean_edge_); }
 
   /// The outward direction at an edge of a closed mesh; empty for an open one.
   std::optional<Vec3> ridge_direction(int edge) const {
@@ -439,7 +441,7 @@ class Untangler {
   }
 
   /// Pushes out cloth that penetrates a solid although all its corners are outside.
-  void push_from_solid(const Pierced& p, const Vec3& out) {
+  void push_from_solid(const EdgeFaceIntersection& p, const Vec3& out) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
     const SegmentTriangleDistance d = segment_triangle_distance(x_[i], x_[j], x_[t[0]], x_[t[1]], x_[t[2]]);
@@ -451,12 +453,12 @@ class Untangler {
   /// pierced one, moves towards the inside of the cut:
   ///
   ///     Σ R − (E·R)/(E·N) N        R along the cut from the edge, E along the edge, N the triangle's normal
-  void shorten_cut(const Pierced& p) {
+  void shorten_cut(const EdgeFaceIntersection& p) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
     const Vec3 n = area(t).stableNormalized(), e = (x_[j] - x_[i]).stableNormalized();
-    constexpr double kLeastSine = 0.1;
-    const double sine = std::abs(e.dot(n)) > kLeastSine ? e.dot(n) : std::copysign(kLeastSine, e.dot(n));
+    constexpr double kMinSine = 0.1;
+    const double sine = std::abs(e.dot(n)) > kMinSine ? e.dot(n) : std::copysign(kMinSine, e.dot(n));
     Vec3 way = Vec3::Zero();
     surface_.for_triangles_with(surface_.edges[p.edge], [&](int s) {
       const Triangle& side = surface_.triangles[s];
@@ -515,13 +517,13 @@ class Untangler {
 
   /// Rounds to positions that can be stored.
   void round() {
-    for (int v = 0; v < tangle_.num_cloth_vertices; ++v) {
-      const Vec3& origin = tangle_.origins[v];
+    for (int v = 0; v < input_.num_cloth_vertices; ++v) {
+      const Vec3& origin = input_.origins[v];
       x_[v] = origin + (x_[v] - origin).cast<float>().cast<double>();
     }
   }
 
-  const Tangle& tangle_;
+  const RepairInput& input_;
   const Surface& surface_;
   const std::vector<double>& inverse_mass_;
   std::vector<Vec3>& x_;
@@ -539,13 +541,13 @@ class Untangler {
 
 }  // namespace
 
-Knots find_knots(const Tangle& tangle, const std::vector<Vec3>& positions) {
+Intersections find_intersections(const RepairInput& input, const std::vector<Vec3>& positions) {
   std::vector<Vec3> x = positions;
-  return Untangler(tangle, x).find_knots();
+  return Untangler(input, x).find_intersections();
 }
 
-UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions) {
-  return Untangler(tangle, positions).run();
+UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions) {
+  return Untangler(input, positions).run();
 }
 
 }  // namespace weft::engine

@@ -21,7 +21,7 @@
 namespace weft::engine {
 
 /// Repair input.
-struct Tangle {
+struct RepairInput {
   const Surface* surface = nullptr;  // cloth first, then the meshes of colliders
   std::vector<int> first_vertex;     // of each cloth, then of each mesh, and the end of the last one
   int num_cloth_vertices = 0, num_cloth_triangles = 0;
@@ -37,14 +37,14 @@ struct Tangle {
   std::vector<Solid> solids;  // primitive shapes and closed meshes
   // Collision filter, true: the bodies do not collide. Arguments: two vertices; or a cloth vertex and a
   // collider. Never empty.
-  std::function<bool(int, int)> pass, pass_solid;
+  std::function<bool(int, int)> non_colliding, non_colliding_solid;
 };
 
 /// Edge–face intersection: an edge that pierces a triangle.
-struct Pierced {
+struct EdgeFaceIntersection {
   int edge = 0, triangle = 0;
-  bool operator==(const Pierced&) const = default;
-  auto operator<=>(const Pierced&) const = default;
+  bool operator==(const EdgeFaceIntersection&) const = default;
+  auto operator<=>(const EdgeFaceIntersection&) const = default;
 };
 
 /// A particle inside a solid.
@@ -53,24 +53,24 @@ struct Inside {
   double depth = 0;  // [m]
 };
 
-struct Knots {
-  std::vector<Pierced> pierced;
+struct Intersections {
+  std::vector<EdgeFaceIntersection> edge_face;
   std::vector<Inside> inside;
 
-  bool empty() const { return pierced.empty() && inside.empty(); }
-  std::size_t size() const { return pierced.size() + inside.size(); }
+  bool empty() const { return edge_face.empty() && inside.empty(); }
+  std::size_t size() const { return edge_face.size() + inside.size(); }
 };
 
 /// Finds the intersections with vertices at `positions` (num_vertices).
-Knots find_knots(const Tangle& tangle, const std::vector<Vec3>& positions);
+Intersections find_intersections(const RepairInput& input, const std::vector<Vec3>& positions);
 
 struct UntangleResult {
-  Knots before, after;
+  Intersections before, after;
   int rounds = 0;
 };
 
 /// Moves cloth positions (num_vertices) until no intersections are left, as far as possible. Takes seconds
 /// for thousands of particles; a no-op without intersections.
-UntangleResult untangle(const Tangle& tangle, std::vector<Vec3>& positions);
+UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions);
 
 }  // namespace weft::engine

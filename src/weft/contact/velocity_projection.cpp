@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kVelocityTolerance = 1e-4;  // [m/s]
 constexpr int kVelocityPasses = 12;
-constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 
 using Row = VelocityProjection::Row;
 
@@ -80,7 +80,7 @@ WEFT_ALWAYS_INLINE double slow_slide(Row& row, Quad* velocities, Quad* slowed) {
   const double length = std::sqrt(dot(impulse, impulse));
   // Clamped to µ P; for several vertices without a branch, which processors cannot predict.
   if (kVertices > 1)
-    impulse = most / std::max(length, std::max(most, kLeast)) * impulse;
+    impulse = most / std::max(length, std::max(most, kSmallest)) * impulse;
   else if (length > most)
     impulse = most / length * impulse;
   const Quad change = impulse - row.friction_impulse;

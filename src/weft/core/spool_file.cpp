@@ -9,8 +9,8 @@
 #include "weft/error.h"
 
 #ifndef _WIN32
-#include <cstdlib>
 #include <unistd.h>
+#include <cstdlib>
 #endif
 
 namespace weft::engine {

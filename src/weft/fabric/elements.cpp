@@ -6,7 +6,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kLeastSine = 1e-6;  // minimum for the angle between a direction and a triangle's normal
+constexpr double kMinSine = 1e-6;  // minimum for the angle between a direction and a triangle's normal
 
 struct TriangleCorners3 {
   Vec3 a, b, c;
@@ -22,7 +22,7 @@ TriangleCorners3 corners(const TriangleMesh& mesh, int t) {
 Vec3 project(const Vec3& direction, const Vec3& normal) {
   const Vec3 n = normal.normalized();
   const Vec3 flat = direction - direction.dot(n) * n;
-  return flat.norm() > kLeastSine * direction.norm() ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
+  return flat.norm() > kMinSine * direction.norm() ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
 }
 
 Vec3 any_axis(const Vec3& normal) {

@@ -17,7 +17,7 @@ std::string text(double number) {
 }
 
 /// Collects mistakes, at most one per field.
-class Judge {
+class FabricChecker {
  public:
   void require(bool is_right, const char* field, double value, const std::string& rule) {
     if (!is_right || !std::isfinite(value)) refuse(field, "must be " + rule + ", is " + text(value));
@@ -35,27 +35,28 @@ class Judge {
   std::vector<FabricMistake> mistakes;
 };
 
-void judge_ranges(const Fabric& f, Judge& judge) {
-  judge.require(f.density > 0, "density", f.density, "above 0 kg/m²");
-  judge.require(f.c11 > 0, "c11", f.c11, "above 0 N/m");
-  judge.require(f.c22 > 0, "c22", f.c22, "above 0 N/m");
-  judge.require(true, "c12", f.c12, "a finite number in N/m");
-  judge.require(f.g > 0, "g", f.g, "above 0 N/m");
-  judge.require(f.bend_warp >= 0, "bend_warp", f.bend_warp, "0 N·m or above");
-  judge.require(f.bend_weft >= 0, "bend_weft", f.bend_weft, "0 N·m or above");
-  judge.require(f.bend_bias >= 0, "bend_bias", f.bend_bias, "0 N·m or above");
-  judge.require(f.damping >= 0 && f.damping <= 10, "damping", f.damping,
-                "from 0 to 10 s (a time constant, not N·s/m)");
-  judge.require(f.thickness >= 1e-6 && f.thickness <= 0.05, "thickness", f.thickness, "from 1e-6 to 0.05 m");
-  judge.require(f.friction >= 0 && f.friction <= 10, "friction", f.friction, "from 0 to 10");
-  judge.require(f.strain_limit >= 0 && f.strain_limit <= 10, "strain_limit", f.strain_limit,
-                "from 0 (none) to 10");
+void check_ranges(const Fabric& f, FabricChecker& checker) {
+  checker.require(f.density > 0, "density", f.density, "above 0 kg/m²");
+  checker.require(f.c11 > 0, "c11", f.c11, "above 0 N/m");
+  checker.require(f.c22 > 0, "c22", f.c22, "above 0 N/m");
+  checker.require(true, "c12", f.c12, "a finite number in N/m");
+  checker.require(f.g > 0, "g", f.g, "above 0 N/m");
+  checker.require(f.bend_warp >= 0, "bend_warp", f.bend_warp, "0 N·m or above");
+  checker.require(f.bend_weft >= 0, "bend_weft", f.bend_weft, "0 N·m or above");
+  checker.require(f.bend_bias >= 0, "bend_bias", f.bend_bias, "0 N·m or above");
+  checker.require(f.damping >= 0 && f.damping <= 10, "damping", f.damping,
+                  "from 0 to 10 s (a time constant, not N·s/m)");
+  checker.require(f.thickness >= 1e-6 && f.thickness <= 0.05, "thickness", f.thickness,
+                  "from 1e-6 to 0.05 m");
+  checker.require(f.friction >= 0 && f.friction <= 10, "friction", f.friction, "from 0 to 10");
+  checker.require(f.strain_limit >= 0 && f.strain_limit <= 10, "strain_limit", f.strain_limit,
+                  "from 0 (none) to 10");
 }
 
 /// Relations between the numbers.
-void judge_relations(const Fabric& f, Judge& judge) {
+void check_relations(const Fabric& f, FabricChecker& checker) {
   if (f.c12 * f.c12 >= f.c11 * f.c22) {
-    judge.refuse(
+    checker.refuse(
         "c12", "must be less than √(c11 c22) = " + text(std::sqrt(f.c11 * f.c22)) + " N/m in magnitude, is " +
                    text(f.c12) +
                    ": the membrane is not positive definite, so some stretching would release energy");
@@ -63,29 +64,29 @@ void judge_relations(const Fabric& f, Judge& judge) {
   const double roots = std::sqrt(f.bend_warp) - std::sqrt(f.bend_weft);
   const double least_bias = roots * roots / 4;
   if (f.bend_bias < least_bias) {
-    judge.refuse("bend_bias", "must be at least (√bend_warp − √bend_weft)²/4 = " + text(least_bias) +
-                                  " N·m, is " + text(f.bend_bias) + ": some bending would release energy");
+    checker.refuse("bend_bias", "must be at least (√bend_warp − √bend_weft)²/4 = " + text(least_bias) +
+                                    " N·m, is " + text(f.bend_bias) + ": some bending would release energy");
   }
   if (f.density > kDensityOfLead * f.thickness) {
-    judge.refuse("density", "must be at most " + text(kDensityOfLead * f.thickness) + " kg/m², is " +
-                                text(f.density) + ": heavier than sheet lead of the fabric's thickness, " +
-                                text(f.thickness) + " m");
+    checker.refuse("density", "must be at most " + text(kDensityOfLead * f.thickness) + " kg/m², is " +
+                                  text(f.density) + ": heavier than sheet lead of the fabric's thickness, " +
+                                  text(f.thickness) + " m");
   }
 }
 
-void judge_curve(const std::vector<StretchPoint>& curve, const char* field, Judge& judge) {
+void check_curve(const std::vector<StretchPoint>& curve, const char* field, FabricChecker& checker) {
   StretchPoint last;
   for (const StretchPoint& point : curve) {
     const bool rises = point.strain > last.strain && point.tension > last.tension &&
                        std::isfinite(point.strain) && std::isfinite(point.tension);
     if (!rises) {
-      return judge.refuse(field, "must increase from the origin, does not at strain " + text(point.strain));
+      return checker.refuse(field, "must increase from the origin, does not at strain " + text(point.strain));
     }
     last = point;
   }
-  if (curve.size() > kMostStretchPoints)
-    judge.refuse(field, "must have at most " + std::to_string(kMostStretchPoints) + " points, has " +
-                            std::to_string(curve.size()));
+  if (curve.size() > kMaxStretchPoints)
+    checker.refuse(field, "must have at most " + std::to_string(kMaxStretchPoints) + " points, has " +
+                              std::to_string(curve.size()));
 }
 
 /// Smallest slope of the stress along a thread [N/m].
@@ -98,34 +99,34 @@ double least_slope(const std::vector<StretchPoint>& curve, double linear) {
   return least;
 }
 
-void judge_slopes(const Fabric& f, Judge& judge) {
+void check_slopes(const Fabric& f, FabricChecker& checker) {
   const double warp = least_slope(f.stretch_warp, f.c11), weft = least_slope(f.stretch_weft, f.c22);
   const char* field = warp / f.c11 < weft / f.c22 ? "stretch_warp" : "stretch_weft";
   if (warp > 0 && weft > 0 && warp * weft > f.c12 * f.c12) return;
-  judge.refuse(field,
-               "is too flat: tension over stretch must increase everywhere, and the product of the minimum "
-               "slopes of warp and weft, " +
-                   text(warp) + " and " + text(weft) + " N/m, must exceed c12²");
+  checker.refuse(field,
+                 "is too flat: tension over stretch must increase everywhere, and the product of the minimum "
+                 "slopes of warp and weft, " +
+                     text(warp) + " and " + text(weft) + " N/m, must exceed c12²");
 }
 
 }  // namespace
 
 std::vector<FabricMistake> find_mistakes(const Fabric& fabric) {
-  Judge judge;
-  judge_ranges(fabric, judge);
-  if (judge.has_none()) judge_relations(fabric, judge);
-  judge_curve(fabric.stretch_warp, "stretch_warp", judge);
-  judge_curve(fabric.stretch_weft, "stretch_weft", judge);
-  if (judge.has_none()) judge_slopes(fabric, judge);
-  return judge.mistakes;
+  FabricChecker checker;
+  check_ranges(fabric, checker);
+  if (checker.has_none()) check_relations(fabric, checker);
+  check_curve(fabric.stretch_warp, "stretch_warp", checker);
+  check_curve(fabric.stretch_weft, "stretch_weft", checker);
+  if (checker.has_none()) check_slopes(fabric, checker);
+  return checker.mistakes;
 }
 
 void validate_fabric(const Fabric& fabric, const std::string& name) {
-  std::string sentence;
+  std::string message;
   for (const FabricMistake& m : find_mistakes(fabric)) {
-    sentence += (sentence.empty() ? "fabric \"" + name + "\": " : "; ") + m.field + " " + m.reason;
+    message += (message.empty() ? "fabric \"" + name + "\": " : "; ") + m.field + " " + m.reason;
   }
-  if (!sentence.empty()) throw InputError(sentence);
+  if (!message.empty()) throw InputError(message);
 }
 
 double bending_rigidity(const Fabric& fabric, double cos_psi, double sin_psi) {

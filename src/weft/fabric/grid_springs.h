@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "weft/fabric/bending_rows.h"
 #include "weft/fabric.h"
+#include "weft/fabric/bending_rows.h"
 #include "weft/mesh/grid.h"
 
 namespace weft::engine {

@@ -33,7 +33,7 @@ std::vector<StretchPoint> kes_curve(double full_extension, double linearity) {
   return curve;
 }
 
-void judge(const KesSheet& sheet) {
+void validate(const KesSheet& sheet) {
   require_positive(sheet.extension_warp, "KES-F sheet", "extension_warp (EMT)");
   require_positive(sheet.extension_weft, "KES-F sheet", "extension_weft (EMT)");
   for (const double lt : {sheet.linearity_warp, sheet.linearity_weft}) {
@@ -45,7 +45,7 @@ void judge(const KesSheet& sheet) {
 }  // namespace
 
 Fabric fabric_from(const KesSheet& sheet) {
-  judge(sheet);
+  validate(sheet);
   const double warp = sheet.extension_warp / 100, weft = sheet.extension_weft / 100;
   constexpr double kBending = kGramForce / kPerCentimetre;  // 1 gf·cm²/cm [N·m]
   Fabric fabric;

@@ -9,7 +9,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kMostSweeps = 1000;
+constexpr int kMaxSweeps = 1000;
 constexpr double kSettled = 1e-4;  // of the stiffest edge
 constexpr double kSmallness =
     1e-4;  // weight of k² (regularisation), for edges that the fabric leaves undetermined
@@ -65,7 +65,7 @@ class Fit {
   }
 
   std::vector<double> solve() {
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       double moved = 0, largest = 0;
       for (std::size_t e = 0; e < columns_.size(); ++e) {
         moved = std::max(moved, std::abs(improve(e)));

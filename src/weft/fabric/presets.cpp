@@ -216,10 +216,10 @@ const FabricPreset& find_fabric_preset(std::string_view name) {
     names.push_back(preset.name);
     list += (list.empty() ? "" : ", ") + preset.name;
   }
-  const std::string sentence = "unknown fabric \"" + std::string(name) + "\"";
+  const std::string message = "unknown fabric \"" + std::string(name) + "\"";
   const std::string nearest = engine::find_nearest(plain, names);
-  throw InputError(nearest.empty() ? sentence + "; available: " + list
-                                   : sentence + "; did you mean \"" + nearest + "\"?");
+  throw InputError(nearest.empty() ? message + "; available: " + list
+                                   : message + "; did you mean \"" + nearest + "\"?");
 }
 
 const Fabric& find_fabric(std::string_view name) { return find_fabric_preset(name).fabric; }

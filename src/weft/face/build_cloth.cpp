@@ -12,7 +12,7 @@ namespace weft::engine {
 namespace {
 
 /// Edges shorter than this many thicknesses count as short: contact leaves position errors of up to 0.15 of a
-/// thickness (kMaxLack of a gap), 8 % of such an edge, which step_check.h reports as a fault.
+/// thickness (kMaxShortfall of a gap), 8 % of such an edge, which step_check.h reports as a fault.
 constexpr double kShortEdge = 2;  // [1]
 
 /// The grid axis along warp, if any.
@@ -91,8 +91,8 @@ ClothMaterial make_material(const Fabric& f) {
 ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const RestShape& rest,
                             const std::string& who, std::vector<std::string>& warnings) {
   ClothMaterial material = make_material(fabric);
-  const auto warn = [&](const std::vector<std::string>& sentences) {
-    for (const std::string& sentence : sentences) warnings.push_back(who + sentence);
+  const auto warn = [&](const std::vector<std::string>& messages) {
+    for (const std::string& message : messages) warnings.push_back(who + message);
   };
   if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
     const std::optional<GridWarp> warp = grid_warp(desc);
@@ -170,7 +170,7 @@ RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothN
     if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return build_from_grid(desc, *grid, notes);
     RestShape rest = build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);
     for (auto* list : {&notes.warnings, &notes.done}) {
-      for (std::string& sentence : *list) sentence = mesh_who + sentence;
+      for (std::string& message : *list) message = mesh_who + message;
     }
     return rest;
   } catch (const InputError& error) {

@@ -159,7 +159,7 @@ void describe(Archive& archive, Pin& p) {
   members(archive, p.particles, p.motion, p.pivot);
 }
 template <class Archive>
-void describe(Archive& archive, Grab& g) {
+void describe(Archive& archive, Attachment& g) {
   members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target);
 }
 template <class Archive>
@@ -168,7 +168,7 @@ void describe(Archive& archive, PointGuide& g) {
 }
 template <class Archive>
 void describe(Archive& archive, World::Held& h) {
-  members(archive, h.pins, h.anchors, h.grabs, h.pin_guide, h.grab_guide, h.forces);
+  members(archive, h.pins, h.anchors, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
 }
 template <class Archive>
 void describe(Archive& archive, World::Guide& g) {
@@ -278,13 +278,14 @@ void check(const engine::World::Held& held, std::size_t num_particles, const std
   }
   check(held.anchors, pinned);
   require(static_cast<std::size_t>(std::ranges::count(is_soft, 0)) == pinned);
-  require(is_soft.size() - pinned == held.grabs.size());
-  for (const engine::Grab& grab : held.grabs) {
-    require(grab.particles.size() == 1 && grab.target.allFinite() && are_finite(grab.offsets));
-    require(std::ranges::all_of(grab.shares, [](double share) { return std::isfinite(share); }));
+  require(is_soft.size() - pinned == held.attachments.size());
+  for (const engine::Attachment& attachment : held.attachments) {
+    require(attachment.particles.size() == 1 && attachment.target.allFinite() &&
+            are_finite(attachment.offsets));
+    require(std::ranges::all_of(attachment.shares, [](double share) { return std::isfinite(share); }));
   }
   check(held.pin_guide, pinned);
-  check(held.grab_guide, held.grabs.size());
+  check(held.attachment_guide, held.attachments.size());
   check(held.forces, held.forces.empty() ? 0 : num_particles);
 }
 

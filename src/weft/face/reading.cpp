@@ -163,7 +163,7 @@ std::vector<Vec3> World::forces(ClothId cloth, ForceKind kind) const {
 
 std::vector<Vec3> World::pin_forces(ClothId cloth) const {
   const std::vector<engine::Vec3> held = impl_->world.pin_forces(cloth);
-  const std::vector<engine::Grab>& soft = impl_->world.grabs(cloth);
+  const std::vector<engine::Attachment>& soft = impl_->world.attachments(cloth);
   const engine::ClothState& state = impl_->world.state(cloth);
   std::vector<Vec3> result;
   std::size_t h = 0, s = 0;
@@ -172,10 +172,10 @@ std::vector<Vec3> World::pin_forces(ClothId cloth) const {
       result.push_back(from_engine(held[h++]));
       continue;
     }
-    const engine::Grab& grab = soft[s++];
-    const int i = grab.particles[0];
-    result.push_back(from_engine(
-        engine::Vec3(grab.stiffness * (grab.target - state.position(i)) - grab.damping * state.v.get(i))));
+    const engine::Attachment& attachment = soft[s++];
+    const int i = attachment.particles[0];
+    result.push_back(from_engine(engine::Vec3(attachment.stiffness * (attachment.target - state.position(i)) -
+                                              attachment.damping * state.v.get(i))));
   }
   return result;
 }

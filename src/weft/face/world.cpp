@@ -15,7 +15,7 @@ using engine::to_engine;
 std::string who(const std::string& kind, const std::string& name) { return kind + " \"" + name + "\": "; }
 
 /// Soft pin: a separate spring per particle; see Pin.
-engine::Grab make_soft_pin(const Pin& pin, int particle, const engine::Vec3& position) {
+engine::Attachment make_soft_pin(const Pin& pin, int particle, const engine::Vec3& position) {
   return {.particles = {particle},
           .shares = {1.0},
           .offsets = {engine::Vec3::Zero()},
@@ -36,9 +36,10 @@ void check_pin(const Pin& pin, const std::string& owner) {
 
 /// Sets the springs' targets to the particles' positions.
 void hold_soft_pins(engine::World& world, ClothId cloth) {
-  const int count = static_cast<int>(world.grabs(cloth).size());
+  const int count = static_cast<int>(world.attachments(cloth).size());
   for (int g = 0; g < count; ++g)
-    world.set_grab_target(cloth, g, world.state(cloth).position(world.grabs(cloth)[g].particles[0]));
+    world.set_attachment_target(cloth, g,
+                                world.state(cloth).position(world.attachments(cloth)[g].particles[0]));
 }
 
 }  // namespace
@@ -158,7 +159,7 @@ void World::set_pins(ClothId cloth, const std::vector<Pin>& pins) {
   Impl::Cloth& own = impl_->at(cloth);
   const engine::ClothState& state = impl_->world.state(cloth);
   std::vector<engine::Pin> held;
-  std::vector<engine::Grab> soft;
+  std::vector<engine::Attachment> soft;
   std::vector<char> is_soft;
   for (const Pin& pin : pins) {
     check_pin(pin, who("cloth", own.desc.name));
@@ -175,7 +176,7 @@ void World::set_pins(ClothId cloth, const std::vector<Pin>& pins) {
     }
   }
   impl_->world.set_pins(cloth, std::move(held));
-  impl_->world.set_grabs(cloth, std::move(soft));
+  impl_->world.set_attachments(cloth, std::move(soft));
   own.is_soft = std::move(is_soft);
 }
 
@@ -191,7 +192,7 @@ void World::move_pins(ClothId cloth, const std::vector<Vec3>& at_end) {
       throw InputError(who("cloth", name(cloth)) + "targets of pins must be finite");
   }
   if (!held.empty()) impl_->world.move_pins(cloth, held);
-  if (!soft.empty()) impl_->world.move_grabs(cloth, soft);
+  if (!soft.empty()) impl_->world.move_attachments(cloth, soft);
 }
 
 void World::set_forces(ClothId cloth, const std::vector<Vec3>& forces) {

@@ -40,8 +40,9 @@ Columns deformation(const RestTriangle& rest, const TriangleCorners& x) {
 
 /// σ2 >= kCollapseBegin: FᵀF − kCollapseBegin² I is positive definite.
 bool is_wide(const Columns& f) {
-  constexpr double kLeast = kCollapseBegin * kCollapseBegin;
-  const double a = f[0].squaredNorm() - kLeast, b = f[1].squaredNorm() - kLeast, c = f[0].dot(f[1]);
+  constexpr double kCollapseBeginSq = kCollapseBegin * kCollapseBegin;
+  const double a = f[0].squaredNorm() - kCollapseBeginSq, b = f[1].squaredNorm() - kCollapseBeginSq,
+               c = f[0].dot(f[1]);
   return a > 0 && a * b > c * c;
 }
 

@@ -79,9 +79,9 @@ struct StiffeningAnswer {
 
 template <int W>
 WEFT_ALWAYS_INLINE StiffeningAnswer<W> limit_answer(const LimitNumbers& n, const Three<W>& e) {
-  constexpr float kLeastRadius = 1e-6f;  // of Mohr's circle: below it the axes are noise
+  constexpr float kMinRadius = 1e-6f;  // of Mohr's circle: below it the axes are noise
   const Pack<W> mean = 0.5f * (e.x + e.y), half = 0.5f * (e.x - e.y), shear = 0.5f * e.z;
-  const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kLeastRadius);
+  const Pack<W> zero = broadcast<W>(0), one = broadcast<W>(1), least = broadcast<W>(kMinRadius);
   const Pack<W> radius = square_root(half * half + shear * shear), inverse = 1.0f / larger(radius, least);
   const auto stretch = [&](Pack<W> green) WEFT_INLINE_LAMBDA {
     return square_root(larger(1.0f + 2.0f * green, broadcast<W>(1e-6f)));

@@ -16,7 +16,7 @@ struct MembraneNumbers {
 /// Kinks of a stretch curve, in floats.
 struct CurveNumbers {
   int count = 0;
-  float strain[kMostStretchPoints] = {}, slope[kMostStretchPoints] = {};
+  float strain[kMaxStretchPoints] = {}, slope[kMaxStretchPoints] = {};
 };
 
 /// The nonlinear part of a membrane's law: its strain limit and its stretch curves.

@@ -7,7 +7,7 @@ namespace weft::engine {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr double kLeastHeight = 1e-3;  // minimum triangle height over edge length, for the gradient [1]
+constexpr double kMinHeight = 1e-3;  // minimum triangle height over edge length, for the gradient [1]
 
 /// Normals with a length of twice their triangle's area.
 struct Normals {
@@ -28,7 +28,7 @@ double short_way_round(double angle) {
 Vec3 tip_gradient(const Vec3& normal, double edge_length) {
   const double twice_area = normal.norm();
   if (twice_area == 0 || edge_length == 0) return Vec3::Zero();
-  const double height = std::max(twice_area / edge_length, kLeastHeight * edge_length);
+  const double height = std::max(twice_area / edge_length, kMinHeight * edge_length);
   return normal / (twice_area * height);
 }
 

@@ -58,13 +58,14 @@ void compute_increments(const ClothModel& model, const ClothState& state, const 
 void apply_increments(const IncrementField& u, float step, const Vec3& g_step, JobSystem& jobs,
                       ClothState& state);
 
-/// Velocity changes outside the filter: v becomes keep · v + gain.
+/// Velocity changes outside the filter: v becomes drag_factor · v + velocity_gain.
 struct Outside {
-  float keep = 1;            // [1]
-  Vec3 gain = Vec3::Zero();  // [m/s]
+  float drag_factor = 1;              // [1]
+  Vec3 velocity_gain = Vec3::Zero();  // [m/s]
 };
 
-/// v_i ← keep v_i + gain + u_i + h² w_i Σ_j k_ij u_j, then x += h v. The second sweep of the paper's Eq. 16.
+/// v_i ← drag_factor v_i + velocity_gain + u_i + h² w_i Σ_j k_ij u_j, then x += h v. The second sweep of the
+/// paper's Eq. 16.
 void apply_filtered_increments(const ClothModel& model, const IncrementField& u, float step,
                                const std::vector<float>& weight, const Outside& outside, JobSystem& jobs,
                                ClothState& state);

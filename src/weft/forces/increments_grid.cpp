@@ -236,8 +236,8 @@ WEFT_MULTIVERSION(grid_rows, (const GridRowsArguments& a, SpringModel model), (a
 /// alternating model has all four diagonals; at the other parity it has none.
 template <SpringModel kModel>
 WEFT_ALWAYS_INLINE void filtered_component(int count, int stride, int j, float structural, float shear,
-                                           float bend, float step, const float* weight, float keep,
-                                           float gain, const float* u, float* x, float* v) {
+                                           float bend, float step, const float* weight, float drag_factor,
+                                           float velocity_gain, const float* u, float* x, float* v) {
   const float *up = u - stride, *down = u + stride, *up2 = u - 2 * stride, *down2 = u + 2 * stride;
   const float step_sq = step * step;
   WEFT_IVDEP
@@ -252,7 +252,7 @@ WEFT_ALWAYS_INLINE void filtered_component(int count, int stride, int j, float s
       s += here ? shear * all : 0.0f;
     }
     s += bend * ((u[i - 2] + u[i + 2]) + (up2[i] + down2[i]));
-    v[i] = keep * v[i] + gain + (u[i] + step_sq * weight[i] * s);
+    v[i] = drag_factor * v[i] + velocity_gain + (u[i] + step_sq * weight[i] * s);
     x[i] += step * v[i];
   }
 }
@@ -261,7 +261,7 @@ struct GridFilteredArguments {
   const GridStencil& stencil;
   float step;
   const float* weight;
-  float keep, gx, gy, gz;
+  float drag_factor, gx, gy, gz;
   FieldLayout layout;
   ConstRows u;
   Rows x, v;
@@ -277,7 +277,7 @@ WEFT_ALWAYS_INLINE void grid_filtered_model(const GridFilteredArguments& a) {
     const int p = j * nx, in = a.layout.first + j * a.layout.stride;
     const auto sweep = [&](const float* u, float* x, float* v, float g) WEFT_INLINE_LAMBDA {
       filtered_component<kModel>(nx, a.layout.stride, j, structural, shear, bend, a.step, a.weight + p,
-                                 a.keep, g, u + in, x + p, v + p);
+                                 a.drag_factor, g, u + in, x + p, v + p);
     };
     sweep(a.u.x, a.x.x, a.v.x, a.gx);
     sweep(a.u.y, a.x.y, a.v.y, a.gy);
@@ -311,9 +311,10 @@ void grid_increments(const GridStencil& stencil, SpringModel model, const Forcin
 void grid_filtered(const GridStencil& stencil, SpringModel model, float step, const float* weight,
                    const Outside& outside, FieldLayout layout, ConstRows u, Rows x, Rows v, int row_begin,
                    int row_end) {
-  const Eigen::Vector3f g = outside.gain.cast<float>();
-  grid_sweep({stencil, step, weight, outside.keep, g.x(), g.y(), g.z(), layout, u, x, v, row_begin, row_end},
-             model);
+  const Eigen::Vector3f g = outside.velocity_gain.cast<float>();
+  grid_sweep(
+      {stencil, step, weight, outside.drag_factor, g.x(), g.y(), g.z(), layout, u, x, v, row_begin, row_end},
+      model);
 }
 
 }  // namespace weft::engine::kernels

@@ -73,7 +73,7 @@ struct MeshFilteredArguments {
   int num_particles;
   float step;
   const float* weight;
-  float keep, gx, gy, gz;
+  float drag_factor, gx, gy, gz;
   ConstRows u;
   Rows x, v;
   int slice_begin, slice_end;
@@ -102,9 +102,9 @@ WEFT_ALWAYS_INLINE void mesh_sweep_body(const MeshFilteredArguments& a) {
     for (int lane = 0; lane < count; ++lane) {
       const int i = first + lane;
       const float c = step_sq * a.weight[i];
-      a.v.x[i] = a.keep * a.v.x[i] + a.gx + (ux[i] + c * sx[lane]);
-      a.v.y[i] = a.keep * a.v.y[i] + a.gy + (uy[i] + c * sy[lane]);
-      a.v.z[i] = a.keep * a.v.z[i] + a.gz + (uz[i] + c * sz[lane]);
+      a.v.x[i] = a.drag_factor * a.v.x[i] + a.gx + (ux[i] + c * sx[lane]);
+      a.v.y[i] = a.drag_factor * a.v.y[i] + a.gy + (uy[i] + c * sy[lane]);
+      a.v.z[i] = a.drag_factor * a.v.z[i] + a.gz + (uz[i] + c * sz[lane]);
       a.x.x[i] += step * a.v.x[i];
       a.x.y[i] += step * a.v.y[i];
       a.x.z[i] += step * a.v.z[i];
@@ -124,9 +124,9 @@ void mesh_increments(const ClothModel& model, const Forcing& forcing, ConstRows 
 
 void mesh_filtered(const ClothModel& model, float step, const float* weight, const Outside& outside,
                    ConstRows u, Rows x, Rows v, int slice_begin, int slice_end) {
-  const Eigen::Vector3f g = outside.gain.cast<float>();
-  mesh_sweep({model.table(), model.entry_stiffness.data(), model.num_particles(), step, weight, outside.keep,
-              g.x(), g.y(), g.z(), u, x, v, slice_begin, slice_end});
+  const Eigen::Vector3f g = outside.velocity_gain.cast<float>();
+  mesh_sweep({model.table(), model.entry_stiffness.data(), model.num_particles(), step, weight,
+              outside.drag_factor, g.x(), g.y(), g.z(), u, x, v, slice_begin, slice_end});
 }
 
 }  // namespace weft::engine::kernels

@@ -27,7 +27,7 @@ void IncrementalPotential::fit(const ClothModel& model, double damping_rate) {
   is_projected_ = model.material.damping_kind == DampingKind::projected;
   if (model.id != model_id_) lay_out(model);
   elements_.fit(model, rows_, damping_rate);
-  if (is_damped() && lag.size() == 0) lag = damped_ = Vec3Array(rows_.size());
+  if (is_damped() && velocity_offset.size() == 0) velocity_offset = damped_ = Vec3Array(rows_.size());
 }
 
 void IncrementalPotential::lay_out(const ClothModel& model) {
@@ -36,7 +36,7 @@ void IncrementalPotential::lay_out(const ClothModel& model) {
     rows_ = padded_rows_of(*topology_);
     weight.assign(rows_.size(), 0.0f);
     for (Vec3Array* field : {&target, &x_}) *field = Vec3Array(rows_.size());
-    lag = damped_ = Vec3Array();
+    velocity_offset = damped_ = Vec3Array();
     hessian_.clear();
     slope_.clear();
   }
@@ -136,7 +136,7 @@ void IncrementalPotential::remember(const Vec3Array& x, const Vec3Array& displac
   elements_.remember(x_, damped_, memory, jobs);
 }
 
-/// x = y + e, and z = e + lag.
+/// x = y + e, and z = e + velocity_offset.
 void IncrementalPotential::place(const Vec3Array& e, JobSystem& jobs) {
   const auto add = [&](const float* a, const float* b, float* sum) {
     parallel_for(jobs, static_cast<int>(rows_.size()), 4 * kGrain,
@@ -146,9 +146,9 @@ void IncrementalPotential::place(const Vec3Array& e, JobSystem& jobs) {
   add(target.y(), e.y(), x_.y());
   add(target.z(), e.z(), x_.z());
   if (!is_damped()) return;
-  add(e.x(), lag.x(), damped_.x());
-  add(e.y(), lag.y(), damped_.y());
-  add(e.z(), lag.z(), damped_.z());
+  add(e.x(), velocity_offset.x(), damped_.x());
+  add(e.y(), velocity_offset.y(), damped_.y());
+  add(e.z(), velocity_offset.z(), damped_.z());
 }
 
 double IncrementalPotential::sum_parts(int count) const {

@@ -46,7 +46,7 @@ class IncrementalPotential {
   // Set before use; zero in the padding (rows().size() each).
   std::vector<float> weight;  // D [N/m]
   Vec3Array target;           // y [m]
-  Vec3Array lag;              // (h/β) v_y; only used with damping [m]
+  Vec3Array velocity_offset;  // (h/β) v_y; only used with damping [m]
 
   /// Stores the positions before the step, and the displacement of the previous step, for the damping of
   /// elements (see ElementPotential). Call before a step.

@@ -69,12 +69,12 @@ auto find_impact(const At& at, double travel, const ImpactLimit& limit) {
   constexpr double kShare = 0.9;
   // Features that graze each other for long need more advances than these. Stopping early is safe: it counts
   // as an impact. Features in resting contact graze in every step, so their limit is lower.
-  constexpr int kMostAdvances = 1000, kMostWhereTouching = 100;
+  constexpr int kMaxAdvances = 1000, kMaxAdvancesInTouch = 100;
   Found now{0, 0, at(0.0)};
   const double start = now.distance_before = now.place.distance;
   if (start - travel > 2 * limit.separation) return std::optional<Found>();
   const double gap = limit.gap(start), tolerance = limit.tolerance(start);
-  const int most = start > limit.floor ? kMostAdvances : kMostWhereTouching;
+  const int most = start > limit.floor ? kMaxAdvances : kMaxAdvancesInTouch;
   for (int advance = 0; advance < most && start > 0; ++advance) {
     const double free = now.place.distance - gap;
     if (free > (1 - now.time) * travel) return std::optional<Found>();

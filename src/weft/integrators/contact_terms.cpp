@@ -8,10 +8,10 @@ namespace {
 
 constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
 constexpr int kGuesses = 2;           // linearisations with friction from estimated forces
-constexpr double kMostOfGuess = 3;    // … and after them, limit of forces over the estimate
-constexpr double kLeastOfSlide = 0.7, kMostOfSlide = 1.5;  // bounds of the next slide over the last
-constexpr double kBarely = 0.01;                           // of the gap: opening that counts as touching
-constexpr double kFrictionChange = 0.02;                   // tolerance, as a share of the friction limit
+constexpr double kMaxOverGuess = 3;   // … and after them, limit of forces over the estimate
+constexpr double kMinSlideRatio = 0.7, kMaxSlideRatio = 1.5;  // bounds of the next slide over the last
+constexpr double kBarely = 0.01;                              // of the gap: opening that counts as touching
+constexpr double kFrictionChange = 0.02;                      // tolerance, as a share of the friction limit
 
 }  // namespace
 
@@ -156,30 +156,30 @@ void ContactTerms::guess(std::span<const Positions> y) {
 double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
   const double push =
-      num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, kMostOfGuess * t.guess);
+      num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, kMaxOverGuess * t.guess);
   const double most = c.friction * push;
   double expected = slide;
   if (num_linearised_ == 0)
     expected = t.slide;
   else if (t.friction > 0 && t.inertia > 0)
-    expected = std::clamp(slide + (t.friction * slide - most) / t.inertia, kLeastOfSlide * slide,
-                          kMostOfSlide * slide);
+    expected = std::clamp(slide + (t.friction * slide - most) / t.inertia, kMinSlideRatio * slide,
+                          kMaxSlideRatio * slide);
   return most / std::max(expected, sticking_);
 }
 
 ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
   gather(x);
-  double lack = 0, limits = 0, changes = 0;
+  double shortfall = 0, limits = 0, changes = 0;
   for (const Term& t : terms_) {
     const Contact& c = *t.contact;
     const double depth = depth_of(t);
-    if (depth > 0 && t.can_move) lack = std::max(lack, depth / c.gap);
+    if (depth > 0 && t.can_move) shortfall = std::max(shortfall, depth / c.gap);
     if (!t.is_active && depth == 0) continue;
     const double slide = slide_of(t).norm(), limit = c.friction * c.stiffness * depth;
     limits += limit;
     changes += std::abs(limit * std::min(1.0, slide / sticking_) - t.friction * slide);
   }
-  return {lack / kMaxLack, limits > 0 ? changes / (kFrictionChange * limits) : 0};
+  return {shortfall / kMaxShortfall, limits > 0 ? changes / (kFrictionChange * limits) : 0};
 }
 
 void ContactTerms::set_solved(bool is_solved) {
@@ -289,10 +289,10 @@ void ContactTerms::add_to_preconditioners(std::span<const Preconditioners> preco
       const double share = c.weight[k] * c.weight[k];
       if (share == 0) continue;
       const Point& point = points_[t.point[k]];
-      const auto& [stiff, along, filter] = preconditioners[point.member];
+      const auto& [stiff, along, preconditioner] = preconditioners[point.member];
       (*stiff)[point.at] += static_cast<float>(share * std::max(c.stiffness, t.friction));
       (*along)[point.at] += static_cast<float>(share * t.friction);
-      filter->hold(point.at, c.normal, stiff->size());
+      preconditioner->add_normal(point.at, c.normal, stiff->size());
     }
   }
 }

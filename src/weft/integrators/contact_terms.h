@@ -8,8 +8,8 @@
 #include "weft/contact/contact.h"
 #include "weft/core/padded_rows.h"
 #include "weft/core/vec3_array.h"
-#include "weft/integrators/contact_filter.h"
-#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/contact_preconditioner.h"
+#include "weft/integrators/floating_components.h"
 #include "weft/integrators/integrator.h"
 #include "weft/solvers/conjugate_gradients.h"
 
@@ -48,7 +48,7 @@ class ContactTerms {
   struct Preconditioners {
     std::vector<float>* stiff = nullptr;  // for all directions
     std::vector<float>* along = nullptr;  // along surfaces only
-    ContactFilter* filter = nullptr;
+    ContactPreconditioner* preconditioner = nullptr;
   };
 
   /// Takes those of `contacts` that are in `which`, and discards earlier ones. `driven`: displacement in the
@@ -63,8 +63,8 @@ class ContactTerms {
 
   /// Residual of a solve at these positions, relative to its tolerance [1].
   struct Unrest {
-    double lack = 0;      // the largest depth
-    double friction = 0;  // the largest change of friction
+    double shortfall = 0;  // the largest depth
+    double friction = 0;   // the largest change of friction
   };
   Unrest find_unrest(std::span<const Positions> x);
 

@@ -31,7 +31,7 @@ void ImplicitCloth::begin(const Body& body, double step, Order order, Keeps keep
   for (const int p : pinned()) is_pinned_[p] = 1;
   load();
   start_from(before_.x, before_.v, step);
-  if (order_ == Order::second && state_->history.step == 0) invent_history();
+  if (order_ == Order::second && state_->history.step == 0) synthesize_history();
 }
 
 /// Every triangle edge is a spring of the topology, so the pattern has its block.
@@ -69,7 +69,7 @@ void ImplicitCloth::start_from(const std::vector<Vec3>& x, const std::vector<Vec
 }
 
 /// Initial history, as in `newton`: of cloth in free fall as far as nothing carries it.
-void ImplicitCloth::invent_history() {
+void ImplicitCloth::synthesize_history() {
   const double step = whole_step_;
   std::vector<Vec3> gradient(before_.x.size(), Vec3::Zero());
   add_spring_gradient(before_.x, gradient);

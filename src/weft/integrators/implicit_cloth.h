@@ -64,7 +64,7 @@ class ImplicitCloth {
  private:
   void load();
   void start_from(const std::vector<Vec3>& x, const std::vector<Vec3>& v, double time);
-  void invent_history();
+  void synthesize_history();
   void find_triangles();
   bool is_damped() const { return model_->material.damping > 0 || model_->material.damping_time > 0; }
   const Spring& spring(int k) const { return model_->topology->springs[k]; }

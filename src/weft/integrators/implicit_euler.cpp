@@ -38,12 +38,12 @@ class ImplicitGroup {
 
   /// The cloths have begun the step; contacts use the group's numbers.
   IntegratorReport advance(std::span<ImplicitCloth* const> cloths, std::vector<Contact>& contacts,
-                           Order order, bool tells_forces) {
+                           Order order, bool computes_contact_forces) {
     cloths_.assign(cloths.begin(), cloths.end());
     contacts_ = &contacts;
     begin_step(order);
     const IntegratorReport report = minimise();
-    if (tells_forces) tell_contact_forces();
+    if (computes_contact_forces) compute_contact_forces();
     finish_step();
     return report;
   }
@@ -69,7 +69,8 @@ class ImplicitGroup {
 
   /// BDF2, unless contact is active in this step or was in the last one (see `newton`).
   void begin_second_order() {
-    if (std::any_of(cloths_.begin(), cloths_.end(), [](const auto* c) { return c->is_first_order(); })) return;
+    if (std::any_of(cloths_.begin(), cloths_.end(), [](const auto* c) { return c->is_first_order(); }))
+      return;
     x_.clear();
     for (const ImplicitCloth* cloth : cloths_)
       x_.insert(x_.end(), cloth->inertial().begin(), cloth->inertial().end());
@@ -99,7 +100,7 @@ class ImplicitGroup {
     return part;
   }
 
-  void tell_contact_forces() {
+  void compute_contact_forces() {
     std::vector<Contact*> contacts;
     std::vector<std::array<int, 4>> at;
     for (std::size_t n = 0; n < contacts_->size(); ++n) {
@@ -444,7 +445,7 @@ class ImplicitEulerIntegrator final : public Integrator {
       for (int k = 0; k < c.num_particles; ++k) c.particle[k] += shift[groups_.body_of(c.particle[k])];
     }
     ImplicitGroup& system = systems_.try_emplace(groups_.bodies(g)[0], settings_).first->second;
-    const IntegratorReport report = system.advance(members, own, order_, step.tells_contact_forces);
+    const IntegratorReport report = system.advance(members, own, order_, step.computes_contact_forces);
     for (std::size_t n = 0; n < own.size(); ++n) {
       contacts[groups_.contacts(g)[n]].has_pushed = own[n].has_pushed;
       contacts[groups_.contacts(g)[n]].force = own[n].force;

@@ -26,19 +26,19 @@ void IntegratorReport::include(const IntegratorReport& other, int cloth) {
   add_count(other.guard_events, guard_events);
 }
 
-bool moves_elements(std::string_view integrator) {
+bool supports_elements(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton" || integrator == "xpbd";
 }
 
-bool feels_air(std::string_view integrator) {
+bool supports_aerodynamics(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton";
 }
 
-bool can_divide_steps(std::string_view integrator) {
+bool supports_step_division(std::string_view integrator) {
   return integrator == "newton" || integrator == "implicit_euler";
 }
 
-bool has_double_precision(std::string_view integrator) { return feels_air(integrator); }
+bool supports_double_precision(std::string_view integrator) { return supports_aerodynamics(integrator); }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;

@@ -53,9 +53,9 @@ struct Body {
 };
 
 struct SystemStep {
-  double step = 0;                    // [s]
-  bool tells_contact_forces = false;  // computes Contact::force
-  WorkClock* clock = nullptr;         // of the whole step; null: not measured
+  double step = 0;                       // [s]
+  bool computes_contact_forces = false;  // computes Contact::force
+  WorkClock* clock = nullptr;            // of the whole step; null: not measured
 };
 
 /// Adds a count to a sum; both may be empty.
@@ -101,16 +101,16 @@ class Integrator {
 
 /// Whether the integrator supports membrane and bending elements (ClothModel::elements); the others support
 /// springs only.
-bool moves_elements(std::string_view integrator);
+bool supports_elements(std::string_view integrator);
 
 /// Whether it supports aerodynamic drag and lift (Wind::air); the others support the paper's wind only.
-bool feels_air(std::string_view integrator);
+bool supports_aerodynamics(std::string_view integrator);
 
 /// Whether its steps can be divided where they are too long for an impact (World::set_division).
-bool can_divide_steps(std::string_view integrator);
+bool supports_step_division(std::string_view integrator);
 
 /// Whether it supports double precision.
-bool has_double_precision(std::string_view integrator);
+bool supports_double_precision(std::string_view integrator);
 
 /// Throws InputError for an unknown name, and for double precision where it is not supported.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);

@@ -20,22 +20,23 @@
 
 #include "weft/integrators/contact_groups.h"
 #include "weft/integrators/contact_terms.h"
-#include "weft/integrators/effort.h"
-#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/floating_components.h"
 #include "weft/integrators/newton_cloth.h"
+#include "weft/integrators/solver_budget.h"
 
 namespace weft::engine {
 namespace {
 
-constexpr double kMissedShare = 0.2;      // of the energy: a larger model error requests one more Newton step
-constexpr double kFallingShare = 0.5;     // of the remaining energy: likewise for a larger last decrease
-constexpr int kFewestStepsInContact = 2;  // the first one has no contacts and contact forces
-constexpr int kMostStepsInContact = 6;
-constexpr int kTimesCoasting = 2;          // factor on iterations from x + h v, which must add all of gravity
-constexpr double kNoise = 1e-9;            // of the decrease: below, float iterations change only rounding
-constexpr int kMostStepsBeyondLimit = 24;  // while a stretch exceeds the limit by more than allowed
-constexpr double kLimitFalling = 1e-4;     // … and a step still lowers the energy by this share
-constexpr int kMaxHalvings = 8;            // of a Newton step that raises the potential
+constexpr double kMissedShare = 0.2;   // of the energy: a larger model error requests one more Newton step
+constexpr double kFallingShare = 0.5;  // of the remaining energy: likewise for a larger last decrease
+constexpr int kMinStepsInContact = 2;  // the first one has no contacts and contact forces
+constexpr int kMaxStepsInContact = 6;
+constexpr int kInertialIterationFactor =
+    2;                                    // factor on iterations from x + h v, which must add all of gravity
+constexpr double kNoise = 1e-9;           // of the decrease: below, float iterations change only rounding
+constexpr int kMaxStepsBeyondLimit = 24;  // while a stretch exceeds the limit by more than allowed
+constexpr double kLimitFalling = 1e-4;    // … and a step still lowers the energy by this share
+constexpr int kMaxHalvings = 8;           // of a Newton step that raises the potential
 
 /// Cloths joined by contacts, in a step.
 class NewtonGroup {
@@ -62,20 +63,20 @@ class NewtonGroup {
 
   IntegratorReport solve(const NewtonSettings& settings) {
     choose_start();
-    double reach = 0;
+    double stiffness_number = 0;
     noise_ = 0;
     for (const NewtonCloth* cloth : cloths_) {
-      reach = std::max(reach, cloth->reach());
+      stiffness_number = std::max(stiffness_number, cloth->stiffness_number());
       noise_ += cloth->noise();
     }
-    return minimise(settings, choose_effort(settings, reach));
+    return minimise(settings, choose_budget(settings, stiffness_number));
   }
 
   void finish() {
     is_pushed_.assign(cloths_.size(), 0);
     contacts_.find_pushed(positions(), is_pushed_);
-    contacts_.set_solved(contacts_.find_unrest(positions()).lack <= 1);
-    if (step_.tells_contact_forces) tell_contact_forces();
+    contacts_.set_solved(contacts_.find_unrest(positions()).shortfall <= 1);
+    if (step_.computes_contact_forces) compute_contact_forces();
     for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c]->finish(is_pushed_[c] != 0, *jobs_);
   }
 
@@ -87,7 +88,7 @@ class NewtonGroup {
     bool is_euler =
         std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->is_first_order(); });
     if (!contacts_.empty()) {
-      for (NewtonCloth* cloth : cloths_) cloth->remember_gain();
+      for (NewtonCloth* cloth : cloths_) cloth->store_velocity_gain();
     }
     if (!is_euler && !contacts_.empty()) {
       positions_.clear();
@@ -102,16 +103,16 @@ class NewtonGroup {
   /// all contact forces would have to be found again.
   void choose_start() {
     contacts_.guess(positions());
-    coasts_ = false;
+    started_inertial_ = false;
     const bool touches = !contacts_.empty();  // else there is one cloth only
     if (!touches && !cloths_[0]->has_elements()) return;
     double least = energy();
     const auto try_start = [&](bool accelerates) {
-      for (NewtonCloth* cloth : cloths_) cloth->coast(accelerates);
+      for (NewtonCloth* cloth : cloths_) cloth->start_inertial(accelerates);
       const double energy = trial_energy();
       if (!(energy < least)) return;
       least = energy;
-      coasts_ = true;
+      started_inertial_ = true;
       accept_trial();
     };
     try_start(false);
@@ -148,13 +149,13 @@ class NewtonGroup {
   }
 
   /// Newton steps from the start.
-  IntegratorReport minimise(const NewtonSettings& settings, const Effort& effort) {
+  IntegratorReport minimise(const NewtonSettings& settings, const SolverBudget& budget) {
     IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
     int more = 1;  // factor on iterations, where the guard requests another Newton step
-    for (int asked = effort.newton_steps; report.iterations < asked; ++report.iterations) {
+    for (int asked = budget.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(report.iterations == 0);
-      if (contacts_.is_active()) asked = std::max(asked, kFewestStepsInContact);
-      const CgReport linear = solve_linear(settings, effort, more);
+      if (contacts_.is_active()) asked = std::max(asked, kMinStepsInContact);
+      const CgReport linear = solve_linear(settings, budget, more);
       *report.linear_iterations += linear.iterations;
       double share = 1, after = try_step(share);
       for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
@@ -170,14 +171,14 @@ class NewtonGroup {
       const bool is_last = report.iterations + 1 == asked;
       if (!contacts_.empty()) {
         if (is_last &&
-            (is_beyond ? asked < kMostStepsBeyondLimit : !is_settled() && asked < kMostStepsInContact))
+            (is_beyond ? asked < kMaxStepsBeyondLimit : !is_settled() && asked < kMaxStepsInContact))
           ++asked;
         continue;
       }
       // The first step's decrease carries no information: most of it is forces that the prediction ignored.
       const bool is_falling =
-          effort.newton_steps > 1 && report.iterations > 0 && before - after > kFallingShare * after + noise_;
-      const int most = is_beyond ? kMostStepsBeyondLimit : effort.most_newton_steps;
+          budget.newton_steps > 1 && report.iterations > 0 && before - after > kFallingShare * after + noise_;
+      const int most = is_beyond ? kMaxStepsBeyondLimit : budget.max_newton_steps;
       if ((missed || is_falling || is_beyond) && asked < most && is_last) {
         ++asked;
         ++*report.guard_events;
@@ -190,7 +191,7 @@ class NewtonGroup {
   /// Whether all pushing contacts are included, hold, and slide by Coulomb's law.
   bool is_settled() {
     const ContactTerms::Unrest unrest = contacts_.find_unrest(positions());
-    return unrest.lack <= 1 && unrest.friction <= 1;
+    return unrest.shortfall <= 1 && unrest.friction <= 1;
   }
 
   bool is_beyond_limit() const {
@@ -225,12 +226,12 @@ class NewtonGroup {
     return energy;
   }
 
-  CgReport solve_linear(const NewtonSettings& own, const Effort& effort, int more) {
-    CgSettings settings = contacts_.is_active() ? effort.in_contact : effort.free;
-    if (coasts_ && contacts_.empty() && own.iterations == 0) {
-      settings.iterations *= kTimesCoasting;
-      settings.least *= kTimesCoasting;
-      settings.enough /= kTimesCoasting;
+  CgReport solve_linear(const NewtonSettings& own, const SolverBudget& budget, int more) {
+    CgSettings settings = contacts_.is_active() ? budget.in_contact : budget.free;
+    if (started_inertial_ && contacts_.empty() && own.iterations == 0) {
+      settings.iterations *= kInertialIterationFactor;
+      settings.least *= kInertialIterationFactor;
+      settings.enough /= kInertialIterationFactor;
     }
     settings.iterations *= more;
     settings.enough = std::max(settings.enough / more, kNoise);
@@ -265,7 +266,7 @@ class NewtonGroup {
     return trial_energy();
   }
 
-  void tell_contact_forces() {
+  void compute_contact_forces() {
     others_.clear();
     for (NewtonCloth* cloth : cloths_) others_.push_back(&cloth->find_forces(*jobs_));
     contacts_.compute_forces(positions(), others_);
@@ -278,8 +279,8 @@ class NewtonGroup {
   JobSystem* jobs_ = nullptr;
   ContactTerms contacts_;
   FreeBodies bodies_;
-  bool coasts_ = false;  // the step started from x + h v
-  double noise_ = 0;     // rounding error of energies, from positions [J]
+  bool started_inertial_ = false;  // the step started from x + h v
+  double noise_ = 0;               // rounding error of energies, from positions [J]
 
   // Work space (cloths).
   std::vector<ContactTerms::Member> members_;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "weft/integrators/effort.h"
+#include "weft/integrators/solver_budget.h"
 
 namespace weft::engine {
 namespace {
@@ -20,7 +20,7 @@ void NewtonCloth::begin(const Body& body, const SystemStep& step, JobSystem& job
   step_ = step.step;
   clock_ = step.clock;
   fit(*model_, environment_->pins);
-  if (state_->history.step == 0) invent_history(jobs);
+  if (state_->history.step == 0) synthesize_history(jobs);
 }
 
 void NewtonCloth::fit(const ClothModel& model, const PinTargets& pins) {
@@ -34,14 +34,14 @@ void NewtonCloth::fit(const ClothModel& model, const PinTargets& pins) {
   block_.x = &solution_;
   if (model.id == key_.model_id && pins.particle == pinned_) return;
   pinned_ = pins.particle;
-  free_pieces_.find(model, pinned_);
-  reach_rate_ = compute_reach_rate(model);
+  floating_components_.find(model, pinned_);
+  stiffness_rate_ = compute_stiffness_rate(model);
   key_ = {};
 }
 
 /// Initial history: cloth that has been moving with its present velocity, and in free fall as far as pins do
 /// not hold it: x₋₁ = x − h v + ½ h² a, v₋₁ = v − h a. It halves the error of a plain first step.
-void NewtonCloth::invent_history(JobSystem& jobs) {
+void NewtonCloth::synthesize_history(JobSystem& jobs) {
   MotionHistory& history = state_->history;
   if (history.displacement.size() != state_->x.size()) {
     history.displacement.resize(state_->x.size());
@@ -83,8 +83,8 @@ ContactTerms::Positions NewtonCloth::place_freely(JobSystem& jobs) {
 void NewtonCloth::add_outside(StepScheme& scheme) const {
   const double time = scheme.step / scheme.beta;
   const double wind = time * environment_->wind.drag / model_->material.density;
-  scheme.keep = 1 / (1 + wind);
-  scheme.gain = scheme.keep * (time * gravity() + wind * environment_->wind.velocity);
+  scheme.drag_factor = 1 / (1 + wind);
+  scheme.velocity_gain = scheme.drag_factor * (time * gravity() + wind * environment_->wind.velocity);
 }
 
 /// External forces besides gravity: they enter a prediction like gravity.
@@ -92,7 +92,7 @@ void NewtonCloth::add_external(const StepScheme& scheme, ClothState& state, Vec3
   const std::vector<Vec3>& acceleration = environment_->acceleration;
   const double time = scheme.step / scheme.beta;
   for (std::size_t i = 0; i < acceleration.size(); ++i) {
-    const Vec3 gain = scheme.keep * time * acceleration[i];
+    const Vec3 gain = scheme.drag_factor * time * acceleration[i];
     const int row = rows_.index(static_cast<int>(i));
     state.v.set(i, state.v.get(i) + gain);
     state.history.displacement.set(i, state.history.displacement.get(i) + time * gain);
@@ -117,7 +117,7 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
     state_->v.set(pinned_[p], pin_motion_.velocity()[p]);
     state_->history.displacement.set(pinned_[p], step_ * pin_motion_.velocity()[p]);
   }
-  if (potential_.is_damped()) copy_lag();
+  if (potential_.is_damped()) copy_velocity_offset();
   clear(correction_);
   air_.set_velocities(state_->v, scheme_.beta / step_);
 }
@@ -148,7 +148,7 @@ void NewtonCloth::set_weights(double rate) {
     potential_.weight[rows_.index(i)] = static_cast<float>(per_mass * model_->mass[i]);
 }
 
-void NewtonCloth::remember_gain() {
+void NewtonCloth::store_velocity_gain() {
   Vec3 sum = Vec3::Zero();
   double mass = 0;
   for (std::size_t i = 0; i < state_->x.size(); ++i) {
@@ -157,15 +157,15 @@ void NewtonCloth::remember_gain() {
   }
   const Vec3 gain = sum / mass;
   const double size = gain.norm(), most = step_ * gravity().norm();
-  mean_gain_ = size > most ? Vec3(most / size * gain) : gain;
+  mean_velocity_gain_ = size > most ? Vec3(most / size * gain) : gain;
 }
 
-void NewtonCloth::coast(bool accelerates) {
+void NewtonCloth::start_inertial(bool accelerates) {
   clear(trial_);
-  const Vec3 gain = accelerates ? mean_gain_ : Vec3::Zero();
+  const Vec3 gain = accelerates ? mean_velocity_gain_ : Vec3::Zero();
   for (std::size_t i = 0; i < state_->x.size(); ++i) {
-    const Vec3 coasting = step_ * (state_->history.velocity.get(i) + gain);
-    trial_.set(rows_.index(static_cast<int>(i)), coasting - state_->history.displacement.get(i));
+    const Vec3 inertial = step_ * (state_->history.velocity.get(i) + gain);
+    trial_.set(rows_.index(static_cast<int>(i)), inertial - state_->history.displacement.get(i));
   }
   hold_pins(trial_);
 }
@@ -186,10 +186,10 @@ double NewtonCloth::energy_noise() const {
 }
 
 /// Velocity offset: the velocities at y, in the potential's layout.
-void NewtonCloth::copy_lag() {
+void NewtonCloth::copy_velocity_offset() {
   const double time = step_ / scheme_.beta;
   for (std::size_t i = 0; i < state_->v.size(); ++i)
-    potential_.lag.set(rows_.index(static_cast<int>(i)), time * state_->v.get(i));
+    potential_.velocity_offset.set(rows_.index(static_cast<int>(i)), time * state_->v.get(i));
 }
 
 double NewtonCloth::linearise(JobSystem& jobs) {
@@ -226,13 +226,13 @@ bool NewtonCloth::has_changed_much() const {
 
 void NewtonCloth::begin_preconditioner(bool is_first, bool is_active, JobSystem& jobs) {
   update_stiffer_couplings(is_first, jobs);
-  filter_.clear();
+  contact_preconditioner_.clear();
   if (is_active || is_in_contact_) diagonal_ = stiff_diagonal_ = potential_.weight;
 }
 
 void NewtonCloth::finish_preconditioner(JobSystem& jobs) {
   const bool was_in_contact = is_in_contact_;
-  is_in_contact_ = !filter_.empty();
+  is_in_contact_ = !contact_preconditioner_.empty();
   if (!is_in_contact_ && !was_in_contact) return;
   const WorkScope scope(clock_, &WorkTimes::set_up);
   preconditioner_.set_diagonal(diagonal_, jobs);
@@ -260,7 +260,7 @@ double NewtonCloth::precondition(JobSystem& jobs) {
   const auto stiff = [&](const Vec3Array& r, JobSystem& its_jobs, Vec3Array& z) {
     return stiff_preconditioner_.apply(r, its_jobs, z);
   };
-  return filter_.apply(stiff, free, block_.residual, jobs, block_.preconditioned);
+  return contact_preconditioner_.apply(stiff, free, block_.residual, jobs, block_.preconditioned);
 }
 
 void NewtonCloth::try_step(double share, JobSystem& jobs) {

@@ -9,7 +9,7 @@
 #include "weft/integrators/collapse_terms.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/contact_terms.h"
-#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/floating_components.h"
 #include "weft/integrators/newton_kernels.h"
 #include "weft/integrators/scalar_preconditioner.h"
 #include "weft/solvers/conjugate_gradients.h"
@@ -29,8 +29,8 @@ class NewtonCloth {
   /// Ballistic prediction: implicit Euler without springs. The state is unchanged.
   ContactTerms::Positions place_freely(JobSystem& jobs);
 
-  /// Stores the mean acceleration of the last step, for coast(). Call it before predict().
-  void remember_gain();
+  /// Stores the mean acceleration of the last step, for start_inertial(). Call it before predict().
+  void store_velocity_gain();
 
   /// Predicts by BDF2 or implicit Euler. The correction e is zero.
   void predict(bool is_euler, JobSystem& jobs);
@@ -40,7 +40,7 @@ class NewtonCloth {
   /// Sets the trial to an inertial start: x + h v, or the same with the cloth's mean acceleration in the last
   /// step. Green strain's energy is quartic: of the stretch that gravity causes beside a pin in a step, a
   /// single Newton step removes only two thirds, and cloth at rest would hang lower the longer the step is.
-  void coast(bool accelerates);
+  void start_inertial(bool accelerates);
 
   /// The potential at e, or at the trial [J].
   double energy(JobSystem& jobs) { return energy_at(correction_, jobs); }
@@ -52,7 +52,9 @@ class NewtonCloth {
   /// Updates the preconditioner. Between the two calls contacts add their part to preconditioners().
   /// `is_active`: whether any contact pushes. `is_first`: the first linearisation of the step.
   void begin_preconditioner(bool is_first, bool is_active, JobSystem& jobs);
-  ContactTerms::Preconditioners preconditioners() { return {&stiff_diagonal_, &diagonal_, &filter_}; }
+  ContactTerms::Preconditioners preconditioners() {
+    return {&stiff_diagonal_, &diagonal_, &contact_preconditioner_};
+  }
   void finish_preconditioner(JobSystem& jobs);
 
   /// In the block: product = A direction and their dot; preconditioned = P⁻¹ residual, likewise.
@@ -83,10 +85,10 @@ class NewtonCloth {
     return {model_, &environment_->pins, &rows_, first_particle};
   }
   FreeBodies::Member free_member() const {
-    return {&free_pieces_, &rows_, &potential_.weight, air_.is_active()};
+    return {&floating_components_, &rows_, &potential_.weight, air_.is_active()};
   }
-  double reach() const { return step_ * step_ * reach_rate_; }  // see choose_effort() [1]
-  double noise() const { return noise_; }                       // rounding error of energies [J]
+  double stiffness_number() const { return step_ * step_ * stiffness_rate_; }  // see choose_budget() [1]
+  double noise() const { return noise_; }  // rounding error of energies [J]
   bool is_beyond_limit() const { return potential_.is_beyond_limit(); }
   const Vec3& gravity() const { return environment_->gravity; }
 
@@ -99,14 +101,14 @@ class NewtonCloth {
   };
 
   void fit(const ClothModel& model, const PinTargets& pins);
-  void invent_history(JobSystem& jobs);
+  void synthesize_history(JobSystem& jobs);
   double free_share(JobSystem& jobs);
   void add_outside(StepScheme& scheme) const;
   void add_external(const StepScheme& scheme, ClothState& state, Vec3Array& y) const;
   void prepare_matrices(JobSystem& jobs);
   void set_weights(double rate);
   double energy_noise() const;
-  void copy_lag();
+  void copy_velocity_offset();
   double energy_at(const Vec3Array& offset, JobSystem& jobs);
   void update_stiffer_couplings(bool is_first, JobSystem& jobs);
   bool has_changed_much() const;
@@ -115,13 +117,13 @@ class NewtonCloth {
   std::shared_ptr<const ClothTopology> topology_;
   PaddedRows rows_;
   std::vector<int> pinned_;
-  FreePieces free_pieces_;
-  double reach_rate_ = 0;
+  FloatingComponents floating_components_;
+  double stiffness_rate_ = 0;
   Key key_;
   IncrementalPotential potential_;
   ScalarPreconditioner preconditioner_, stiff_preconditioner_;  // with friction only, with full contacts
   bool has_stiff_springs_ = false;                              // stiff_preconditioner_ is up to date
-  ContactFilter filter_;                                        // combines the two
+  ContactPreconditioner contact_preconditioner_;                // combines the two
   bool is_in_contact_ = false;                                  // the preconditioners include contacts
   AirTerms air_;
   CollapseTerms collapse_;
@@ -140,7 +142,7 @@ class NewtonCloth {
   WorkClock* clock_ = nullptr;
   PinMotion pin_motion_;
   double noise_ = 0;
-  Vec3 mean_gain_ = Vec3::Zero();  // of velocity in the last step, at most gravity's [m/s]
+  Vec3 mean_velocity_gain_ = Vec3::Zero();  // of velocity in the last step, at most gravity's [m/s]
   Vec3Array force_, solution_, trial_;
   Vec3Array correction_;  // e = x − y [m]
   CgBlock block_;         // of force_ and solution_

@@ -23,7 +23,7 @@ void for_runs(JobSystem& jobs, const PaddedRows& rows, const Body& body) {
 }
 
 struct Prediction {
-  float memory, keep, gain, time;  // time: h/β
+  float memory, drag_factor, velocity_gain, time;  // time: h/β
 };
 
 WEFT_ALWAYS_INLINE void predict_run_body(const Prediction& a, int count, const float* x, float* v, float* s,
@@ -31,7 +31,7 @@ WEFT_ALWAYS_INLINE void predict_run_body(const Prediction& a, int count, const f
   WEFT_IVDEP
   for (int i = 0; i < count; ++i) {
     const float old = v[i];
-    const float now = a.keep * (old + a.memory * (old - v_before[i])) + a.gain;
+    const float now = a.drag_factor * (old + a.memory * (old - v_before[i])) + a.velocity_gain;
     const float moved = a.memory * s[i] + a.time * now;
     v_before[i] = old;
     v[i] = now;
@@ -77,8 +77,9 @@ StepScheme make_bdf2(double step, double step_before) {
 void predict(const StepScheme& scheme, const PaddedRows& rows, JobSystem& jobs, ClothState& state,
              Vec3Array& y) {
   const auto run = [&](int c, const float* x, float* v, float* s, float* v_before, float* to) {
-    const Prediction a{static_cast<float>(scheme.memory), static_cast<float>(scheme.keep),
-                       static_cast<float>(scheme.gain[c]), static_cast<float>(scheme.step / scheme.beta)};
+    const Prediction a{static_cast<float>(scheme.memory), static_cast<float>(scheme.drag_factor),
+                       static_cast<float>(scheme.velocity_gain[c]),
+                       static_cast<float>(scheme.step / scheme.beta)};
     for_runs(jobs, rows, [&](int p, int place, int count) {
       predict_run(a, count, x + p, v + p, s + p, v_before + p, to + place);
     });

@@ -9,16 +9,16 @@ namespace weft::engine {
 
 /// A step of BDF2, or of implicit Euler (memory 0, beta 1), as a ballistic prediction without springs:
 ///
-///     v ← keep (v + memory (v − v₋₁)) + gain,   s ← memory s + (h/β) v,   y = x + s
+///     v ← drag_factor (v + memory (v − v₋₁)) + velocity_gain,   s ← memory s + (h/β) v,   y = x + s
 ///
 /// where s is the displacement of the step. The result d of the solve then corrects both: v += (β/h) d, s +=
 /// d, x += s. So x never enters a difference, and free fall is exact to rounding.
 struct StepScheme {
-  double step = 0;           // h [s]
-  double beta = 1;           // β: x'' = (β/h)² (x − …) [1]
-  double memory = 0;         // weight of the change in the last step [1]
-  double keep = 1;           // drag factor: share of velocity that wind leaves [1]
-  Vec3 gain = Vec3::Zero();  // velocity gain from gravity and wind [m/s]
+  double step = 0;                    // h [s]
+  double beta = 1;                    // β: x'' = (β/h)² (x − …) [1]
+  double memory = 0;                  // weight of the change in the last step [1]
+  double drag_factor = 1;             // drag factor: share of velocity that wind leaves [1]
+  Vec3 velocity_gain = Vec3::Zero();  // velocity gain from gravity and wind [m/s]
 };
 
 /// BDF2 for a step of size `step` after one of size `step_before`.

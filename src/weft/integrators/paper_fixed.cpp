@@ -21,8 +21,8 @@ class PaperFixedIntegrator final : public ClothIntegrator {
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
     const double rate = environment.wind.drag / model.material.density;
-    const double keep = 1 / (1 + step * rate);
-    const Vec3 gain = keep * step * (environment.gravity + rate * environment.wind.velocity);
+    const double drag_factor = 1 / (1 + step * rate);
+    const Vec3 velocity_gain = drag_factor * step * (environment.gravity + rate * environment.wind.velocity);
     weights_.fit(model, step);
     pins_.prepare(environment.pins, step, state);
     IncrementSettings settings = make_increment_settings(model, environment, step);
@@ -31,10 +31,10 @@ class PaperFixedIntegrator final : public ClothIntegrator {
     compute_increments(model, state, settings, weights_.mass(), weights_.weight(), jobs, increments_);
     for (std::size_t p = 0; p < environment.pins.particle.size(); ++p) {
       const int i = environment.pins.particle[p];
-      increments_.set(i, pins_.velocity()[p] - (keep * state.v.get(i) + gain));
+      increments_.set(i, pins_.velocity()[p] - (drag_factor * state.v.get(i) + velocity_gain));
     }
     apply_filtered_increments(model, increments_, settings.step, weights_.weight(),
-                              {static_cast<float>(keep), gain}, jobs, state);
+                              {static_cast<float>(drag_factor), velocity_gain}, jobs, state);
     pins_.finish(environment.pins, state);
     return {};
   }

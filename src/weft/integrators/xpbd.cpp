@@ -60,11 +60,11 @@ class XpbdIntegrator final : public ClothIntegrator {
   }
 
   static XpbdSubstep make_substep(const ClothModel& model, const Environment& environment, double step) {
-    const double wind = step * environment.wind.drag / model.material.density, keep = 1 / (1 + wind);
-    const Vec3 gain = keep * (step * environment.gravity + wind * environment.wind.velocity);
+    const double wind = step * environment.wind.drag / model.material.density, drag_factor = 1 / (1 + wind);
+    const Vec3 velocity_gain = drag_factor * (step * environment.gravity + wind * environment.wind.velocity);
     return {.step = static_cast<float>(step),
-            .keep = static_cast<float>(keep),
-            .gain = gain.cast<float>(),
+            .drag_factor = static_cast<float>(drag_factor),
+            .velocity_gain = velocity_gain.cast<float>(),
             .is_projected = model.material.damping_kind == DampingKind::projected};
   }
 

@@ -151,14 +151,14 @@ WEFT_MULTIVERSION_PACKS(project_block, (const GridPass& pass, const Block& block
 /// One component of a row of the grid: `plane_pitch` from one class of columns to the next.
 struct PredictedRow {
   int columns, plane_pitch;
-  float step, keep, gain;
+  float step, drag_factor, velocity_gain;
 };
 
 WEFT_ALWAYS_INLINE void predict_row_body(const PredictedRow& a, const float* x, float* v, float* y, float* c,
                                          float* motion) {
   const auto one = [&](int m, int r) WEFT_INLINE_LAMBDA {
     const int i = kClasses * m + r, place = r * a.plane_pitch + m;
-    v[i] = a.keep * v[i] + a.gain;
+    v[i] = a.drag_factor * v[i] + a.velocity_gain;
     const float moved = a.step * v[i];
     motion[place] = moved;
     y[place] = x[i] + moved;
@@ -227,8 +227,8 @@ class GridProjection final : public ClothProjection {
 
   void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
     const auto run = [&](int component, const float* x, float* v, float* y, float* c, float* motion) {
-      const PredictedRow row{grid_.num_columns(), plane_pitch_, substep.step, substep.keep,
-                             substep.gain[component]};
+      const PredictedRow row{grid_.num_columns(), plane_pitch_, substep.step, substep.drag_factor,
+                             substep.velocity_gain[component]};
       for_rows(jobs, [&](int first, int at) {
         predict_row(row, x + first, v + first, y + at, c + at, motion + at);
       });

@@ -113,7 +113,7 @@ class MeshProjection final : public ClothProjection {
       XpbdParticle& particle = particles_.particle[i];
       XpbdMotion& motion = particles_.motion[i];
       for (int c = 0; c < 3; ++c) {
-        v[c][i] = substep.keep * v[c][i] + substep.gain[c];
+        v[c][i] = substep.drag_factor * v[c][i] + substep.velocity_gain[c];
         motion.by[c] = substep.step * v[c][i];
         particle.y[c] = x[c][i] + motion.by[c];
       }

@@ -27,10 +27,10 @@ namespace weft::engine {
 
 /// Parameters of a substep besides elasticity.
 struct XpbdSubstep {
-  float step = 0;                                  // h [s]
-  float keep = 1;                                  // drag factor: share of velocity that wind leaves [1]
-  Eigen::Vector3f gain = Eigen::Vector3f::Zero();  // velocity gain from gravity and wind [m/s]
-  bool is_projected = true;                        // damping along the springs only
+  float step = 0;         // h [s]
+  float drag_factor = 1;  // drag factor: share of velocity that wind leaves [1]
+  Eigen::Vector3f velocity_gain = Eigen::Vector3f::Zero();  // velocity gain from gravity and wind [m/s]
+  bool is_projected = true;                                 // damping along the springs only
 };
 
 class ClothProjection {
@@ -40,7 +40,7 @@ class ClothProjection {
   /// Takes masses and stiffness from a model of this topology; `pinned` particles do not yield.
   virtual void set_numbers(const ClothModel& model, const std::vector<int>& pinned) = 0;
 
-  /// v ← keep v + gain, y = x + h v, c = 0.
+  /// v ← drag_factor v + velocity_gain, y = x + h v, c = 0.
   virtual void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) = 0;
 
   /// Sets a particle's y; `motion` is its displacement in the substep [m].

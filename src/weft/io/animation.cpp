@@ -10,13 +10,13 @@ Animation without_frames(const Animation& animation) {
                    .cloths = {},
                    .bodies = {},
                    .passing = animation.passing};
-  for (const AnimatedMesh& cloth : animation.cloths)
+  for (const AnimatedCloth& cloth : animation.cloths)
     meshes.cloths.push_back({.name = cloth.name,
                              .triangles = cloth.triangles,
                              .color = cloth.color,
                              .frames = {},
                              .fabric_coordinates = cloth.fabric_coordinates});
-  for (const RigidMesh& body : animation.bodies)
+  for (const AnimatedBody& body : animation.bodies)
     meshes.bodies.push_back({.name = body.name,
                              .mesh = body.mesh,
                              .color = body.color,
@@ -28,16 +28,16 @@ Animation without_frames(const Animation& animation) {
 
 std::size_t count_frames(const Animation& animation) {
   std::size_t count = 1;
-  for (const AnimatedMesh& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
-  for (const RigidMesh& body : animation.bodies)
+  for (const AnimatedCloth& cloth : animation.cloths) count = std::max(count, cloth.frames.size());
+  for (const AnimatedBody& body : animation.bodies)
     count = std::max({count, body.poses.size(), body.frames.size()});
   return count;
 }
 
 AnimationFrame get_frame(const Animation& animation, std::size_t k) {
   AnimationFrame frame;
-  for (const AnimatedMesh& cloth : animation.cloths) frame.cloths.push_back(cloth.frames[k]);
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedCloth& cloth : animation.cloths) frame.cloths.push_back(cloth.frames[k]);
+  for (const AnimatedBody& body : animation.bodies) {
     frame.poses.push_back(body.poses[body.poses.size() > 1 ? k : 0]);
     frame.body_vertices.push_back(body.frames.empty() ? std::vector<float>() : body.frames[k]);
   }
@@ -46,11 +46,11 @@ AnimationFrame get_frame(const Animation& animation, std::size_t k) {
 
 void append_frame(AnimationFrame frame, Animation& animation) {
   std::size_t num_before = 0;
-  for (const AnimatedMesh& cloth : animation.cloths) num_before = std::max(num_before, cloth.frames.size());
+  for (const AnimatedCloth& cloth : animation.cloths) num_before = std::max(num_before, cloth.frames.size());
   for (std::size_t c = 0; c < animation.cloths.size(); ++c)
     animation.cloths[c].frames.push_back(std::move(frame.cloths[c]));
   for (std::size_t b = 0; b < animation.bodies.size(); ++b) {
-    RigidMesh& body = animation.bodies[b];
+    AnimatedBody& body = animation.bodies[b];
     if (!frame.body_vertices[b].empty()) body.frames.push_back(std::move(frame.body_vertices[b]));
     if (body.poses.size() == 1 && body.poses[0] == frame.poses[b]) continue;
     if (!body.poses.empty()) body.poses.resize(num_before, body.poses[0]);

@@ -12,7 +12,7 @@
 namespace weft::engine {
 
 /// A mesh with a position per vertex and frame.
-struct AnimatedMesh {
+struct AnimatedCloth {
   std::string name;
   std::vector<Triangle> triangles;
   std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
@@ -22,7 +22,7 @@ struct AnimatedMesh {
 
 /// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, from mesh to world
 /// coordinates. One pose: at rest.
-struct RigidMesh {
+struct AnimatedBody {
   struct Pose {
     Vec3 translation = Vec3::Zero();                               // [m]
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // unit
@@ -49,16 +49,16 @@ struct RigidMesh {
 struct Animation {
   std::string title;
   double frames_per_second = 60;  // > 0
-  std::vector<AnimatedMesh> cloths;
-  std::vector<RigidMesh> bodies;
+  std::vector<AnimatedCloth> cloths;
+  std::vector<AnimatedBody> bodies;
   std::vector<std::array<std::string, 2>> passing = {};  // names of pairs that do not collide
 };
 
 /// One frame of an animation.
 struct AnimationFrame {
   std::vector<std::vector<float>> cloths;         // (num_cloths) of (num_vertices x 3), world space [m]
-  std::vector<RigidMesh::Pose> poses;             // (num_bodies)
-  std::vector<std::vector<float>> body_vertices;  // (num_bodies) as in RigidMesh::frames; empty for a body
+  std::vector<AnimatedBody::Pose> poses;          // (num_bodies)
+  std::vector<std::vector<float>> body_vertices;  // (num_bodies) as in AnimatedBody::frames; empty for a body
                                                   // that does not deform [m]
 };
 

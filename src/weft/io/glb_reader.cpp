@@ -15,7 +15,7 @@
 namespace weft::engine {
 namespace {
 
-using Pose = RigidMesh::Pose;
+using Pose = AnimatedBody::Pose;
 using Value = tinygltf::Value;
 
 /// Throws the mistake in the file; parse_glb adds the file name.
@@ -179,9 +179,9 @@ void add_targets(const tinygltf::Model& model, const tinygltf::Node& node,
   }
 }
 
-AnimatedMesh read_cloth(const tinygltf::Model& model, const tinygltf::Node& node) {
+AnimatedCloth read_cloth(const tinygltf::Model& model, const tinygltf::Node& node) {
   const tinygltf::Primitive& primitive = primitive_of(model, node);
-  AnimatedMesh cloth;
+  AnimatedCloth cloth;
   cloth.name = node.name;
   cloth.color = read_color(model, primitive);
   const auto base = read_positions(model, primitive.attributes);
@@ -293,10 +293,10 @@ class Reader {
     if (role == "collider") animation.bodies.push_back(read_body(index));
   }
 
-  RigidMesh read_body(int index) const {
+  AnimatedBody read_body(int index) const {
     const tinygltf::Node& node = model_.nodes[index];
     const tinygltf::Primitive& primitive = primitive_of(model_, node);
-    RigidMesh body;
+    AnimatedBody body;
     body.name = node.name;
     const auto positions = read_positions(model_, primitive.attributes);
     for (size_t k = 0; k + 2 < positions.size(); k += 3) {

@@ -59,7 +59,7 @@ void require_finite(const std::string& name, size_t frame, std::span<const float
   throw InputError("mesh '" + name + "' has a non-finite coordinate in frame " + std::to_string(frame));
 }
 
-void require_valid(const RigidMesh::Pose& pose, const std::string& name, size_t frame) {
+void require_valid(const AnimatedBody::Pose& pose, const std::string& name, size_t frame) {
   if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) return;
   throw InputError("body '" + name + "' has a non-finite pose in frame " + std::to_string(frame));
 }
@@ -67,9 +67,9 @@ void require_valid(const RigidMesh::Pose& pose, const std::string& name, size_t 
 /// Checks that every mesh has all frames, and every body all or one pose.
 void require_equal_counts(const Animation& animation) {
   const size_t frames = count_frames(animation);
-  for (const AnimatedMesh& cloth : animation.cloths)
+  for (const AnimatedCloth& cloth : animation.cloths)
     require_count(cloth.name, "frames", cloth.frames.size(), frames);
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedBody& body : animation.bodies) {
     if (body.poses.size() != 1) require_count(body.name, "poses", body.poses.size(), frames);
     if (!body.frames.empty()) require_count(body.name, "frames", body.frames.size(), frames);
   }
@@ -131,12 +131,12 @@ Extras shape_extras(const OrientedBox& b) {
           {"rotation", numbers(std::span<const double>(rows.data(), 9))}};
 }
 
-tinygltf::Value extras_of(const AnimatedMesh&) {
+tinygltf::Value extras_of(const AnimatedCloth&) {
   return tinygltf::Value(
       Extras{{"weft", tinygltf::Value(Extras{{"role", tinygltf::Value(std::string("cloth"))}})}});
 }
 
-tinygltf::Value extras_of(const RigidMesh& body) {
+tinygltf::Value extras_of(const AnimatedBody& body) {
   Extras weft = {{"shape", tinygltf::Value(std::string("mesh"))}};
   if (body.shape) weft = std::visit([](const auto& shape) { return shape_extras(shape); }, *body.shape);
   weft["role"] = tinygltf::Value(std::string("collider"));
@@ -168,7 +168,7 @@ class GlbWriter::Builder {
       add_vertices(meshes_.cloths[c].name, meshes_.cloths[c].triangles, frame.cloths[c], meshes_in_file_[c]);
     }
     for (size_t b = 0; b < meshes_.bodies.size(); ++b) {
-      const RigidMesh& body = meshes_.bodies[b];
+      const AnimatedBody& body = meshes_.bodies[b];
       const std::vector<float>& moved = frame.body_vertices[b];
       MeshInFile& own = num_frames_ == 0 ? add_body(body, !moved.empty()) : meshes_in_file_[num_cloths() + b];
       require_valid(frame.poses[b], body.name, num_frames_);
@@ -210,7 +210,7 @@ class GlbWriter::Builder {
     return extras.empty() ? tinygltf::Value() : tinygltf::Value(std::move(extras));
   }
 
-  void add_cloth(const AnimatedMesh& cloth, const std::vector<float>& positions) {
+  void add_cloth(const AnimatedCloth& cloth, const std::vector<float>& positions) {
     require_triangles(cloth.name, cloth.triangles, positions.size() / 3);
     MeshInFile& own = add_mesh(cloth.name, cloth.triangles, cloth.color, extras_of(cloth));
     own.is_moving = true;
@@ -221,7 +221,7 @@ class GlbWriter::Builder {
     primitive(own).attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
   }
 
-  MeshInFile& add_body(const RigidMesh& body, bool is_deforming) {
+  MeshInFile& add_body(const AnimatedBody& body, bool is_deforming) {
     require_triangles(body.name, body.mesh.triangles, body.mesh.positions.size());
     MeshInFile& own = add_mesh(body.name, body.mesh.triangles, body.color, extras_of(body));
     own.is_moving = is_deforming;
@@ -283,7 +283,7 @@ class GlbWriter::Builder {
   }
 
   /// The pose of a body at rest is in its node only.
-  void add_poses(const MeshInFile& own, const std::vector<RigidMesh::Pose>& poses) {
+  void add_poses(const MeshInFile& own, const std::vector<AnimatedBody::Pose>& poses) {
     const auto& [translation, rotation] = poses[0];
     const Eigen::Vector4d first = rotation.normalized().coeffs();
     model_.nodes[own.node].translation.assign(translation.begin(), translation.end());
@@ -448,8 +448,8 @@ class GlbWriter::Builder {
   SpoolFile bytes_;  // of the document's buffer
   tinygltf::Model model_;
   tinygltf::Animation motion_;
-  std::vector<MeshInFile> meshes_in_file_;           // (cloths, then bodies)
-  std::vector<std::vector<RigidMesh::Pose>> poses_;  // (bodies) of (num_frames)
+  std::vector<MeshInFile> meshes_in_file_;              // (cloths, then bodies)
+  std::vector<std::vector<AnimatedBody::Pose>> poses_;  // (bodies) of (num_frames)
   size_t num_frames_ = 0;
   int times_ = -1;  // accessor of the key times
 };
@@ -468,7 +468,7 @@ size_t max_glb_size() {
 size_t glb_size(const Animation& meshes, size_t num_vertices, size_t num_frames) {
   constexpr size_t kBytesPerVertex = 6 * sizeof(float);  // position and normal
   size_t size = num_frames * num_vertices * kBytesPerVertex + num_frames * num_frames * sizeof(float);
-  for (const AnimatedMesh& cloth : meshes.cloths) size += cloth.triangles.size() * sizeof(Triangle);
+  for (const AnimatedCloth& cloth : meshes.cloths) size += cloth.triangles.size() * sizeof(Triangle);
   return size;
 }
 

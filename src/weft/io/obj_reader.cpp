@@ -195,8 +195,8 @@ class ObjParser {
 
   std::vector<Vec3>& positions() { return result_.mesh.positions; }
 
-  [[noreturn]] void fail(int line, const std::string& sentence) const {
-    throw InputError(name_ + ":" + std::to_string(line) + ": " + sentence);
+  [[noreturn]] void fail(int line, const std::string& message) const {
+    throw InputError(name_ + ":" + std::to_string(line) + ": " + message);
   }
 
   void read_line(std::string_view keyword) {
@@ -299,11 +299,11 @@ class ObjParser {
   }
 
   void add_warnings() {
-    constexpr size_t kMostTold = 8;  // a file of another kind may have thousands
+    constexpr size_t kMaxWarnings = 8;  // a file of another kind may have thousands
     for (const auto& [keyword, unknown] : unknown_) {
-      if (result_.warnings.size() == kMostTold) {
-        const size_t untold = unknown_.size() - kMostTold;
-        result_.warnings.push_back(name_ + ": " + std::to_string(untold) +
+      if (result_.warnings.size() == kMaxWarnings) {
+        const size_t num_omitted = unknown_.size() - kMaxWarnings;
+        result_.warnings.push_back(name_ + ": " + std::to_string(num_omitted) +
                                    " more unknown keywords were ignored");
         return;
       }

@@ -9,9 +9,9 @@ namespace weft::engine {
 namespace {
 
 constexpr int kMaxPasses = 20;
-constexpr double kNeedle = 2.5;       // times flatness: shorter edges are collapsed [1]
-constexpr double kShort = 0.15;       // maximum length of a short edge, as a share of the longest around [1]
-constexpr double kLeastCosine = 0.2;  // minimum between a triangle's normals before and after [1]
+constexpr double kNeedle = 2.5;     // times flatness: shorter edges are collapsed [1]
+constexpr double kShort = 0.15;     // maximum length of a short edge, as a share of the longest around [1]
+constexpr double kMinCosine = 0.2;  // minimum between a triangle's normals before and after [1]
 
 /// A flat triangle with longest edge a–b.
 struct Sliver {
@@ -134,7 +134,7 @@ class Pass {
 
   bool turns_over(const Triangle& from, const Triangle& to) const {
     const Vec3 before = normal_of(mesh_, from), after = normal_of(mesh_, to);
-    return before.dot(after) <= kLeastCosine * before.norm() * after.norm();
+    return before.dot(after) <= kMinCosine * before.norm() * after.norm();
   }
 
   double length(int a, int b) const { return (mesh_.positions[b] - mesh_.positions[a]).norm(); }

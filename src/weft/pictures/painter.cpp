@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kSheetGap = 6;  // between the pictures of a contact sheet [pixels]
-constexpr int kMostColumns = 4;
+constexpr int kMaxColumns = 4;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void Painter::write_pictures(const fs::path& file, const std::vector<int>& frame
   const Camera camera = this->frame(frames);
   std::vector<Image> images;
   for (const int frame : frames) images.push_back(draw(frame, camera));
-  if (columns == 0) columns = std::min(kMostColumns, static_cast<int>(images.size()));
+  if (columns == 0) columns = std::min(kMaxColumns, static_cast<int>(images.size()));
   write_image(file, images.size() == 1 ? images[0] : make_contact_sheet(images, columns, kSheetGap));
 }
 

@@ -33,7 +33,8 @@ class Painter {
   void write_pictures(const std::filesystem::path& file, const std::vector<int>& frames, int columns);
 
   /// Every `every`-th frame, until the end or until `is_stopped` returns true.
-  void write_video(const std::filesystem::path& file, int every, const std::function<bool()>& is_stopped = {});
+  void write_video(const std::filesystem::path& file, int every,
+                   const std::function<bool()>& is_stopped = {});
 
   int last_frame() const { return last_; }
 

@@ -15,14 +15,14 @@ constexpr Color kStructural = {0.05, 0.10, 0.25}, kShear = {0.75, 0.22, 0.04}, k
 constexpr int kArcPieces = 8;        // lines in the arc of a bending spring
 constexpr double kArcHeight = 0.13;  // of the arc, as a share of its length [1]
 
-bool is_level_plane(const RigidMesh& body) {
+bool is_level_plane(const AnimatedBody& body) {
   const Plane* plane = body.shape ? std::get_if<Plane>(&*body.shape) : nullptr;
   return plane && body.poses.size() == 1 && (body.poses[0].rotation * plane->normal).y() > kLevel;
 }
 
-bool is_plane(const RigidMesh& body) { return body.shape && std::holds_alternative<Plane>(*body.shape); }
+bool is_plane(const AnimatedBody& body) { return body.shape && std::holds_alternative<Plane>(*body.shape); }
 
-const RigidMesh::Pose& pose_at(const RigidMesh& body, int frame) {
+const AnimatedBody::Pose& pose_at(const AnimatedBody& body, int frame) {
   return body.poses[std::min<std::size_t>(static_cast<std::size_t>(frame), body.poses.size() - 1)];
 }
 
@@ -32,19 +32,19 @@ Vec3 vertex(const std::vector<float>& positions, std::size_t v) {
 
 /// Everything in a frame except for planes, which are infinite.
 void add_points(const Animation& animation, int frame, std::vector<Vec3>& points) {
-  for (const AnimatedMesh& cloth : animation.cloths) {
+  for (const AnimatedCloth& cloth : animation.cloths) {
     const std::vector<float>& positions = cloth.frames[frame];
     for (std::size_t v = 0; 3 * v < positions.size(); ++v) points.push_back(vertex(positions, v));
   }
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedBody& body : animation.bodies) {
     if (is_plane(body)) continue;
-    const RigidMesh::Pose& pose = pose_at(body, frame);
+    const AnimatedBody::Pose& pose = pose_at(body, frame);
     for (std::size_t v = 0; v < body.mesh.positions.size(); ++v)
       points.push_back(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation);
   }
 }
 
-DrawnMesh draw_cloth(const AnimatedMesh& cloth, int frame) {
+DrawnMesh draw_cloth(const AnimatedCloth& cloth, int frame) {
   const double check = cloth.fabric_coordinates.empty() ? 0 : kCheckSize;
   return {.triangles = cloth.triangles,
           .positions = cloth.frames[frame],
@@ -52,9 +52,9 @@ DrawnMesh draw_cloth(const AnimatedMesh& cloth, int frame) {
           .look = {Look::Kind::fabric, cloth.color, check}};
 }
 
-DrawnMesh draw_body(const RigidMesh& body, int frame) {
+DrawnMesh draw_body(const AnimatedBody& body, int frame) {
   DrawnMesh mesh{.triangles = body.mesh.triangles, .look = {.color = body.color}};
-  const RigidMesh::Pose& pose = pose_at(body, frame);
+  const AnimatedBody::Pose& pose = pose_at(body, frame);
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
     for (const double c :
          Vec3(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation))
@@ -65,7 +65,7 @@ DrawnMesh draw_body(const RigidMesh& body, int frame) {
 
 /// Height of a level plane, else `otherwise`, else below the lowest point of the animation.
 std::optional<double> find_ground(const Animation& animation, std::optional<double> otherwise) {
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedBody& body : animation.bodies) {
     if (is_level_plane(body)) return body.poses[0].translation.y();
   }
   if (otherwise) return otherwise;
@@ -139,7 +139,7 @@ Picture ScenePictures::at(int frame, const Camera& camera) const {
     else
       draw_springs(cloth, *springs->topology, picture);
   }
-  for (const RigidMesh& body : animation_.bodies) {
+  for (const AnimatedBody& body : animation_.bodies) {
     if (!is_level_plane(body)) picture.meshes.push_back(draw_body(body, frame));
   }
   return picture;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <ostream>
 
-#include "weft/error.h"
 #include "weft/core/staged_file.h"
+#include "weft/error.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC

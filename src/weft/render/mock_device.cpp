@@ -10,8 +10,8 @@
 namespace weft::engine {
 namespace {
 
-void require(bool condition, const std::string& sentence) {
-  if (!condition) throw std::logic_error(sentence);
+void require(bool condition, const std::string& message) {
+  if (!condition) throw std::logic_error(message);
 }
 
 const char* to_string(Program program) {

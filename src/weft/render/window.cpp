@@ -152,7 +152,7 @@ struct Window::System {
     return static_cast<double>(wide) / std::max(width, 1);
   }
 
-  void tell(const Event& event, const WindowEvents& to) const {
+  void dispatch(const Event& event, const WindowEvents& to) const {
     const ImGuiIO& io = ImGui::GetIO();
     if (const KeyDown* key = std::get_if<KeyDown>(&event)) {
       if (!io.WantTextInput) to.on_key(key->key, key->shift);
@@ -223,7 +223,7 @@ void Window::begin_frame(const WindowEvents& events) {
   ImGui::NewFrame();
   std::vector<Event> happened;
   happened.swap(system_->events);
-  for (const Event& event : happened) system_->tell(event, events);
+  for (const Event& event : happened) system_->dispatch(event, events);
 }
 
 void Window::end_frame() {

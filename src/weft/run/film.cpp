@@ -29,8 +29,8 @@ std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
 }
 
 /// The collider's shape around its own pivot, exact and as a mesh for drawing.
-RigidMesh show(const Collider& collider) {
-  RigidMesh body;
+AnimatedBody show(const Collider& collider) {
+  AnimatedBody body;
   body.name = collider.name;
   if (const Sphere* sphere = std::get_if<Sphere>(&collider.shape)) {
     body.shape = Sphere{Vec3::Zero(), sphere->radius};
@@ -80,10 +80,10 @@ Animation make_animation(const SceneDesc& scene, const World& world) {
                       .frames_per_second = scene.fps,
                       .cloths = {},
                       .bodies = {},
-                      .passing = world.passing_pairs()};
+                      .passing = world.non_colliding_pairs()};
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothTopology& topology = *world.model(world.cloth(c)).topology;
-    AnimatedMesh mesh;
+    AnimatedCloth mesh;
     mesh.name = world.name(world.cloth(c));
     mesh.triangles = topology.mesh.triangles;
     mesh.color = scene.cloths[c].color;
@@ -96,8 +96,7 @@ Animation make_animation(const SceneDesc& scene, const World& world) {
 
 AnimationFrame capture_frame(const World& world) {
   AnimationFrame frame;
-  for (int c = 0; c < world.num_cloths(); ++c)
-    frame.cloths.push_back(positions(world.state(world.cloth(c))));
+  for (int c = 0; c < world.num_cloths(); ++c) frame.cloths.push_back(positions(world.state(world.cloth(c))));
   for (const Collider& collider : world.colliders()) {
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
     frame.body_vertices.push_back(mesh && mesh->sequence ? positions(*mesh, world.time())

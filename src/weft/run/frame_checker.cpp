@@ -16,7 +16,7 @@ void check_start(const SceneDesc& scene, const World& world, RunReport& report) 
   std::string all = scene.untangle
                         ? "intersections at the start could not be repaired:"
                         : "intersections at the start, which solver.untangle = false does not repair:";
-  for (const std::string& sentence : found) all += "\n  " + sentence;
+  for (const std::string& message : found) all += "\n  " + message;
   throw InputError(all + "\nmove them apart, or set solver.crossed_start = \"allow\" to run anyway");
 }
 

@@ -117,8 +117,8 @@ void add_passages(const std::vector<verify::FeaturePair>& passages, const verify
   sum.passages += static_cast<int>(passages.size());
   const std::size_t more = passages.size() - 1;
   const std::string others = more > 0 ? " (and " + std::to_string(more) + " more)" : "";
-  if (static_cast<int>(sum.may_passed.size()) < options.num_offences)
-    sum.may_passed.push_back({index, verify::describe(frame, passages[0]) + others});
+  if (static_cast<int>(sum.possible_passages.size()) < options.num_offences)
+    sum.possible_passages.push_back({index, verify::describe(frame, passages[0]) + others});
   if (options.passages_offend) sum.is_clean = false;
 }
 
@@ -142,30 +142,30 @@ FrameToCheck WorldFrames::at(double time) const {
     const Solid shape = place(shape_at(collider, time), is_closed_[k], result);
     result.frame.colliders.push_back({collider.name, shape, collider.motion.at(time).rotation});
   }
-  result.frame.passing = world_.passing_pairs();
+  result.frame.non_colliding = world_.non_colliding_pairs();
   return result;
 }
 
 AnimationFrames::AnimationFrames(const Animation& animation) : animation_(animation) {
-  for (const RigidMesh& body : animation.bodies) {
+  for (const AnimatedBody& body : animation.bodies) {
     is_closed_.push_back(!body.shape && verify::is_closed(body.mesh.triangles));
   }
 }
 
 int AnimationFrames::num_frames() const {
   std::size_t count = 0;
-  for (const AnimatedMesh& cloth : animation_.cloths) count = std::max(count, cloth.frames.size());
-  for (const RigidMesh& body : animation_.bodies) count = std::max(count, body.poses.size());
+  for (const AnimatedCloth& cloth : animation_.cloths) count = std::max(count, cloth.frames.size());
+  for (const AnimatedBody& body : animation_.bodies) count = std::max(count, body.poses.size());
   return static_cast<int>(count);
 }
 
 FrameToCheck AnimationFrames::at(int frame) const {
   FrameToCheck result;
-  for (const AnimatedMesh& cloth : animation_.cloths) {
+  for (const AnimatedCloth& cloth : animation_.cloths) {
     add_cloth(cloth.name, cloth.triangles, to_positions(cloth.frames[frame]), result);
   }
   for (std::size_t k = 0; k < animation_.bodies.size(); ++k) {
-    const RigidMesh& body = animation_.bodies[k];
+    const AnimatedBody& body = animation_.bodies[k];
     const auto& [translation, rotation] = body.poses[body.poses.size() > 1 ? frame : 0];
     const Placement placement{rotation.toRotationMatrix(), translation};
     const Solid shape =
@@ -175,7 +175,7 @@ FrameToCheck AnimationFrames::at(int frame) const {
                                body.mesh.triangles, placement, is_closed_[k], result));
     result.frame.colliders.push_back({body.name, shape, placement.rotation});
   }
-  result.frame.passing = animation_.passing;
+  result.frame.non_colliding = animation_.passing;
   return result;
 }
 

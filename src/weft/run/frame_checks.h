@@ -67,9 +67,9 @@ struct AnimationCheck {
   std::optional<double> penetration_max;  // empty: no collider has an inside [m]
   int deepest_frame = -1;                 // -1: cloth is never inside
   std::string deepest_place;
-  int passages = 0;                 // pairs of features that may have passed through each other, all frames
-  std::vector<Offence> may_passed;  // the first of them: between the frame and the one before
-  std::vector<Offence> offences;    // the first ones
+  int passages = 0;  // pairs of features that may have passed through each other, all frames
+  std::vector<Offence> possible_passages;  // the first of them: between the frame and the one before
+  std::vector<Offence> offences;           // the first ones
   bool is_clean = true;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Receivers of a run's frames.
 
-#include "weft/run/report.h"
 #include "weft/report.h"
+#include "weft/run/report.h"
 
 namespace weft::engine {
 

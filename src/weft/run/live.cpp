@@ -12,12 +12,12 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kPatience = 0.05;    // maximum delay to real time before slow motion [s]
-constexpr double kWindow = 1;         // for measuring the pace [s]
-constexpr double kSlow = 0.95;        // of real time: a lower pace is too heavy [1]
-constexpr std::size_t kSteps = 512;   // in medians
-constexpr std::size_t kTroubles = 4;  // maximum number reported
-constexpr double kDrag = 0.25;        // of wind in scenes without wind [N·s/m³]
+constexpr double kPatience = 0.05;           // maximum delay to real time before slow motion [s]
+constexpr double kWindow = 1;                // for measuring the pace [s]
+constexpr double kSlow = 0.95;               // of real time: a lower pace is too heavy [1]
+constexpr std::size_t kSteps = 512;          // in medians
+constexpr std::size_t kMaxStepWarnings = 4;  // maximum number reported
+constexpr double kDrag = 0.25;               // of wind in scenes without wind [N·s/m³]
 
 constexpr const char* kNoModel = "mesh";
 
@@ -46,7 +46,7 @@ LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
   status_.playing = settings.playing;
   status_.integrator = solver_.integrator;
   status_.model = name_of_model(start_scene_);
-  judge_solver();
+  check_solver();
   publish();
   thread_ = std::thread([this] { run(); });
 }
@@ -98,7 +98,7 @@ void LiveSimulation::reset() {
     apply_wind();
     status_.steps = status_.frames = 0;
     status_.failure.clear();
-    status_.troubles.clear();
+    status_.step_warnings.clear();
     steps_to_make_ = 0;
     is_paced_ = false;
   });
@@ -108,7 +108,7 @@ void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
     const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-    if (!moves_elements(name) &&
+    if (!supports_elements(name) &&
         std::any_of(start_scene_.cloths.begin(), start_scene_.cloths.end(), is_fabric)) {
       status_.warnings = {name + " supports springs only, and this scene has a fabric: keeping " +
                           status_.integrator};
@@ -117,7 +117,7 @@ void LiveSimulation::set_integrator(const std::string& name) {
     solver_.integrator = name;
     world().set_integrator(solver_);
     status_.integrator = name;
-    judge_solver();
+    check_solver();
   });
 }
 
@@ -141,7 +141,7 @@ void LiveSimulation::grab(const ClothPoint& point) {
 
 void LiveSimulation::move_grab(const Vec3& target) {
   post([this, target] {
-    if (held_) world().set_grab_target(world().cloth(held_->cloth), 0, target);
+    if (held_) world().set_attachment_target(world().cloth(held_->cloth), 0, target);
   });
 }
 
@@ -219,25 +219,25 @@ bool LiveSimulation::take_step() {
   step_ms_.push_back(1000 * seconds(Clock::now() - start));
   if (step_ms_.size() > kSteps) step_ms_.pop_front();
   status_.wind = world().wind();
-  tell(report);
+  report_step(report);
   return report.ok;
 }
 
-void LiveSimulation::tell(const StepReport& report) {
+void LiveSimulation::report_step(const StepReport& report) {
   status_.substeps = report.substeps;
   status_.iterations = report.iterations;
   status_.failure.clear();
   status_.divisions = report.divisions;
   for (const StepWarning& warning : report.warnings) {
-    const std::string sentence = describe(world(), warning);
+    const std::string message = describe(world(), warning);
     if (!report.ok) {
-      status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + sentence;
+      status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + message;
       continue;
     }
-    std::vector<std::string>& told = status_.troubles;
-    if (std::find(told.begin(), told.end(), sentence) != told.end()) continue;
-    if (told.size() == kTroubles) told.erase(told.begin());
-    told.push_back(sentence);
+    std::vector<std::string>& listed = status_.step_warnings;
+    if (std::find(listed.begin(), listed.end(), message) != listed.end()) continue;
+    if (listed.size() == kMaxStepWarnings) listed.erase(listed.begin());
+    listed.push_back(message);
   }
   if (report.ok) {
     ++status_.steps;
@@ -289,16 +289,16 @@ void LiveSimulation::change_model(SpringModel model) {
   apply_wind();
   hold();
   status_.model = to_string(model);
-  judge_solver();
+  check_solver();
 }
 
 /// After a change of solver or springs: recomputes the warnings and discards results of earlier steps.
-void LiveSimulation::judge_solver() {
+void LiveSimulation::check_solver() {
   SceneDesc now = scene_now();
   now.solver = solver_;
   status_.warnings = check_paper(now, world());
   status_.failure.clear();
-  status_.troubles.clear();
+  status_.step_warnings.clear();
   step_ms_.clear();
   is_paced_ = false;
 }
@@ -306,10 +306,11 @@ void LiveSimulation::judge_solver() {
 /// Grabs `held_` at its current position; releases all other grabs.
 void LiveSimulation::hold() {
   World& held = world();
-  for (int c = 0; c < held.num_cloths(); ++c) held.set_grabs(held.cloth(c), {});
+  for (int c = 0; c < held.num_cloths(); ++c) held.set_attachments(held.cloth(c), {});
   if (!held_) return;
   const ClothId cloth = held.cloth(held_->cloth);
-  held.set_grabs(cloth, {make_grab(held.model(cloth), held.state(cloth), held_->triangle, held_->weights)});
+  held.set_attachments(
+      cloth, {make_attachment(held.model(cloth), held.state(cloth), held_->triangle, held_->weights)});
 }
 
 LiveStatus LiveSimulation::measure() const {

@@ -52,10 +52,10 @@ struct LiveStatus {
   double simulated_per_second = 0;  // likewise; 1: real time [1]
   bool too_heavy = false;           // for real time: slow motion
 
-  std::vector<std::string> warnings;  // of integrator and springs that do not fit each other
-  std::string failure;                // of the last step, as text; empty: none. A failed step pauses
-  std::vector<std::string> troubles;  // warnings of the last steps, as text
-  std::optional<Vec3> held;           // position of the grabbed point [m]
+  std::vector<std::string> warnings;       // of integrator and springs that do not fit each other
+  std::string failure;                     // of the last step, as text; empty: none. A failed step pauses
+  std::vector<std::string> step_warnings;  // warnings of the last steps, as text
+  std::optional<Vec3> held;                // position of the grabbed point [m]
 };
 
 /// Status and meshes at one time.
@@ -118,12 +118,12 @@ class LiveSimulation {
   void run();
   bool is_between_frames() const;
   bool take_step();
-  void tell(const StepReport& report);
+  void report_step(const StepReport& report);
   void start_pace();
   void end_frame();
   void apply_wind();
   void change_model(SpringModel model);
-  void judge_solver();
+  void check_solver();
   void hold();
   void publish();
   LiveStatus measure() const;

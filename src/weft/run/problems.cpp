@@ -9,9 +9,9 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kInARow = 5;             // frames: allowed duration of strain and flatness
+constexpr int kMaxConsecutive = 5;     // frames: allowed duration of strain and flatness
 constexpr double kUsualStrain = 0.15;  // of fabrics without a limit [1]
-constexpr double kLeastArea = 0.1;     // share of the rest area [1]
+constexpr double kMinArea = 0.1;       // share of the rest area [1]
 constexpr double kEnergyShare = 0.02;  // of the range of the total energy so far [1]
 
 double strain_limit(const ClothModel& model) {
@@ -25,51 +25,51 @@ double strain_limit(const ClothModel& model) {
 }  // namespace
 
 /// Keeps the worst warning of each code, cloth and fault.
-void ProblemFinder::see(const StepWarning& warning) {
-  const auto is_same = [&](const Seen& s) {
+void ProblemFinder::record_warning(const StepWarning& warning) {
+  const auto is_same = [&](const Record& s) {
     return s.worst.code == warning.code && s.worst.cloth == warning.cloth && s.worst.fault == warning.fault;
   };
-  auto seen = std::find_if(others_.begin(), others_.end(), is_same);
-  if (seen == others_.end()) seen = others_.insert(others_.end(), Seen{warning});
-  if (warning.value > seen->worst.value) seen->worst = warning;
-  ++seen->frames;
+  auto record = std::find_if(others_.begin(), others_.end(), is_same);
+  if (record == others_.end()) record = others_.insert(others_.end(), Record{warning});
+  if (warning.value > record->worst.value) record->worst = warning;
+  ++record->frames;
 }
 
 void ProblemFinder::add_step(const StepReport& step) {
-  for (const StepWarning& warning : step.warnings) see(warning);
+  for (const StepWarning& warning : step.warnings) record_warning(warning);
   for (const InfeasiblePair& pair : step.infeasible) add_once(pair, infeasible_);
 }
 
 void ProblemFinder::add_frame(double energy) {
   strained_.resize(world_.num_cloths());
   flat_.resize(world_.num_cloths());
-  for (int c = 0; c < world_.num_cloths(); ++c) look_at_cloth(c);
-  look_at_energy(energy);
+  for (int c = 0; c < world_.num_cloths(); ++c) check_cloth(c);
+  check_energy(energy);
   ++num_frames_;
 }
 
-void ProblemFinder::look_at_cloth(int c) {
+void ProblemFinder::check_cloth(int c) {
   const ClothModel& model = world_.model(world_.cloth(c));
   const ClothState& state = world_.state(world_.cloth(c));
   const YarnStrain strain = compute_yarn_strain(model, state);
   const AreaShare area = compute_least_area(model, state);
   const StepWarning strained{WarningCode::yarn_strain, c, strain.particle, strain.max},
       flat{WarningCode::flat_triangle, c, area.particle, area.min};
-  keep(strained_[c], strained, strain.max > strain_limit(model), strain.max > strained_[c].worst.value);
-  keep(flat_[c], flat, area.min < kLeastArea, area.min < flat_[c].worst.value);
+  update(strained_[c], strained, strain.max > strain_limit(model), strain.max > strained_[c].worst.value);
+  update(flat_[c], flat, area.min < kMinArea, area.min < flat_[c].worst.value);
 }
 
-void ProblemFinder::keep(Seen& seen, const StepWarning& warning, bool is_wrong, bool is_worse) {
+void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse) {
   if (!is_wrong) {
-    seen.in_a_row = 0;
+    record.consecutive = 0;
     return;
   }
-  if (seen.frames++ == 0 || is_worse) seen.worst = warning;
-  seen.is_told |= ++seen.in_a_row > kInARow;
+  if (record.frames++ == 0 || is_worse) record.worst = warning;
+  record.is_reported |= ++record.consecutive > kMaxConsecutive;
 }
 
-void ProblemFinder::look_at_energy(double energy) {
-  if (num_frames_ == 0) most_energy_ = least_energy_ = energy;
+void ProblemFinder::check_energy(double energy) {
+  if (num_frames_ == 0) max_energy_ = min_energy_ = energy;
   const double rise = num_frames_ == 0 ? 0 : energy - energy_;
   double lift = 0;  // energy to lift all cloth by its thickness [J]
   for (int c = 0; c < world_.num_cloths(); ++c) {
@@ -77,10 +77,10 @@ void ProblemFinder::look_at_energy(double energy) {
     lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *
             model.material.thickness;
   }
-  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (most_energy_ - least_energy_))
-    see({.code = WarningCode::energy_rise, .value = rise});
-  most_energy_ = std::max(most_energy_, energy);
-  least_energy_ = std::min(least_energy_, energy);
+  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (max_energy_ - min_energy_))
+    record_warning({.code = WarningCode::energy_rise, .value = rise});
+  max_energy_ = std::max(max_energy_, energy);
+  min_energy_ = std::min(min_energy_, energy);
   energy_ = energy;
 }
 
@@ -89,12 +89,12 @@ std::vector<RunProblem> ProblemFinder::problems() const {
   const auto add = [&](const StepWarning& w, int frames) {
     result.push_back({w.code, frames, w.value, describe(world_, w)});
   };
-  for (const std::vector<Seen>* all : {&strained_, &flat_}) {
-    for (const Seen& seen : *all) {
-      if (seen.is_told) add(seen.worst, seen.frames);
+  for (const std::vector<Record>* all : {&strained_, &flat_}) {
+    for (const Record& record : *all) {
+      if (record.is_reported) add(record.worst, record.frames);
     }
   }
-  for (const Seen& seen : others_) add(seen.worst, seen.frames);
+  for (const Record& record : others_) add(record.worst, record.frames);
   const auto add_count = [&](WarningCode code, std::size_t count) {
     if (count > 0) add({.code = code, .value = static_cast<double>(count)}, 1);
   };

@@ -10,9 +10,9 @@ namespace weft::engine {
 
 struct RunProblem {
   WarningCode code = WarningCode::not_converged;
-  int frames = 0;        // or steps, with the problem; 1 for problems found at the end [1]
-  double value = 0;      // the worst, as in StepWarning
-  std::string sentence;  // the problem, and the key to change
+  int frames = 0;       // or steps, with the problem; 1 for problems found at the end [1]
+  double value = 0;     // the worst, as in StepWarning
+  std::string message;  // the problem, and the key to change
 };
 
 /// Collects problems frame by frame.
@@ -44,23 +44,23 @@ class ProblemFinder {
   std::vector<RunProblem> problems() const;
 
  private:
-  struct Seen {
+  struct Record {
     StepWarning worst;
-    int frames = 0, in_a_row = 0;
-    bool is_told = false;
+    int frames = 0, consecutive = 0;
+    bool is_reported = false;
   };
 
-  void see(const StepWarning& warning);
-  void look_at_cloth(int cloth);
-  void look_at_energy(double energy);
-  static void keep(Seen& seen, const StepWarning& warning, bool is_wrong, bool is_worse);
+  void record_warning(const StepWarning& warning);
+  void check_cloth(int cloth);
+  void check_energy(double energy);
+  static void update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse);
 
   const World& world_;
-  std::vector<Seen> strained_, flat_;  // (cloths)
-  std::vector<Seen> others_;
+  std::vector<Record> strained_, flat_;  // (cloths)
+  std::vector<Record> others_;
   std::vector<InfeasiblePair> infeasible_;
   int num_frames_ = 0, crossings_ = 0, passages_ = 0;
-  double energy_ = 0, most_energy_ = 0, least_energy_ = 0;  // in the last frame, and in all [J]
+  double energy_ = 0, max_energy_ = 0, min_energy_ = 0;  // in the last frame, and in all [J]
 };
 
 }  // namespace weft::engine

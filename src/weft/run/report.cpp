@@ -62,7 +62,7 @@ std::string to_json(const RunReport& r) {
   nlohmann::ordered_json problems = nlohmann::ordered_json::array();
   for (const RunProblem& p : r.problems)
     problems.push_back(
-        {{"code", to_string(p.code)}, {"frames", p.frames}, {"value", p.value}, {"sentence", p.sentence}});
+        {{"code", to_string(p.code)}, {"frames", p.frames}, {"value", p.value}, {"sentence", p.message}});
   const nlohmann::ordered_json null = nullptr;
   const auto or_null = [](const auto& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);

@@ -76,8 +76,7 @@ bool SceneRun::simulate_frame() {
     add_work(done);
     if (done.ok) continue;
     report_.outcome = RunOutcome::failed;
-    report_.failure =
-        "frame " + std::to_string(frame() + 1) + ", " + describe(world(), done.warnings.back());
+    report_.failure = "frame " + std::to_string(frame() + 1) + ", " + describe(world(), done.warnings.back());
     return false;
   }
   return true;

@@ -91,8 +91,8 @@ using OnFrame = std::function<bool(const Progress&)>;
 
 /// Runs a scene to its end, with a Recorder and a FrameChecker before the other sinks. Throws InputError for
 /// bad input. A failed step ends the run, with `outcome` and `failure` in the report.
-RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std::vector<FrameSink*>& sinks = {},
-                    const OnFrame& on_frame = {});
+RunReport run_scene(const SceneDesc& scene, const RunOptions& options,
+                    const std::vector<FrameSink*>& sinks = {}, const OnFrame& on_frame = {});
 
 /// Warnings for cloths that are too stiff for the paper's Eq. 16, which reduces gravity by a factor that
 /// grows with stiffness and step.

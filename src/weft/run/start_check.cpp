@@ -10,7 +10,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kMaxTold = 100000;         // maximum number of crossing triangle pairs grouped by surfaces
+constexpr int kMaxDescribed = 100000;    // maximum number of crossing triangle pairs grouped by surfaces
 constexpr double kInsideAtStart = 1e-6;  // depth of cloth inside a collider that is reported [m]
 
 constexpr double kTooLarge = 20;      // for a garment or its wearer, in metres: probably centimetres [m]
@@ -31,7 +31,7 @@ struct MeshBody {
   Vec3 size = Vec3::Zero();
   int num_triangles = 0;
   const MeshSource* file = nullptr;  // null: it has none
-  bool is_turned = false;          // by the scene
+  bool is_turned = false;            // by the scene
   double largest() const { return size.maxCoeff(); }
 };
 
@@ -50,7 +50,8 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
       positions.push_back(world.state(world.cloth(c)).position(i));
     bodies.push_back({"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions),
                       world.model(world.cloth(c)).topology->mesh.num_triangles(),
-                      std::get_if<MeshSource>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
+                      std::get_if<MeshSource>(&scene.cloths[c].shape),
+                      !scene.cloths[c].rotation_deg.isZero()});
   }
   for (std::size_t c = 0; c < world.colliders().size(); ++c) {
     const ColliderShape shape = shape_at(world.colliders()[c], 0);
@@ -102,9 +103,9 @@ std::optional<std::string> check_up(const MeshBody& cloth, const MeshBody& colli
 std::vector<std::string> check_start(const World& world) {
   const WorldFrames frames(world);
   const FrameToCheck start = frames.now();
-  const verify::FrameCheck check = verify::check_frame(start.frame, kMaxTold);
+  const verify::FrameCheck check = verify::check_frame(start.frame, kMaxDescribed);
   std::vector<std::string> found = verify::describe_by_surfaces(start.frame, check.first);
-  for (std::string& sentence : found) sentence.insert(0, "at the start ");
+  for (std::string& message : found) message.insert(0, "at the start ");
   if (check.penetration() > kInsideAtStart)
     found.push_back("at the start " + verify::describe(start.frame, *check.deepest) +
                     format(" is %.3g mm deep", 1000 * check.penetration()));
@@ -113,8 +114,8 @@ std::vector<std::string> check_start(const World& world) {
 
 SizeCheck check_sizes(const SceneDesc& scene, const World& world) {
   SizeCheck check;
-  const auto warn = [&](std::optional<std::string> sentence) {
-    if (sentence) check.warnings.push_back(std::move(*sentence));
+  const auto warn = [&](std::optional<std::string> message) {
+    if (message) check.warnings.push_back(std::move(*message));
   };
   const std::vector<MeshBody> bodies = list_bodies(scene, world);
   const std::size_t num_cloths = scene.cloths.size();

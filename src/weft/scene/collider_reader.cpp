@@ -13,8 +13,8 @@ constexpr double kUnit = 1e-15;  // deviation of |n|² from 1 at which the direc
 
 /// Keys of a mesh on any other shape: refused with the reason, not as unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
-  for (const std::string_view key : {"file", "frames", "frame_rate", "rest", "up", "scale", "position",
-                                     "rotation"}) {
+  for (const std::string_view key :
+       {"file", "frames", "frame_rate", "rest", "up", "scale", "position", "rotation"}) {
     const bool is_own = has_rotation && key == "rotation";
     if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
   }

@@ -44,7 +44,7 @@ void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& cu
 
 /// Validates the combination of all numbers; each mistake is reported at the number that it names. An
 /// unreadable number has its default here, and is reported already.
-void judge_together(TomlTable& table, const Fabric& fabric) {
+void check_fabric(TomlTable& table, const Fabric& fabric) {
   for (const FabricMistake& mistake : find_mistakes(fabric)) {
     if (const TomlValue value = table.get(mistake.field))
       value.mistake(mistake.reason);
@@ -78,7 +78,7 @@ Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base)
   table.read("strain_limit", f.strain_limit, not_negative());
   read_curve(table, "stretch_warp", f.stretch_warp);
   read_curve(table, "stretch_weft", f.stretch_weft);
-  judge_together(table, f);
+  check_fabric(table, f);
   return f;
 }
 

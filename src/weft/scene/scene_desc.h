@@ -12,9 +12,9 @@
 #include "weft/contact/collider.h"
 #include "weft/core/shapes.h"
 #include "weft/fabric.h"
-#include "weft/mesh.h"
 #include "weft/forces/wind.h"
 #include "weft/integrators/integrator.h"
+#include "weft/mesh.h"
 #include "weft/mesh/grid.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/springs.h"
@@ -50,7 +50,7 @@ struct StiffenDesc {
 
 /// A mesh in a file or in memory, with the conversions on import.
 struct MeshSource {
-  std::filesystem::path file;   // resolved against the scene file's folder
+  std::filesystem::path file;                      // resolved against the scene file's folder
   std::shared_ptr<const weft::TriangleMesh> mesh;  // in memory, instead of a file
   bool up_is_z = false;         // rotated first, so that its z axis becomes the world's y axis
   double scale = 1;             // length of the file's unit, > 0 [m]
@@ -62,13 +62,13 @@ struct MeshSource {
 
 /// A collider's mesh with its initial pose.
 struct PlacedMesh {
-  MeshSource source;                          // of a sequence: the first frame's
-  std::vector<std::filesystem::path> frames;  // of a sequence, in order, with the first one; empty: none
+  MeshSource source;                               // of a sequence: the first frame's
+  std::vector<std::filesystem::path> frames;       // of a sequence, in order, with the first one; empty: none
   std::vector<std::vector<Vec3>> frame_positions;  // the same in memory, (num_vertices) each; in the
                                                    // source's unit and axes [m]
-  std::filesystem::path rest;                 // pose before SceneDesc::settle; empty: that of the start
-  double frame_rate = 30;                     // of a sequence, > 0 [1/s]
-  Vec3 position = Vec3::Zero();               // added after the rotation [m]
+  std::filesystem::path rest;                      // pose before SceneDesc::settle; empty: that of the start
+  double frame_rate = 30;                          // of a sequence, > 0 [1/s]
+  Vec3 position = Vec3::Zero();                    // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the mesh's own origin [degrees]
   bool operator==(const PlacedMesh&) const = default;
 };
@@ -147,7 +147,7 @@ struct SceneDesc {
   /// Time that is simulated before frame 0, at which cloth is then at rest: it settles on bodies that stand as
   /// they do at the start, and meshes with a rest pose move from it to there; >= 0 [s].
   double settle = 0;
-  double duration = 3;           // [s], > 0
+  double duration = 3;                 // [s], > 0
   std::vector<ClothSceneDesc> cloths;  // at least one
   std::vector<ColliderSceneDesc> colliders;
   std::vector<ContactDesc> contacts;

@@ -64,12 +64,12 @@ std::string find_nearest_scene(const std::string& name, const std::vector<Shippe
 
 std::string describe_missing(const std::string& name) {
   const std::vector<ShippedScene> scenes = list_scenes();
-  const std::string sentence = "no scene file or shipped scene is named \"" + name + "\"";
+  const std::string message = "no scene file or shipped scene is named \"" + name + "\"";
   const std::string nearest = find_nearest_scene(name, scenes);
-  if (!nearest.empty()) return sentence + "; did you mean \"" + nearest + "\"?";
+  if (!nearest.empty()) return message + "; did you mean \"" + nearest + "\"?";
   std::string known;
   for (const ShippedScene& scene : scenes) known += (known.empty() ? "" : ", ") + scene.name;
-  return sentence + "; available: " + known;
+  return message + "; available: " + known;
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ Vec3 to_world(const Vec3& p, const MeshSource& source) {
   return source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
 }
 
-ObjMesh read_in_metres(const std::filesystem::path& file, const MeshSource& source, const std::string& owner) {
+ObjMesh read_in_metres(const std::filesystem::path& file, const MeshSource& source,
+                       const std::string& owner) {
   ObjMesh obj = read(file, owner);
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   return obj;

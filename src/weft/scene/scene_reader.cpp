@@ -143,11 +143,11 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
   if (choice >= 0) integrator = names[choice];
 }
 
-void judge_integrator(TomlTable& solver, const SceneDesc& scene) {
-  if (scene.wind.air.density > 0 && !feels_air(scene.solver.integrator))
+void check_integrator(TomlTable& solver, const SceneDesc& scene) {
+  if (scene.wind.air.density > 0 && !supports_aerodynamics(scene.solver.integrator))
     solver.get("integrator")
         .mistake("does not support wind.air; use \"newton\" or \"implicit_euler\", or only wind.drag");
-  if (moves_elements(scene.solver.integrator)) return;
+  if (supports_elements(scene.solver.integrator)) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;
     solver.get("integrator")
@@ -175,7 +175,7 @@ void read_adaptive(TomlTable& solver, SceneDesc& scene) {
   bool is_adaptive = false;
   if (!value || !value.read(is_adaptive)) return;
   scene.adaptive = is_adaptive;
-  if (is_adaptive && !can_divide_steps(scene.solver.integrator))
+  if (is_adaptive && !supports_step_division(scene.solver.integrator))
     value.mistake(scene.solver.integrator +
                   " does not support step division; only newton and implicit_euler do");
 }
@@ -183,7 +183,7 @@ void read_adaptive(TomlTable& solver, SceneDesc& scene) {
 void read_solver(TomlTable table, SceneDesc& scene) {
   IntegratorSettings& solver = scene.solver;
   read_integrator(table, solver.integrator);
-  judge_integrator(table, scene);
+  check_integrator(table, scene);
   table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
   read_adaptive(table, scene);
   table.read("max_steps_per_frame", scene.max_steps_per_frame, IntegerRule{1, 4096});
@@ -192,7 +192,7 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       "quality", solver.newton.quality,
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
-  if (solver.is_double && !has_double_precision(solver.integrator))
+  if (solver.is_double && !supports_double_precision(solver.integrator))
     table.get("precision").mistake("only newton and implicit_euler support \"double\"");
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
@@ -236,7 +236,8 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
         read_collider(collider, static_cast<int>(scene.colliders.size()) + 1, file.parent_path()));
     const PlacedMesh* mesh = std::get_if<PlacedMesh>(&scene.colliders.back().shape);
     if (mesh && !mesh->rest.empty() && scene.settle == 0)
-      collider.get("rest").mistake("needs scene.settle, the time in which the mesh moves from there to its first pose");
+      collider.get("rest").mistake(
+          "needs scene.settle, the time in which the mesh moves from there to its first pose");
   }
   for (TomlTable& contact : root.tables("contact")) scene.contacts.push_back(read_contact(contact, scene));
   scene.wind = read_wind(root.table("wind"));

@@ -96,7 +96,7 @@ void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
 }
 
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {
-  const auto passing = world.passing_pairs();
+  const auto non_colliding = world.non_colliding_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
     const std::string& cloth = world.name(world.cloth(c));
     std::vector<Vec3> positions;
@@ -104,7 +104,7 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
       positions.push_back(world.state(world.cloth(c)).position(i));
     for (const Collider& collider : world.colliders()) {
       const std::array<std::string, 2> pair{cloth, collider.name};
-      if (std::find(passing.begin(), passing.end(), pair) != passing.end()) continue;
+      if (std::find(non_colliding.begin(), non_colliding.end(), pair) != non_colliding.end()) continue;
       const int inside = count_inside(shape_at(collider, world.time()), positions);
       if (inside == 0) continue;
       warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
@@ -146,8 +146,8 @@ void settle(const SceneDesc& scene, PublicScene& built) {
   }
 }
 
-void append(const std::vector<std::string>& sentences, std::vector<std::string>& to) {
-  to.insert(to.end(), sentences.begin(), sentences.end());
+void append(const std::vector<std::string>& messages, std::vector<std::string>& to) {
+  to.insert(to.end(), messages.begin(), messages.end());
 }
 
 }  // namespace

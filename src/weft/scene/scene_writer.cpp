@@ -107,7 +107,8 @@ class MeshFiles {
       : folder_(scene_file.parent_path()), stem_(scene_file.stem().string()) {}
 
   std::string relative(const fs::path& file) const {
-    const fs::path name = fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
+    const fs::path name =
+        fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
     return (name.empty() ? fs::absolute(file) : name).generic_string();
   }
 
@@ -149,11 +150,12 @@ class MeshFiles {
       begin = std::min<std::size_t>(
           begin, std::mismatch(first.begin(), first.end(), name.begin(), name.end()).first - first.begin());
       end = std::min<std::size_t>(
-          end, std::mismatch(first.rbegin(), first.rend(), name.rbegin(), name.rend()).first - first.rbegin());
+          end,
+          std::mismatch(first.rbegin(), first.rend(), name.rbegin(), name.rend()).first - first.rbegin());
     }
     end = std::min(end, first.size() - std::min(begin, first.size()));
-    const fs::path pattern = frames.front().parent_path() /
-                             (first.substr(0, begin) + '*' + first.substr(first.size() - end));
+    const fs::path pattern =
+        frames.front().parent_path() / (first.substr(0, begin) + '*' + first.substr(first.size() - end));
     if (find_frame_files(pattern) != frames)
       throw InputError("collider \"" + owner + "\": its frames are not the files of one name with a star");
     return pattern;
@@ -266,8 +268,8 @@ std::string cloth_text(const ClothSceneDesc& cloth, const MeshFiles& files) {
       .add("rotation", cloth.rotation_deg, ClothSceneDesc().rotation_deg)
       .add("velocity", cloth.velocity, ClothSceneDesc().velocity)
       .add_text("color", toml_array(cloth.color));
-  std::string text = "\n[[cloth]]\n" + Table().add("name", cloth.name).lines() + shape_lines(cloth, files) +
-                     table.lines();
+  std::string text =
+      "\n[[cloth]]\n" + Table().add("name", cloth.name).lines() + shape_lines(cloth, files) + table.lines();
   for (const PinDesc& pin : cloth.pins) {
     Table own;
     own.add_text("select", selection_text(pin.select));
@@ -275,7 +277,8 @@ std::string cloth_text(const ClothSceneDesc& cloth, const MeshFiles& files) {
     text += "\n[[cloth.pin]]\n" + own.add("pivot", pin.pivot, PinDesc().pivot).lines();
   }
   for (const StiffenDesc& part : cloth.stiffened)
-    text += "\n[[cloth.stiffen]]\n" + Table().add_text("select", selection_text(part.select)).add("factor", part.factor).lines();
+    text += "\n[[cloth.stiffen]]\n" +
+            Table().add_text("select", selection_text(part.select)).add("factor", part.factor).lines();
   return text;
 }
 
@@ -367,8 +370,7 @@ std::string solver_text(const SceneDesc& scene) {
   table.add("max_steps_per_frame", scene.max_steps_per_frame, SceneDesc().max_steps_per_frame);
   const bool is_newton = s.integrator != "implicit_euler";
   const int iterations = is_newton ? s.newton.iterations : s.implicit_euler.iterations;
-  table.add("iterations", iterations,
-            is_newton ? usual.newton.iterations : usual.implicit_euler.iterations);
+  table.add("iterations", iterations, is_newton ? usual.newton.iterations : usual.implicit_euler.iterations);
   if (s.newton.quality == NewtonQuality::fast) table.add("quality", std::string("fast"));
   if (s.newton.quality == NewtonQuality::high) table.add("quality", std::string("high"));
   if (s.is_double) table.add("precision", std::string("double"));
@@ -450,19 +452,19 @@ void write_scene(const fs::path& file, const SceneDesc& scene) {
 std::vector<std::string> check_scene(const SceneDesc& scene) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "scene.toml";
-  std::vector<std::string> sentences;
+  std::vector<std::string> messages;
   try {
     const std::string text = scene_text(scene, MeshFiles(file));
     try {
       parse_scene(text, file);
     } catch (const SceneError& error) {
       for (const Diagnostic& mistake : error.diagnostics())
-        sentences.push_back(section_at(text, mistake.line) + '.' + mistake.message);
+        messages.push_back(section_at(text, mistake.line) + '.' + mistake.message);
     }
   } catch (const InputError& error) {
-    sentences.emplace_back(error.what());
+    messages.emplace_back(error.what());
   }
-  return sentences;
+  return messages;
 }
 
 }  // namespace weft::engine

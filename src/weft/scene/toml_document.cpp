@@ -52,14 +52,14 @@ void TomlDocument::add_mistake(const toml::source_region& place, std::string mes
 }
 
 std::vector<Diagnostic> TomlDocument::finish() {
-  for (const TomlSection& section : sections_) judge(section);
+  for (const TomlSection& section : sections_) check(section);
   const auto order = [](const Diagnostic& d) { return std::tuple(d.line == 0, d.line, d.column); };
   std::stable_sort(mistakes_.begin(), mistakes_.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return order(a) < order(b); });
   return std::move(mistakes_);
 }
 
-void TomlDocument::judge(const TomlSection& section) {
+void TomlDocument::check(const TomlSection& section) {
   if (!section.table) return;
   std::vector<std::string> meant;  // by misspelt keys; these are not reported as missing too
   for (const auto& [key, value] : *section.table) {

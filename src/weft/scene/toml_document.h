@@ -55,7 +55,7 @@ class TomlDocument {
   std::vector<Diagnostic> finish();
 
  private:
-  void judge(const TomlSection& section);
+  void check(const TomlSection& section);
   std::string explain_unknown(const TomlSection& section, const std::string& key,
                               const toml::source_region& place) const;
   const TomlSection* find_home(const TomlSection& section, std::string_view key) const;

@@ -12,10 +12,10 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kGrain = 256;         // slices per chunk of work
-constexpr int kCoarsest = 60;       // levels up to this many particles are solved directly
-constexpr int kMostCoarsest = 400;  // … if it cannot be coarsened any more
-constexpr std::size_t kMostLevels = 12;
+constexpr int kGrain = 256;        // slices per chunk of work
+constexpr int kCoarsest = 60;      // levels up to this many particles are solved directly
+constexpr int kMaxCoarsest = 400;  // … if it cannot be coarsened any more
+constexpr std::size_t kMaxLevels = 12;
 constexpr double kJacobiWeight = 1.5;  // of the smoother, over the largest eigenvalue of D⁻¹A
 
 struct In3 {
@@ -269,7 +269,7 @@ void AggregationMultigrid::build(const SparseMatrix& finest, const std::vector<d
   for (;;) {
     const double eigenvalue = estimate_largest_eigenvalue(couplings, diagonal);
     levels_.push_back(make_level(couplings, diagonal, eigenvalue));
-    if (couplings.num_rows <= kCoarsest || levels_.size() == kMostLevels) break;
+    if (couplings.num_rows <= kCoarsest || levels_.size() == kMaxLevels) break;
     const Aggregates aggregates = find_aggregates(couplings, diagonal);
     if (aggregates.count == 0 || aggregates.count > 0.8 * couplings.num_rows) break;
     const SparseMatrix prolongation = make_prolongation(couplings, diagonal, aggregates, eigenvalue);
@@ -307,7 +307,7 @@ void AggregationMultigrid::add_excess(const std::vector<double>& more) {
 
 void AggregationMultigrid::invert_coarsest(const std::vector<double>& more) {
   const int n = coarsest_.num_rows;
-  if (n > kMostCoarsest) return;
+  if (n > kMaxCoarsest) return;
   coarsest_inverse_.assign(static_cast<std::size_t>(n) * n, 0.0);
   for (int i = 0; i < n; ++i) {
     coarsest_inverse_[i * n + i] = levels_.back().built_diagonal[i] + more[i];

@@ -21,8 +21,8 @@ void add_collider_surfaces(const Frame& frame, std::vector<SurfaceView>& surface
   }
 }
 
-bool may_pass(const Frame& frame, const std::string& a, const std::string& b) {
-  return std::any_of(frame.passing.begin(), frame.passing.end(), [&](const auto& pair) {
+bool is_non_colliding(const Frame& frame, const std::string& a, const std::string& b) {
+  return std::any_of(frame.non_colliding.begin(), frame.non_colliding.end(), [&](const auto& pair) {
     return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
   });
 }
@@ -35,12 +35,12 @@ const std::string& bare_name_of(const Frame& frame, int surface) {
 /// The deepest penetration of each solid by the cloths that collide with it.
 std::optional<Penetration> find_deepest_of_held(const Frame& frame, const std::vector<SurfaceView>& cloths,
                                                 const std::vector<Solid>& solids) {
-  if (frame.passing.empty()) return find_deepest(cloths, solids);
+  if (frame.non_colliding.empty()) return find_deepest(cloths, solids);
   std::optional<Penetration> deepest;
   for (std::size_t s = 0; s < solids.size(); ++s) {
     std::vector<SurfaceView> held = cloths;
     for (std::size_t c = 0; c < held.size(); ++c) {
-      if (may_pass(frame, frame.cloths[c].name, frame.colliders[s].name))
+      if (is_non_colliding(frame, frame.cloths[c].name, frame.colliders[s].name))
         held[c] = {.positions = {}, .triangles = {}, .is_cloth = true};
     }
     std::optional<Penetration> found = find_deepest(held, {&solids[s], 1});
@@ -70,7 +70,7 @@ FrameCheck check_frame(const Frame& frame, int num_listed) {
   add_collider_surfaces(frame, surfaces);
   std::vector<Crossing> crossings = find_crossings(surfaces);
   std::erase_if(crossings, [&](const Crossing& c) {
-    return may_pass(frame, bare_name_of(frame, c.a.surface), bare_name_of(frame, c.b.surface));
+    return is_non_colliding(frame, bare_name_of(frame, c.a.surface), bare_name_of(frame, c.b.surface));
   });
   check.intersections = static_cast<int>(crossings.size());
   const std::size_t listed = std::min(crossings.size(), static_cast<std::size_t>(num_listed));
@@ -89,12 +89,12 @@ std::vector<std::string> describe_by_surfaces(const Frame& frame, std::span<cons
   std::map<std::pair<int, int>, std::pair<const Crossing*, int>> counts;  // the first, how many
   for (const Crossing& c : crossings)
     ++counts.try_emplace({c.a.surface, c.b.surface}, &c, 0).first->second.second;
-  std::vector<std::string> sentences;
+  std::vector<std::string> messages;
   for (const auto& [surfaces, found] : counts) {
-    sentences.push_back(describe(frame, *found.first) + ", the first of " + std::to_string(found.second) +
-                        (found.second == 1 ? " intersecting pair" : " intersecting pairs"));
+    messages.push_back(describe(frame, *found.first) + ", the first of " + std::to_string(found.second) +
+                       (found.second == 1 ? " intersecting pair" : " intersecting pairs"));
   }
-  return sentences;
+  return messages;
 }
 
 std::string describe(const Frame& frame, const Penetration& deepest) {

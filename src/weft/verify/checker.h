@@ -30,7 +30,7 @@ struct NamedCollider {
 struct Frame {
   std::vector<NamedCloth> cloths;
   std::vector<NamedCollider> colliders;
-  std::vector<std::array<std::string, 2>> passing = {};  // names of bodies that do not collide
+  std::vector<std::array<std::string, 2>> non_colliding = {};  // names of bodies that do not collide
 };
 
 struct FrameCheck {

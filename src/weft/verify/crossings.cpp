@@ -136,13 +136,13 @@ struct EdgeOnEdge {
   auto operator<=>(const EdgeOnEdge&) const = default;
 };
 
-/// Calls judge(begin, end) for each run of equal keys in a sorted list.
-template <class Item, class Key, class Judge>
-void for_each_group(const std::vector<Item>& items, Key key, Judge judge) {
+/// Calls visit(begin, end) for each run of equal keys in a sorted list.
+template <class Item, class Key, class Visit>
+void for_each_group(const std::vector<Item>& items, Key key, Visit visit) {
   for (auto begin = items.begin(); begin != items.end();) {
     const auto end =
         std::find_if(begin, items.end(), [&](const Item& item) { return key(item) != key(*begin); });
-    judge(begin, end);
+    visit(begin, end);
     begin = end;
   }
 }
@@ -187,9 +187,9 @@ class Finder {
   explicit Finder(std::span<const SurfaceView> surfaces) : surfaces_(surfaces) {}
 
   std::vector<Crossing> find() {
-    boxes_of(surfaces_).for_each_pair([this](TriangleId p, TriangleId q) { judge(p, q); });
-    judge_edges_in_triangles();
-    judge_edges_on_edges();
+    boxes_of(surfaces_).for_each_pair([this](TriangleId p, TriangleId q) { test(p, q); });
+    test_edges_in_triangles();
+    test_edges_on_edges();
     std::sort(crossings_.begin(), crossings_.end());
     return std::move(crossings_);
   }
@@ -220,7 +220,7 @@ class Finder {
     return {id.surface, low, high};
   }
 
-  void judge(TriangleId a, TriangleId b) {
+  void test(TriangleId a, TriangleId b) {
     if (!is_cloth(a) && !is_cloth(b)) return;
     if (share_an_edge(a, b)) return;
     if (is_cloth(a) == is_cloth(b) ? b < a : is_cloth(b)) std::swap(a, b);
@@ -258,7 +258,7 @@ class Finder {
   }
 
   /// Case 2: one edge, one triangle, and adjacent triangles on both of its sides.
-  void judge_edges_in_triangles() {
+  void test_edges_in_triangles() {
     std::sort(in_triangles_.begin(), in_triangles_.end());
     const auto key = [](const EdgeInTriangle& item) { return std::pair(item.edge, item.crossed); };
     for_each_group(in_triangles_, key, [this](auto begin, auto end) {
@@ -267,7 +267,7 @@ class Finder {
   }
 
   /// Case 3: two edges, and adjacent triangles that alternate around them.
-  void judge_edges_on_edges() {
+  void test_edges_on_edges() {
     std::sort(on_edges_.begin(), on_edges_.end());
     const auto key = [](const EdgeOnEdge& item) { return std::pair(item.first, item.second); };
     for_each_group(on_edges_, key, [this](auto begin, auto end) {

@@ -8,7 +8,7 @@
 namespace weft::engine::verify {
 namespace {
 
-constexpr int kMostCells = 256;  // per side of the grid
+constexpr int kMaxCells = 256;  // per side of the grid
 
 Eigen::Vector2d seen_along_x(const Vec3& p) { return {p.y(), p.z()}; }
 
@@ -19,7 +19,7 @@ InsideOfMesh::InsideOfMesh(std::span<const Vec3> positions, std::span<const Tria
   for (const Triangle& triangle : triangles) {
     for (const int v : triangle) bounds_.extend(positions[v]);
   }
-  num_cells_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(triangles.size()))), 1, kMostCells);
+  num_cells_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(triangles.size()))), 1, kMaxCells);
   first_in_cell_.assign(num_cells_ * num_cells_ + 1, 0);
   const auto for_each_cell = [&](std::size_t t, auto visit) {
     const auto& [a, b, c] = triangles_[t];

@@ -195,8 +195,8 @@ Bounds bounds_of_motion(const Solid& before, const Solid& after) {
 
 // ---- Names ----
 
-bool may_pass(const Frame& frame, const std::string& a, const std::string& b) {
-  return std::any_of(frame.passing.begin(), frame.passing.end(), [&](const auto& pair) {
+bool is_non_colliding(const Frame& frame, const std::string& a, const std::string& b) {
+  return std::any_of(frame.non_colliding.begin(), frame.non_colliding.end(), [&](const auto& pair) {
     return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
   });
 }
@@ -233,9 +233,9 @@ std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
     ++num_left_out_;
     return {};
   }
-  judge_features(next);
+  test_features(next);
   for (int c = 0; c < static_cast<int>(next.cloths.size()); ++c) {
-    for (int k = 0; k < static_cast<int>(next.colliders.size()); ++k) judge_particles(next, c, k);
+    for (int k = 0; k < static_cast<int>(next.colliders.size()); ++k) test_particles(next, c, k);
   }
   for (MovingSurface& surface : surfaces_) surface.start.swap(surface.end);
   colliders_ = next.colliders;
@@ -245,10 +245,10 @@ std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
   return std::exchange(passages_, {});
 }
 
-void PassageWatch::judge_features(const Frame& next) {
+void PassageWatch::test_features(const Frame& next) {
   const auto may_meet = [&](int a, int b) {
     if (!surfaces_[a].is_cloth && !surfaces_[b].is_cloth) return false;
-    return !may_pass(next, name_of(next, a), name_of(next, b));
+    return !is_non_colliding(next, name_of(next, a), name_of(next, b));
   };
   const bool is_done = pairs_.for_each(surfaces_, may_meet, [&](const FeaturePair& pair) {
     const auto [passes, is_open_before, is_open_after] = test(surfaces_, pair);
@@ -257,9 +257,9 @@ void PassageWatch::judge_features(const Frame& next) {
   if (!is_done) ++num_left_out_;
 }
 
-void PassageWatch::judge_particles(const Frame& next, int cloth, int collider) {
+void PassageWatch::test_particles(const Frame& next, int cloth, int collider) {
   const NamedCollider &before = colliders_[collider], &after = next.colliders[collider];
-  if (may_pass(next, next.cloths[cloth].name, after.name)) return;
+  if (is_non_colliding(next, next.cloths[cloth].name, after.name)) return;
   const std::vector<RestFrame> frames = std::visit(RestFrames{before, after}, before.shape);
   if (frames.empty()) return;
   const Bounds bounds = bounds_of_motion(before.shape, after.shape);

@@ -45,8 +45,8 @@ class PassageWatch {
   };
 
   void read(const Frame& frame);
-  void judge_features(const Frame& next);
-  void judge_particles(const Frame& next, int cloth, int collider);
+  void test_features(const Frame& next);
+  void test_particles(const Frame& next, int cloth, int collider);
   void settle(const FeaturePair& pair, bool passes, bool is_open_before, bool is_open_after);
 
   double tolerance_;

@@ -8,7 +8,7 @@
 namespace weft::engine::verify {
 namespace {
 
-constexpr int kMostStrips = 1024;
+constexpr int kMaxStrips = 1024;
 constexpr float kBoxesPerStrip = 3;  // width of a strip, in mean widths of boxes
 
 }  // namespace
@@ -57,7 +57,7 @@ void Sweep::fill_strips() {
   }
   const double width = kBoxesPerStrip * widths / std::max<double>(1, static_cast<double>(boxes_.size()));
   const double wanted = width > 0 ? (static_cast<double>(high) - low) / width : 1;
-  strips_.resize(static_cast<std::size_t>(std::clamp(wanted, 1.0, double{kMostStrips})));
+  strips_.resize(static_cast<std::size_t>(std::clamp(wanted, 1.0, double{kMaxStrips})));
   const auto strip_at = [&](float x) {
     const double place = high > low ? (static_cast<double>(x) - low) / (static_cast<double>(high) - low) : 0;
     return std::min(static_cast<int>(place * static_cast<double>(strips_.size())),

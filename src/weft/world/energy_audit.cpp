@@ -59,20 +59,21 @@ void add_contact_forces(int cloth, const std::vector<ContactPoint>& contacts, Fo
   }
 }
 
-double compute_hand_work(const std::vector<Grab>& grabs, const std::vector<Pin>& pins,
-                         const ClothStep& cloth) {
-  if (grabs.empty()) return 0;
+double compute_attachment_work(const std::vector<Attachment>& attachments, const std::vector<Pin>& pins,
+                               const ClothStep& cloth) {
+  if (attachments.empty()) return 0;
   std::vector<char> is_pinned(cloth.num_particles(), 0);
   for (const Pin& pin : pins) {
     for (const int i : pin.particles) is_pinned[i] = 1;
   }
   double work = 0;
-  for (const Grab& grab : grabs) {
-    for (std::size_t p = 0; p < grab.particles.size(); ++p) {
-      const int i = grab.particles[p];
+  for (const Attachment& attachment : attachments) {
+    for (std::size_t p = 0; p < attachment.particles.size(); ++p) {
+      const int i = attachment.particles[p];
       if (is_pinned[i]) continue;
-      const Vec3 pull = grab.target + grab.offsets[p] - cloth.after.position(i);
-      const Vec3 force = grab.shares[p] * (grab.stiffness * pull - grab.damping * cloth.after.v.get(i));
+      const Vec3 pull = attachment.target + attachment.offsets[p] - cloth.after.position(i);
+      const Vec3 force =
+          attachment.shares[p] * (attachment.stiffness * pull - attachment.damping * cloth.after.v.get(i));
       work += force.dot(cloth.displacement(i));
     }
   }
@@ -144,7 +145,7 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
     add_contact_forces(c, contacts, outside);
     const std::vector<Pin>& pins = world.pins(world.cloth(c));
     audit.work_pins += compute_pin_work(find_moved_pins(pins, cloth), world.gravity(), outside, cloth);
-    audit.work_hands += compute_hand_work(world.grabs(world.cloth(c)), pins, cloth);
+    audit.work_hands += compute_attachment_work(world.attachments(world.cloth(c)), pins, cloth);
   }
   audit.left_over = audit.energy.total() - start.energy.total() - audit.work();
   return audit;

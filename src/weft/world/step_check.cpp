@@ -9,7 +9,7 @@ namespace weft::engine {
 namespace {
 
 constexpr double kStretch = 0.08;    // maximum gain of a spring in a step, over its rest length [1]
-constexpr double kLeastArea = 0.3;   // of the rest area: above, no loss of area is a fault [1]
+constexpr double kMinArea = 0.3;     // of the rest area: above, no loss of area is a fault [1]
 constexpr double kAreaKept = 0.5;    // minimum share of the area at the start of the step [1]
 constexpr double kEnergyRate = 0.3;  // maximum rise of energy, of the kinetic energy at the start [1/s] …
 constexpr double kRiseOfThickness =
@@ -63,7 +63,7 @@ StepCheck check_area(const CheckedCloth& cloth, int index) {
   for (const Triangle& t : mesh.triangles) {
     const Vec3 &o = mesh.positions[t[0]], a = mesh.positions[t[1]] - o, b = mesh.positions[t[2]] - o;
     const double rest_sq = a.cross(b).squaredNorm(), now_sq = area_sq(cloth.after.x, t);
-    if (now_sq >= kLeastArea * kLeastArea * rest_sq) continue;
+    if (now_sq >= kMinArea * kMinArea * rest_sq) continue;
     const double kept = std::sqrt(now_sq / area_sq(cloth.before.x, t));
     const double severity = kAreaKept / std::max(kept, 1e-3);
     if (severity > worst.severity)

@@ -50,9 +50,9 @@ MeshShape growing_from(const std::vector<Vec3>& thin, const MeshShape& full, int
 }
 
 /// Penetration depth of cloth in each collider (colliders) [m]; 0 for none.
-std::vector<double> compute_depths(const Knots& knots, std::size_t num_colliders) {
+std::vector<double> compute_depths(const Intersections& intersections, std::size_t num_colliders) {
   std::vector<double> depths(num_colliders, 0.0);
-  for (const Inside& inside : knots.inside)
+  for (const Inside& inside : intersections.inside)
     depths[inside.collider] = std::max(depths[inside.collider], inside.depth);
   return depths;
 }
@@ -65,13 +65,13 @@ double compute_largest_strain(const ClothModel& model, const ClothState& state) 
 
 }  // namespace
 
-Knots World::find_knots() {
+Intersections World::find_intersections() {
   constexpr double kTouches = 1e-6;  // up to this depth cloth lies on the solid [m]
   show_contact_cloths();
-  Knots knots =
-      contact_system_.find_knots(contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
-  std::erase_if(knots.inside, [](const Inside& inside) { return inside.depth <= kTouches; });
-  return knots;
+  Intersections intersections = contact_system_.find_intersections(
+      contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
+  std::erase_if(intersections.inside, [](const Inside& inside) { return inside.depth <= kTouches; });
+  return intersections;
 }
 
 /// A world with the same cloths in place, at rest, and the same colliders, static; no other forces.
@@ -98,7 +98,7 @@ World World::make_stage() const {
 }
 
 /// Replaces the meshes that cloth is in by thinner ones, which grow back from the stage's start.
-void World::thin_colliders(const Knots& crossed, World& stage) const {
+void World::thin_colliders(const Intersections& crossed, World& stage) const {
   const std::vector<double> depths = compute_depths(crossed, colliders_.size());
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     MeshShape* shape = std::get_if<MeshShape>(&stage.colliders_[c].shape);
@@ -110,7 +110,7 @@ void World::thin_colliders(const Knots& crossed, World& stage) const {
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
       const int steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
       *shape = growing_from(weft::engine::shrink(*full.mesh, radii, depth), full, steps);
-      if (compute_depths(stage.find_knots(), colliders_.size())[c] == 0) break;
+      if (compute_depths(stage.find_intersections(), colliders_.size())[c] == 0) break;
     }
   }
 }
@@ -125,7 +125,7 @@ void World::halt() {
 
 UntangleReport World::untangle() {
   UntangleReport report;
-  const Knots crossed = find_knots();
+  const Intersections crossed = find_intersections();
   if (crossed.empty()) return report;
   report.crossed = report.left = describe(crossed);
   World stage = make_stage();
@@ -159,7 +159,7 @@ UntangleReport World::untangle() {
     }
     state.history.step = 0;
   }
-  const Knots left = find_knots();
+  const Intersections left = find_intersections();
   if (left.size() < crossed.size()) {
     report.left = describe(left);
   } else {

@@ -45,17 +45,17 @@ std::uint32_t next_world_id() {
 }
 
 /// Binary search by ascending number; -1 if not found.
-template <class Things>
-int find_number(const Things& things, std::uint32_t number) {
-  const auto found = std::ranges::lower_bound(things, number, {}, [](const auto& t) { return t.number; });
-  return found != things.end() && found->number == number ? static_cast<int>(found - things.begin()) : -1;
+template <class Entries>
+int find_number(const Entries& entries, std::uint32_t number) {
+  const auto found = std::ranges::lower_bound(entries, number, {}, [](const auto& t) { return t.number; });
+  return found != entries.end() && found->number == number ? static_cast<int>(found - entries.begin()) : -1;
 }
 
-template <class Things, class Id>
-std::size_t index_of_id(const Things& things, Id id, std::uint32_t world, std::string_view kind) {
+template <class Entries, class Id>
+std::size_t index_of_id(const Entries& entries, Id id, std::uint32_t world, std::string_view kind) {
   if (id.number == 0) throw InputError("this " + std::string(kind) + " is empty: it refers to nothing");
   if (id.world != world) throw InputError("this " + std::string(kind) + " belongs to another world");
-  const int index = find_number(things, id.number);
+  const int index = find_number(entries, id.number);
   if (index >= 0) return static_cast<std::size_t>(index);
   throw InputError("this " + std::string(kind) + " (number " + std::to_string(id.number) +
                    ") refers to a removed body");
@@ -152,7 +152,7 @@ ClothId World::add_cloth(const ClothParts& given) {
               " particles but " + std::to_string(positions.size()) + " positions");
   Cloth cloth;
   cloth.name = desc.name;
-  if (desc.elements) require_elements_move(integrator_settings_.integrator, desc.name);
+  if (desc.elements) require_elements_supported(integrator_settings_.integrator, desc.name);
   cloth.model = build_cloth_model(desc.topology, desc.material, desc.elements);
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
@@ -332,20 +332,22 @@ void World::move_pins(ClothId id, const std::vector<Vec3>& at_end) {
   cloth.pin_guide = std::move(guide);
 }
 
-void World::move_grabs(ClothId id, const std::vector<Vec3>& at_end) {
+void World::move_attachments(ClothId id, const std::vector<Vec3>& at_end) {
   Cloth& cloth = at(id);
-  require_points(at_end, cloth.hands.grabs().size(), "cloth \"" + cloth.name + "\": targets of grabs");
-  cloth.grab_guide = {.from = {}, .to = at_end, .is_new = true};
-  for (const Grab& grab : cloth.hands.grabs()) cloth.grab_guide.from.push_back(grab.target);
+  require_points(at_end, cloth.attachments.attachments().size(),
+                 "cloth \"" + cloth.name + "\": targets of grabs");
+  cloth.attachment_guide = {.from = {}, .to = at_end, .is_new = true};
+  for (const Attachment& attachment : cloth.attachments.attachments())
+    cloth.attachment_guide.from.push_back(attachment.target);
 }
 
-void World::set_grab_target(ClothId id, int grab, const Vec3& target) {
+void World::set_attachment_target(ClothId id, int attachment, const Vec3& target) {
   Cloth& cloth = at(id);
-  if (grab < 0 || grab >= cloth.hands.size())
-    throw InputError("cloth \"" + cloth.name + "\" has no grab " + std::to_string(grab));
+  if (attachment < 0 || attachment >= cloth.attachments.size())
+    throw InputError("cloth \"" + cloth.name + "\" has no grab " + std::to_string(attachment));
   if (!target.allFinite()) throw InputError("a grab's target must be finite");
-  cloth.hands.set_target(grab, target);
-  cloth.grab_guide = {};
+  cloth.attachments.set_target(attachment, target);
+  cloth.attachment_guide = {};
 }
 
 void World::set_forces(ClothId id, const std::vector<Vec3>& forces) {
@@ -366,25 +368,26 @@ void World::set_acceleration(Cloth& cloth) {
 void World::guide_points(double dt) {
   for (Cloth& cloth : cloths_) {
     cloth.pin_guide.begin_step(time_, dt);
-    cloth.grab_guide.begin_step(time_, dt);
+    cloth.attachment_guide.begin_step(time_, dt);
   }
 }
 
-void World::set_grabs(ClothId id, std::vector<Grab> grabs) {
+void World::set_attachments(ClothId id, std::vector<Attachment> attachments) {
   Cloth& cloth = at(id);
-  for (const Grab& grab : grabs) {
-    for (const int i : grab.particles) {
+  for (const Attachment& attachment : attachments) {
+    for (const int i : attachment.particles) {
       require(i >= 0 && i < cloth.model->num_particles(),
               "cloth \"" + cloth.name + "\" has no particle " + std::to_string(i) + " to grab");
     }
-    require(grab.shares.size() == grab.particles.size() && grab.offsets.size() == grab.particles.size(),
+    require(attachment.shares.size() == attachment.particles.size() &&
+                attachment.offsets.size() == attachment.particles.size(),
             "a grab requires one share and one offset per particle");
-    require(std::isfinite(grab.stiffness) && grab.stiffness >= 0 && std::isfinite(grab.damping) &&
-                grab.damping >= 0,
+    require(std::isfinite(attachment.stiffness) && attachment.stiffness >= 0 &&
+                std::isfinite(attachment.damping) && attachment.damping >= 0,
             "a grab's stiffness and damping must be 0 or more");
   }
-  cloth.hands.set(std::move(grabs));
-  cloth.grab_guide = {};
+  cloth.attachments.set(std::move(attachments));
+  cloth.attachment_guide = {};
 }
 
 void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
@@ -431,7 +434,7 @@ void World::set_material(ClothId id, const ClothMaterial& material,
                          std::shared_ptr<const ClothElements> elements) {
   Cloth& cloth = at(id);
   require_valid(material, cloth.name);
-  if (elements) require_elements_move(integrator_settings_.integrator, cloth.name);
+  if (elements) require_elements_supported(integrator_settings_.integrator, cloth.name);
   cloth.model = build_cloth_model(cloth.model->topology, material, std::move(elements));
   set_acceleration(cloth);
 }
@@ -501,7 +504,7 @@ void World::set_collision(BodyId a, BodyId b, bool collide) {
   rule_for(place_of(a), place_of(b)).collide = collide;
 }
 
-std::vector<std::array<std::string, 2>> World::passing_pairs() const {
+std::vector<std::array<std::string, 2>> World::non_colliding_pairs() const {
   std::vector<std::array<std::string, 2>> pairs;
   for (const ContactRule& r : rules_) {
     if (r.collide) continue;
@@ -514,7 +517,7 @@ std::vector<std::array<std::string, 2>> World::passing_pairs() const {
 void World::set_integrator(const IntegratorSettings& settings) {
   std::unique_ptr<Integrator> integrator = make_integrator(settings);  // throws before anything has changed
   for (const Cloth& cloth : cloths_) {
-    if (cloth.model->elements) require_elements_move(settings.integrator, cloth.name);
+    if (cloth.model->elements) require_elements_supported(settings.integrator, cloth.name);
   }
   require_valid(wind_, settings.integrator);
   integrator_settings_ = settings;
@@ -574,10 +577,10 @@ void World::advance(double time, double dt, StepReport& report) {
   for (Cloth& cloth : cloths_) set_environment(cloth, time);
   // Attachments.
   for (Cloth& cloth : cloths_) {
-    for (std::size_t g = 0; g < cloth.grab_guide.to.size(); ++g)
-      cloth.hands.set_target(static_cast<int>(g), cloth.grab_guide.at(g, time));
-    cloth.held_model = &cloth.hands.begin(cloth.model, cloth.is_pinned, gravity_, dt, cloth.state);
-    cloth.state.history.is_held = !cloth.hands.are_empty();
+    for (std::size_t g = 0; g < cloth.attachment_guide.to.size(); ++g)
+      cloth.attachments.set_target(static_cast<int>(g), cloth.attachment_guide.at(g, time));
+    cloth.held_model = &cloth.attachments.begin(cloth.model, cloth.is_pinned, gravity_, dt, cloth.state);
+    cloth.state.history.is_held = !cloth.attachments.are_empty();
   }
   // Contact candidates.
   contacts_.clear();
@@ -585,30 +588,31 @@ void World::advance(double time, double dt, StepReport& report) {
   // The solve.
   solve(dt, report);
   if (!contact_) return;
-  contact_system_.take_solved(contacts_);
+  contact_system_.read_solution(contacts_);
   // Contact projection.
-  contact_system_.hold_off(*jobs_);
+  contact_system_.project_contacts(*jobs_);
   // Continuous collision detection: the fail-safe.
-  stop_crossings(report);
-  const int wild = contact_system_.wild_cloth();
-  if (wild >= 0) is_wild_[wild] = 1;
+  run_ccd_fail_safe(report);
+  const int diverged = contact_system_.diverged_cloth();
+  if (diverged >= 0) is_diverged_[diverged] = 1;
 }
 
 /// Solves all cloths together.
 void World::solve(double dt, StepReport& report) {
   bodies_.clear();
   for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
-  const SystemStep step{.step = dt, .tells_contact_forces = tracks_contacts_, .clock = &clock_};
+  const SystemStep step{.step = dt, .computes_contact_forces = tracks_contacts_, .clock = &clock_};
   const IntegratorReport done = integrator_->advance(bodies_, contacts_, step, *jobs_);
-  for (Cloth& cloth : cloths_) cloth.grab_impulse += cloth.hands.impulse(cloth.is_pinned, dt, cloth.state);
+  for (Cloth& cloth : cloths_)
+    cloth.attachment_impulse += cloth.attachments.impulse(cloth.is_pinned, dt, cloth.state);
   report.iterations += done.iterations;
   add_count(done.linear_iterations, report.linear_iterations);
   add_count(done.guard_events, report.guard_events);
   if (!done.converged) report.warnings.push_back({WarningCode::not_converged, done.unconverged});
 }
 
-void World::stop_crossings(StepReport& report) {
-  const LastLineReport stopped = contact_system_.stop_crossings(*jobs_);
+void World::run_ccd_fail_safe(StepReport& report) {
+  const CcdFailSafeReport stopped = contact_system_.run_ccd_fail_safe(*jobs_);
   report.hits += stopped.hits;
   report.zones += stopped.zones;
   for (const Infeasible& pair : stopped.infeasible) add_once(describe(pair), report.infeasible);
@@ -631,7 +635,7 @@ InfeasiblePair World::describe(const Infeasible& pair) const {
 }
 
 /// One sentence for every two bodies that intersect.
-std::vector<std::string> World::describe(const Knots& knots) const {
+std::vector<std::string> World::describe(const Intersections& intersections) const {
   std::vector<std::pair<std::string, int>> counts;  // sentence, count; in the order of first occurrence
   const auto add = [&](const std::string& what, const auto& first) {
     const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& c) {
@@ -640,7 +644,7 @@ std::vector<std::string> World::describe(const Knots& knots) const {
     if (known != counts.end()) return void(++known->second);
     counts.emplace_back(what + first(), 1);
   };
-  for (const Pierced& p : knots.pierced) {
+  for (const EdgeFaceIntersection& p : intersections.edge_face) {
     const auto [i, j] = contact_system_.surface().edges[p.edge];
     const ContactSystem::Place edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
                                triangle = contact_system_.place_of_triangle(p.triangle);
@@ -649,14 +653,14 @@ std::vector<std::string> World::describe(const Knots& knots) const {
              " with triangle " + std::to_string(triangle.index);
     });
   }
-  for (const Inside& inside : knots.inside) {
+  for (const Inside& inside : intersections.inside) {
     const ContactSystem::Place place = contact_system_.place_of(inside.vertex);
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
         [&] { return ", first particle " + std::to_string(place.index); });
   }
-  std::vector<std::string> sentences;
-  for (const auto& [what, count] : counts) sentences.push_back(std::to_string(count) + ' ' + what);
-  return sentences;
+  std::vector<std::string> messages;
+  for (const auto& [what, count] : counts) messages.push_back(std::to_string(count) + ' ' + what);
+  return messages;
 }
 
 std::vector<ContactPoint> World::contact_points() const {
@@ -668,7 +672,7 @@ void World::set_division(const StepDivision& division) {
   require(std::isfinite(division.shortest) && division.shortest > 0,
           "the shortest part of a step must be more than 0 s");
   require(
-      !division.enabled.value_or(false) || can_divide_steps(integrator_settings_.integrator),
+      !division.enabled.value_or(false) || supports_step_division(integrator_settings_.integrator),
       integrator_settings_.integrator + " does not support step division; only newton and implicit_euler do");
   division_ = division;
 }
@@ -676,7 +680,7 @@ void World::set_division(const StepDivision& division) {
 bool World::divides() const {
   if (!contact_ || integrator_settings_.is_double) return false;
   const std::string& integrator = integrator_settings_.integrator;
-  return can_divide_steps(integrator) && division_.enabled.value_or(integrator == "newton");
+  return supports_step_division(integrator) && division_.enabled.value_or(integrator == "newton");
 }
 
 bool World::is_driven() const {
@@ -689,7 +693,7 @@ bool World::is_driven() const {
   return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
          std::any_of(cloths_.begin(), cloths_.end(), [&](const Cloth& cloth) {
-           return !cloth.hands.are_empty() || !cloth.forces.empty() ||
+           return !cloth.attachments.are_empty() || !cloth.forces.empty() ||
                   cloth.pin_guide.from != cloth.pin_guide.to ||
                   std::any_of(cloth.pins.begin(), cloth.pins.end(), moves);
          });
@@ -706,14 +710,14 @@ int World::num_parts_at_most(double dt) const {
 
 /// Advances all cloths from `before` to `time` in a step of dt, and checks the result.
 StepCheck World::try_part(const Snapshot& before, double time, double dt, StepReport& report) {
-  is_wild_.assign(cloths_.size(), 0);
+  is_diverged_.assign(cloths_.size(), 0);
   advance(time, dt, report);
   for (int c = 0; c < num_cloths(); ++c) {
     const int broken = find_non_finite(cloths_[c].state);
     if (broken >= 0) return {StepFault::non_finite, kForever, 0, c, broken};
   }
   for (int c = 0; c < num_cloths(); ++c) {
-    if (is_wild_[c]) report.warnings.push_back({WarningCode::contact_skipped, c});
+    if (is_diverged_[c]) report.warnings.push_back({WarningCode::contact_skipped, c});
   }
   if (!divides()) return {};
   checked_.clear();
@@ -721,7 +725,7 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
     checked_.push_back({*cloths_[c].model, before.states[c], cloths_[c].state});
   StepCheck check = check_step(checked_, gravity_, dt, is_driven());
   for (int c = 0; c < num_cloths(); ++c) {
-    if (is_wild_[c]) check.include({StepFault::skipped, 1, 0, c, -1});
+    if (is_diverged_[c]) check.include({StepFault::skipped, 1, 0, c, -1});
   }
   if (!report.infeasible.empty())
     check.include({StepFault::infeasible, 1, 0, report.infeasible[0].cloth, report.infeasible[0].particle});
@@ -769,7 +773,7 @@ StepReport World::step(double dt) {
   save(before_step_);
   guide_colliders(dt);
   guide_points(dt);
-  for (Cloth& cloth : cloths_) cloth.grab_impulse.setZero();
+  for (Cloth& cloth : cloths_) cloth.attachment_impulse.setZero();
   const int most = num_parts_at_most(dt);  // shortest parts of the step
   int parts = 1;                           // number of parts at the present length
   while (most > 1 && part_ > 0 && parts < most && dt / parts > 1.5 * part_) parts *= 2;
@@ -782,8 +786,8 @@ StepReport World::step(double dt) {
     StepReport part;
     if (done > 0) save(before_part_);
     const Snapshot& before = done > 0 ? before_part_ : before_step_;
-    grab_impulses_.clear();
-    for (const Cloth& cloth : cloths_) grab_impulses_.push_back(cloth.grab_impulse);
+    attachment_impulses_.clear();
+    for (const Cloth& cloth : cloths_) attachment_impulses_.push_back(cloth.attachment_impulse);
     part.substeps = num_substeps(dt * size / most);
     StepCheck check;
     bool stands = true;
@@ -796,7 +800,8 @@ StepReport World::step(double dt) {
     if (!stands && parts == most) return fail(check, std::move(report));
     if (!stands) {
       restore_motion(before);
-      for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].grab_impulse = grab_impulses_[c];
+      for (std::size_t c = 0; c < cloths_.size(); ++c)
+        cloths_[c].attachment_impulse = attachment_impulses_[c];
       parts = std::min(most, check.severity > kFarTooLong ? 4 * parts : 2 * parts);
       calm_ = 0;
       ++report.retries;
@@ -849,9 +854,9 @@ World::Snapshot World::snapshot() const {
 World::Held World::held(const Cloth& cloth) const {
   Held held{.pins = cloth.pins,
             .anchors = std::vector<Vec3>(cloth.pinned.size()),
-            .grabs = cloth.hands.grabs(),
+            .attachments = cloth.attachments.attachments(),
             .pin_guide = cloth.pin_guide,
-            .grab_guide = cloth.grab_guide,
+            .attachment_guide = cloth.attachment_guide,
             .forces = cloth.forces};
   for (const PinnedParticle& p : cloth.pinned) held.anchors[p.order] = p.anchor;
   return held;
@@ -861,9 +866,9 @@ void World::hold(Held held, Cloth& cloth) {
   const ClothId id{id_, cloth.number};
   set_pins(id, std::move(held.pins));
   for (PinnedParticle& p : cloth.pinned) p.anchor = held.anchors[p.order];
-  set_grabs(id, std::move(held.grabs));
+  set_attachments(id, std::move(held.attachments));
   cloth.pin_guide = std::move(held.pin_guide);
-  cloth.grab_guide = std::move(held.grab_guide);
+  cloth.attachment_guide = std::move(held.attachment_guide);
   set_forces(id, held.forces);
 }
 

@@ -18,7 +18,7 @@
 #include "weft/ids.h"
 #include "weft/integrators/integrator.h"
 #include "weft/report.h"
-#include "weft/world/grab.h"
+#include "weft/world/attachment.h"
 #include "weft/world/step_check.h"
 
 namespace weft::engine {
@@ -96,13 +96,14 @@ class World {
   /// Call these between any two steps; the next step uses the new values.
   void set_pins(ClothId cloth,
                 std::vector<Pin> pins);  // replaces the cloth's pins; throws InputError for bad indices
-  void set_grabs(ClothId cloth, std::vector<Grab> grabs);  // replaces the cloth's grabs; throws likewise
-  void set_grab_target(ClothId cloth, int grab, const Vec3& target);
+  void set_attachments(ClothId cloth,
+                       std::vector<Attachment> attachments);  // replaces the cloth's grabs; throws likewise
+  void set_attachment_target(ClothId cloth, int attachment, const Vec3& target);
   /// Positions of pinned particles, in the order of the pins' lists, and of the grabs' targets at the end of
   /// the next step: until then they move evenly, through substeps and parts too. Without another call they
   /// stay. Replaces the pins' motions. Throws InputError if the number of points is wrong.
   void move_pins(ClothId cloth, const std::vector<Vec3>& at_end);
-  void move_grabs(ClothId cloth, const std::vector<Vec3>& at_end);
+  void move_attachments(ClothId cloth, const std::vector<Vec3>& at_end);
   void set_forces(ClothId cloth,
                   const std::vector<Vec3>& forces);  // external (num_particles; empty: none) [N]
   void set_material(ClothId cloth, const ClothMaterial& material);  // keeps the elements
@@ -165,8 +166,12 @@ class World {
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
-  const Vec3& grab_impulse(ClothId cloth) const { return at(cloth).grab_impulse; }  // in the last step [N·s]
-  const std::vector<Grab>& grabs(ClothId cloth) const { return at(cloth).hands.grabs(); }
+  const Vec3& attachment_impulse(ClothId cloth) const {
+    return at(cloth).attachment_impulse;
+  }  // in the last step [N·s]
+  const std::vector<Attachment>& attachments(ClothId cloth) const {
+    return at(cloth).attachments.attachments();
+  }
   const std::vector<Pin>& pins(ClothId cloth) const { return at(cloth).pins; }
   const std::vector<Vec3>& forces(ClothId cloth) const { return at(cloth).forces; }  // external [N]
   const Collider& collider(ColliderId collider) const { return colliders_[index_of(collider)]; }
@@ -187,7 +192,7 @@ class World {
   bool is_driven() const;
 
   /// The names of bodies that do not collide (pairs).
-  std::vector<std::array<std::string, 2>> passing_pairs() const;
+  std::vector<std::array<std::string, 2>> non_colliding_pairs() const;
 
   bool has_contact() const { return contact_; }
   bool tracks_contacts() const { return tracks_contacts_; }
@@ -211,8 +216,8 @@ class World {
   struct Held {
     std::vector<Pin> pins;
     std::vector<Vec3> anchors;  // of each pinned particle, in the order of the pins' lists [m]
-    std::vector<Grab> grabs;
-    PointGuide pin_guide, grab_guide;
+    std::vector<Attachment> attachments;
+    PointGuide pin_guide, attachment_guide;
     std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
   };
 
@@ -249,11 +254,11 @@ class World {
     std::vector<PinnedParticle> pinned;  // by ascending particle
     Environment environment;             // of a substep
     std::vector<char> is_pinned;         // (num_particles)
-    Hands hands;
-    PointGuide pin_guide, grab_guide;        // of pins and attachments moved by the program
+    Attachments attachments;
+    PointGuide pin_guide, attachment_guide;  // of pins and attachments moved by the program
     std::vector<Vec3> forces;                // external (num_particles; empty: none) [N]
     const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where attached
-    Vec3 grab_impulse = Vec3::Zero();        // of all attachments in the last step [N·s]
+    Vec3 attachment_impulse = Vec3::Zero();  // of all attachments in the last step [N·s]
   };
 
   std::size_t index_of(ClothId id) const;
@@ -276,13 +281,13 @@ class World {
   void restore_motion(const Snapshot& snapshot);
   StepReport fail(const StepCheck& check, StepReport report);
   void begin_contact(double time, double dt);
-  void stop_crossings(StepReport& report);
+  void run_ccd_fail_safe(StepReport& report);
   void show_contact_cloths();
   InfeasiblePair describe(const Infeasible& pair) const;
-  std::vector<std::string> describe(const Knots& knots) const;
-  Knots find_knots();
+  std::vector<std::string> describe(const Intersections& intersections) const;
+  Intersections find_intersections();
   World make_stage() const;
-  void thin_colliders(const Knots& crossed, World& stage) const;
+  void thin_colliders(const Intersections& crossed, World& stage) const;
   void halt();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
@@ -319,12 +324,12 @@ class World {
   std::vector<Body> bodies_;
   std::vector<Contact> contacts_;
   std::vector<Vec3> pin_positions_;  // of all cloths
-  std::vector<char> is_wild_;        // (cloths)
+  std::vector<char> is_diverged_;    // (cloths)
   std::vector<Pose> poses_;
   Snapshot before_step_, before_part_;
   double last_step_ = 0;  // step after before_step_; 0: none, or cloth was changed from outside since [s]
   std::vector<CheckedCloth> checked_;
-  std::vector<Vec3> grab_impulses_;  // (cloths) before the current part
+  std::vector<Vec3> attachment_impulses_;  // (cloths) before the current part
 };
 
 }  // namespace weft::engine

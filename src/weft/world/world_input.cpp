@@ -26,7 +26,7 @@ bool is_rotation(const Mat3& r) {
 }
 
 /// Validates a collider's shape.
-struct ShapeJudge {
+struct ShapeChecker {
   std::string who;
 
   void finite(const Vec3& p, const char* what) const {
@@ -117,15 +117,15 @@ void require_valid(const ClothTopology& topology, const std::string& cloth) {
 
 void require_valid(const Collider& collider) {
   const std::string who = "collider \"" + collider.name + "\": ";
-  std::visit(ShapeJudge{who}, collider.shape);
+  std::visit(ShapeChecker{who}, collider.shape);
   for (const double friction : {collider.friction, collider.static_friction})
     require(std::isfinite(friction) && friction >= 0, who + "friction must be 0 or more");
 }
 
-void require_valid(const Pose& pose, const std::string& thing) {
-  const ShapeJudge judge{thing + ", moved: "};
-  judge.finite(pose.translation, "its translation");
-  judge.rotation(pose.rotation);
+void require_valid(const Pose& pose, const std::string& owner) {
+  const ShapeChecker checker{owner + ", moved: "};
+  checker.finite(pose.translation, "its translation");
+  checker.rotation(pose.rotation);
 }
 
 void require_valid(const Wind& wind, const std::string& integrator) {
@@ -135,12 +135,13 @@ void require_valid(const Wind& wind, const std::string& integrator) {
   require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
           "the air's density and drag must be above 0, and its lift from 0 to its drag");
   require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts require a length and a time above 0");
-  require(feels_air(integrator), integrator + " does not support aerodynamic drag and lift; use newton or " +
-                                     "implicit_euler, or only the wind's drag");
+  require(supports_aerodynamics(integrator),
+          integrator + " does not support aerodynamic drag and lift; use newton or " +
+              "implicit_euler, or only the wind's drag");
 }
 
-void require_elements_move(const std::string& integrator, const std::string& cloth) {
-  require(moves_elements(integrator),
+void require_elements_supported(const std::string& integrator, const std::string& cloth) {
+  require(supports_elements(integrator),
           "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
               " supports springs only; use newton, "
               "implicit_euler or xpbd, or set spring_structural, spring_shear and "

@@ -10,20 +10,20 @@
 
 namespace weft::engine {
 
-inline void require(bool condition, const std::string& sentence) {
-  if (!condition) throw InputError(sentence);
+inline void require(bool condition, const std::string& message) {
+  if (!condition) throw InputError(message);
 }
 
 /// `cloth` is its name.
 void require_valid(const ClothMaterial& material, const std::string& cloth);
 void require_valid(const ClothTopology& topology, const std::string& cloth);
 void require_valid(const Collider& collider);
-void require_valid(const Pose& pose, const std::string& thing);
+void require_valid(const Pose& pose, const std::string& owner);
 
 /// Valid wind that the integrator supports.
 void require_valid(const Wind& wind, const std::string& integrator);
 
 /// An integrator that supports elements.
-void require_elements_move(const std::string& integrator, const std::string& cloth);
+void require_elements_supported(const std::string& integrator, const std::string& cloth);
 
 }  // namespace weft::engine

@@ -1,6 +1,6 @@
 /// CCD fail-safe: no intersections after any motion, by the independent checker.
 
-#include "weft/contact/last_line.h"
+#include "weft/contact/ccd_fail_safe.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace weft::engine {
 namespace {
 
-/// Patches of cloth with positions, then closed meshes, and the input of LastLine.
+/// Patches of cloth with positions, then closed meshes, and the input of CcdFailSafe.
 struct Patches {
   std::vector<TriangleMesh> meshes;
   Surface surface;
@@ -50,7 +50,7 @@ struct Patches {
     meshes.push_back(std::move(mesh));
   }
 
-  LastLineReport hold(const std::vector<Vec3>& end) {
+  CcdFailSafeReport resolve(const std::vector<Vec3>& end) {
     const auto jobs = make_serial_jobs();
     const int num_triangles = static_cast<int>(surface.triangles.size());
     const bool has_closed = !closed_meshes.empty();
@@ -58,7 +58,7 @@ struct Patches {
     const int num_cloth_triangles = has_closed ? closed_meshes[0].first_triangle : num_triangles;
     std::vector<int> first_of_cloth(first_vertex.begin(), first_vertex.begin() + origins.size());
     first_of_cloth.push_back(num_cloth_vertices);
-    surface.build_fans();
+    surface.build_one_rings();
     rest.assign(motion.start.begin(), motion.start.begin() + num_cloth_vertices);
     motion.end = end;
     weft::engine::Patches groups;
@@ -66,9 +66,9 @@ struct Patches {
     groups.add_body(surface, num_cloth_triangles, num_triangles);
     Proximity proximity;
     proximity.reset(surface, groups, rest, num_cloth_vertices, num_cloth_triangles, {0.003, 0.001, 0.006});
-    LastLine line;
-    return line.hold({&inverse_mass, &shapes, &first_of_cloth, &origins, &closed_meshes}, proximity, motion,
-                     *jobs);
+    CcdFailSafe fail_safe;
+    return fail_safe.resolve({&inverse_mass, &shapes, &first_of_cloth, &origins, &closed_meshes}, proximity,
+                             motion, *jobs);
   }
 
   /// Number of feature pairs that pass through each other on the way to `end`.
@@ -117,7 +117,7 @@ Patches make_stack(Random& random, int layers) {
   return patches;
 }
 
-TEST(LastLine, LeavesNothingCrossedAndKeepsMomentum) {
+TEST(CcdFailSafe, LeavesNothingCrossedAndKeepsMomentum) {
   int crossed = 0, zones = 0;
   for (int seed = 0; seed < 150; ++seed) {
     Random random(seed);
@@ -133,7 +133,7 @@ TEST(LastLine, LeavesNothingCrossedAndKeepsMomentum) {
     ASSERT_EQ(patches.num_crossings(patches.motion.start), 0u) << seed;
     crossed += patches.num_crossings(end) > 0;
     const Vec3 before = patches.momentum(end);
-    const LastLineReport report = patches.hold(end);
+    const CcdFailSafeReport report = patches.resolve(end);
     EXPECT_TRUE(report.infeasible.empty()) << seed;
     EXPECT_EQ(patches.num_crossings(patches.motion.end), 0u) << seed;
     EXPECT_LT((patches.momentum(patches.motion.end) - before).norm(),
@@ -145,43 +145,43 @@ TEST(LastLine, LeavesNothingCrossedAndKeepsMomentum) {
   EXPECT_GT(zones, 10) << "and some leave no other way than moving rigidly";
 }
 
-TEST(LastLine, LeavesAMotionThatMeetsNothingAsItIs) {
+TEST(CcdFailSafe, LeavesAMotionThatMeetsNothingAsItIs) {
   Random random(1);
   Patches patches = make_stack(random, 3);
   std::vector<Vec3> end = patches.motion.start;
   for (Vec3& p : end) p = (p + Vec3(0.3, -2, 0.1)).cast<float>().cast<double>();
-  const LastLineReport report = patches.hold(end);
+  const CcdFailSafeReport report = patches.resolve(end);
   EXPECT_EQ(report.hits, 0);
   EXPECT_EQ(patches.motion.end, end) << "free fall, however fast";
 }
 
-TEST(LastLine, PrescribedMotionsThatLeaveNoRoomAreListed) {
+TEST(CcdFailSafe, PrescribedMotionsThatLeaveNoRoomAreListed) {
   // The upper patch is pinned and moves through the lower one, which is pinned too.
   Random random(2);
   Patches patches = make_stack(random, 2);
   std::fill(patches.inverse_mass.begin(), patches.inverse_mass.end(), 0.0);
   std::vector<Vec3> end = patches.motion.start;
   for (int v = patches.first_vertex[1]; v < static_cast<int>(end.size()); ++v) end[v].y() -= 0.01;
-  const LastLineReport report = patches.hold(end);
+  const CcdFailSafeReport report = patches.resolve(end);
   EXPECT_FALSE(report.infeasible.empty());
   EXPECT_EQ(patches.motion.end, end) << "what is prescribed stays so";
 }
 
-TEST(LastLine, ASheetIsTakenAlongByWhatMovesThroughItsPlace) {
+TEST(CcdFailSafe, ASheetIsTakenAlongByWhatMovesThroughItsPlace) {
   // The lower patch is pinned and rises by a metre: the upper one, which is free, must end above it.
   Random random(3);
   Patches patches = make_stack(random, 2);
   for (int v = 0; v < patches.first_vertex[1]; ++v) patches.inverse_mass[v] = 0;
   std::vector<Vec3> end = patches.motion.start;
   for (int v = 0; v < patches.first_vertex[1]; ++v) end[v].y() += 1;
-  const LastLineReport report = patches.hold(end);
+  const CcdFailSafeReport report = patches.resolve(end);
   EXPECT_TRUE(report.infeasible.empty());
   EXPECT_EQ(patches.num_crossings(patches.motion.end), 0u);
   for (int v = patches.first_vertex[1]; v < static_cast<int>(end.size()); ++v)
     EXPECT_GT(patches.motion.end[v].y(), 0.5) << "not left behind on the other side; corners overhang";
 }
 
-TEST(LastLine, NothingPassesThroughAClosedMeshThatTurnsFast) {
+TEST(CcdFailSafe, NothingPassesThroughAClosedMeshThatTurnsFast) {
   // A patch lies on a facet of a rotating ball: ridges reach the patch, and faces behind whose planes it lies
   // at the start, although it is outside.
   int passed = 0;
@@ -201,7 +201,7 @@ TEST(LastLine, NothingPassesThroughAClosedMeshThatTurnsFast) {
     const Mat3 turn = rotation_from_angles_deg(test::random_vector(random, 20));
     for (int v = patches.first_vertex[1]; v < static_cast<int>(end.size()); ++v) end[v] = turn * end[v];
     passed += patches.num_passages(end) > 0;
-    const LastLineReport report = patches.hold(end);
+    const CcdFailSafeReport report = patches.resolve(end);
     EXPECT_TRUE(report.infeasible.empty()) << seed;
     EXPECT_EQ(patches.num_passages(patches.motion.end), 0u) << seed;
     EXPECT_EQ(patches.num_crossings(patches.motion.end), 0u) << seed;
@@ -209,13 +209,13 @@ TEST(LastLine, NothingPassesThroughAClosedMeshThatTurnsFast) {
   EXPECT_GT(passed, 50) << "nearly all of these turns go through the patch";
 }
 
-TEST(LastLine, WhatIsInsideAClosedMeshMayLeaveIt) {
+TEST(CcdFailSafe, WhatIsInsideAClosedMeshMayLeaveIt) {
   Patches patches;
   patches.add(4, Vec3(0.01, 0.02, 0.015), Mat3::Identity());
   patches.add_closed(make_sphere_mesh(Vec3::Zero(), 0.15, 8));
   std::vector<Vec3> end = patches.motion.start;
   for (int v = 0; v < patches.first_vertex[1]; ++v) end[v].y() += 0.5;
-  EXPECT_EQ(patches.hold(end).hits, 0);
+  EXPECT_EQ(patches.resolve(end).hits, 0);
   EXPECT_EQ(patches.motion.end, end);
 }
 

@@ -1,4 +1,4 @@
-#include "weft/contact/last_line.h"
+#include "weft/contact/ccd_fail_safe.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -12,11 +12,11 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kPairGrain = 1024;     // pairs per chunk
-constexpr int kPushRounds = 6;       // of impulses, each followed by a new detection
-constexpr int kPushPasses = 20;      // over all impulses in a round
-constexpr int kZoneRounds = 60;      // zones halve their non-rigid remainder, and grow
-constexpr double kLeastShare = 0.1;  // of a zone's remainder: below, it moves rigidly
+constexpr int kPairGrain = 1024;   // pairs per chunk
+constexpr int kPushRounds = 6;     // of impulses, each followed by a new detection
+constexpr int kPushPasses = 20;    // over all impulses in a round
+constexpr int kZoneRounds = 60;    // zones halve their non-rigid remainder, and grow
+constexpr double kMinShare = 0.1;  // of a zone's remainder: below, it moves rigidly
 
 /// Separation in CCD: this share of the contact gap; where that is small, the floor [m].
 constexpr double kSeparation = 0.1;
@@ -77,15 +77,15 @@ class RigidFit {
 
 }  // namespace
 
-LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion,
-                              JobSystem& jobs) {
+CcdFailSafeReport CcdFailSafe::resolve(const CcdFailSafeStep& step, Proximity& proximity,
+                                       SurfaceMotion& motion, JobSystem& jobs) {
   step_ = step;
   proximity_ = &proximity;
   motion_ = &motion;
   only_moved_ = false;
   is_moved_.assign(motion.end.size(), 0);
   near_.reserve(num_cloth_vertices());
-  LastLineReport report;
+  CcdFailSafeReport report;
   pushes_.clear();
   parent_.clear();
   find_hits(jobs, report);
@@ -96,7 +96,7 @@ LastLineReport LastLine::hold(const LastLineStep& step, Proximity& proximity, Su
 }
 
 /// Detects hits of all pairs, or of those with a vertex that has moved since.
-void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
+void CcdFailSafe::find_hits(JobSystem& jobs, CcdFailSafeReport& report) {
   hits_.clear();
   proximity_->update(*motion_, jobs);
   if (step_.clock && !only_moved_)
@@ -121,26 +121,26 @@ void LastLine::find_hits(JobSystem& jobs, LastLineReport& report) {
   only_moved_ = true;
   // Drop pairs that intersected before, features that leave a closed mesh, and infeasible pairs.
   std::erase_if(hits_, [&](const Hit& hit) {
-    if (is_tangled(hit) || comes_from_inside(hit.constraint)) return true;
+    if (starts_intersecting(hit) || comes_from_inside(hit.constraint)) return true;
     if (hit.constraint.inverse_mass > 0) return false;
     add_infeasible(hit, report);
     return true;
   });
 }
 
-void LastLine::add_infeasible(const Hit& hit, LastLineReport& report) const {
+void CcdFailSafe::add_infeasible(const Hit& hit, CcdFailSafeReport& report) const {
   const Constraint& c = hit.constraint;
   report.infeasible.push_back({c.vertex[0], c.shape >= 0 ? -1 : c.vertex[3], c.shape});
 }
 
-bool LastLine::is_asked_for(const std::array<int, 4>& vertices, int count) const {
+bool CcdFailSafe::needs_test(const std::array<int, 4>& vertices, int count) const {
   if (!only_moved_) return true;
   return std::any_of(vertices.begin(), vertices.begin() + count, [&](int v) { return is_moved_[v] != 0; });
 }
 
 /// Whether the whole pair is in one zone. Rigid motion causes no hits within a zone: the straight lines
 /// between are an affine map at every time.
-bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
+bool CcdFailSafe::is_rigid(const std::array<int, 4>& vertices) const {
   if (parent_.empty()) return false;
   const auto root = [&](int v) { return v < num_cloth_vertices() ? find_root(v) : -1; };
   const int first = root(vertices[0]);
@@ -149,20 +149,20 @@ bool LastLine::is_rigid(const std::array<int, 4>& vertices) const {
 }
 
 /// `thickness` is the pair's contact gap; `vertex` is one of the pair's.
-ImpactLimit LastLine::limit_for(double thickness, int vertex) const {
+ImpactLimit CcdFailSafe::limit_for(double thickness, int vertex) const {
   const int cloth = mesh_of(*step_.first_vertex, std::min(vertex, num_cloth_vertices() - 1));
   const Vec3 offset = motion_->start[vertex] - (*step_.origins)[cloth];
   const double separation = separation_of(thickness);
   return {separation, std::min(kFloor, separation), kRounding * (1 + offset.norm())};
 }
 
-bool LastLine::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
+bool CcdFailSafe::test_vertex_triangle(const FeaturePair& pair, Hit& hit) const {
   const auto [i, j, k] = proximity_->surface().triangles[pair.b];
   hit.is_edge_edge = false;
   return test_pair(pair, {i, j, k, pair.a}, find_vertex_triangle_impact, hit);
 }
 
-bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
+bool CcdFailSafe::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
   const std::array<int, 2>&a = proximity_->surface().edges[pair.a], &b = proximity_->surface().edges[pair.b];
   hit.is_edge_edge = true;
   return test_pair(pair, {a[0], a[1], b[0], b[1]}, find_edge_edge_impact, hit);
@@ -170,7 +170,7 @@ bool LastLine::test_edge_edge(const FeaturePair& pair, Hit& hit) const {
 
 /// Whether triangles at the one feature intersect triangles at the other at the start. Intersected features
 /// must be free to separate; stopping them would lock them in place.
-bool LastLine::is_tangled(const Hit& hit) const {
+bool CcdFailSafe::starts_intersecting(const Hit& hit) const {
   const Constraint& c = hit.constraint;
   if (c.shape >= 0) return false;
   const int middle = hit.is_edge_edge ? 2 : 3;
@@ -199,7 +199,7 @@ bool LastLine::is_tangled(const Hit& hit) const {
 /// Winding number test: whether the point of cloth that meets a closed mesh is inside of it at the start. The
 /// side of the met face does not suffice: faces of a rotating mesh come from far, and a point behind a face's
 /// plane may be outside, beyond the face's border.
-bool LastLine::comes_from_inside(const Constraint& c) const {
+bool CcdFailSafe::comes_from_inside(const Constraint& c) const {
   if (c.shape >= 0) return false;
   const int of_mesh = std::max(c.vertex[0], c.vertex[3]);
   const auto mesh =
@@ -216,9 +216,9 @@ bool LastLine::comes_from_inside(const Constraint& c) const {
 }
 
 template <class Find>
-bool LastLine::test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find,
-                         Hit& hit) const {
-  if (!is_asked_for(vertex, 4) || is_rigid(vertex)) return false;
+bool CcdFailSafe::test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find,
+                            Hit& hit) const {
+  if (!needs_test(vertex, 4) || is_rigid(vertex)) return false;
   const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
   const double thickness = motion_->half_thickness[vertex[0]] + motion_->half_thickness[vertex[3]];
   const ImpactLimit limit = limit_for(std::min(thickness, double{pair.max_gap}), vertex[0]);
@@ -236,7 +236,7 @@ bool LastLine::test_pair(const FeaturePair& pair, const std::array<int, 4>& vert
   return true;
 }
 
-void LastLine::find_shape_hits(int s) {
+void CcdFailSafe::find_shape_hits(int s) {
   const MovingShape& shape = (*step_.shapes)[s];
   const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
   const bool is_plane = std::holds_alternative<Plane>(shape.before);
@@ -261,14 +261,14 @@ void LastLine::find_shape_hits(int s) {
     const bool is_known = known != step_.separations.end() && known->shape == s && known->triangle == t;
     if (is_known && keeps(*known++)) continue;
     if (!is_near_[t[0]] && !is_near_[t[1]] && !is_near_[t[2]]) continue;
-    if (!is_asked_for({t[0], t[1], t[2], 0}, 3) || pass(t[0], s)) continue;
+    if (!needs_test({t[0], t[1], t[2], 0}, 3) || is_non_colliding(t[0], s)) continue;
     if (test_triangle_shape(s, t, hit)) hits_.push_back(hit);
   }
 }
 
 /// Whether the separating axis holds: the triangle stays beyond all of the shape by more than the separation.
 /// Tested in the shape's frame, where the shape is at rest and the triangle moves in straight lines.
-bool LastLine::keeps(const Separation& separation) const {
+bool CcdFailSafe::keeps(const Separation& separation) const {
   const MovingShape& shape = (*step_.shapes)[separation.shape];
   const Vec3 normal_at_start = shape.turned_back(separation.normal);
   double at_start = std::numeric_limits<double>::infinity(), at_end = at_start;
@@ -282,16 +282,16 @@ bool LastLine::keeps(const Separation& separation) const {
 }
 
 /// Whether a cloth vertex and a shape do not collide.
-bool LastLine::pass(int vertex, int shape) const {
-  if (step_.passes->empty()) return false;
+bool CcdFailSafe::is_non_colliding(int vertex, int shape) const {
+  if (step_.non_colliding->empty()) return false;
   const std::size_t num_cloths = step_.first_vertex->size() - 1,
-                    num_things = num_cloths + step_.shapes->size();
-  return (*step_.passes)[mesh_of(*step_.first_vertex, vertex) * num_things + num_cloths + shape] != 0;
+                    num_bodies = num_cloths + step_.shapes->size();
+  return (*step_.non_colliding)[mesh_of(*step_.first_vertex, vertex) * num_bodies + num_cloths + shape] != 0;
 }
 
 /// Tested in the shape's frame, where the shape is at rest and the triangle moves in straight lines. A
 /// triangle that penetrates the shape at the start may be as deep at the end.
-bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
+bool CcdFailSafe::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
   const MovingShape& shape = (*step_.shapes)[s];
   std::array<Vec3, 3> x, way;
   double travel_sq = 0;
@@ -344,13 +344,13 @@ bool LastLine::test_triangle_shape(int s, const Triangle& t, Hit& hit) const {
 }
 
 /// Rounds to the nearest position that can be stored.
-void LastLine::move(int vertex, const Vec3& to) {
+void CcdFailSafe::move(int vertex, const Vec3& to) {
   const Vec3& origin = (*step_.origins)[mesh_of(*step_.first_vertex, vertex)];
   motion_->end[vertex] = origin + (to - origin).cast<float>().cast<double>();
   is_moved_[vertex] = 1;
 }
 
-void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
+void CcdFailSafe::push_apart(JobSystem& jobs, CcdFailSafeReport& report) {
   pushed_ = motion_->end;
   for (int round = 0; round < kPushRounds && !hits_.empty(); ++round) {
     for (const Hit& hit : hits_) pushes_.push_back(hit.constraint);
@@ -364,7 +364,7 @@ void LastLine::push_apart(JobSystem& jobs, LastLineReport& report) {
   }
 }
 
-void LastLine::join_zones(JobSystem& jobs, LastLineReport& report) {
+void CcdFailSafe::join_zones(JobSystem& jobs, CcdFailSafeReport& report) {
   wanted_.assign(motion_->end.begin(), motion_->end.begin() + num_cloth_vertices());
   parent_.assign(num_cloth_vertices(), -1);
   share_.assign(num_cloth_vertices(), 1.0);
@@ -383,7 +383,7 @@ void LastLine::join_zones(JobSystem& jobs, LastLineReport& report) {
   report.zones = static_cast<int>(zones_.size());
 }
 
-int LastLine::find_root(int vertex) const {
+int CcdFailSafe::find_root(int vertex) const {
   int root = vertex;
   if (parent_[root] < 0) return -1;
   while (parent_[root] != root) root = parent_[root];
@@ -391,7 +391,7 @@ int LastLine::find_root(int vertex) const {
 }
 
 /// Merges the hit's vertices into one zone, which keeps half of its previous non-rigid share.
-void LastLine::add_to_zones(const Hit& hit) {
+void CcdFailSafe::add_to_zones(const Hit& hit) {
   const Constraint& c = hit.constraint;
   int root = -1;
   for (int k = 0; k < c.num_vertices; ++k) {
@@ -422,10 +422,10 @@ void LastLine::add_to_zones(const Hit& hit) {
   is_halved_[root] = 1;
   has_grown_ = true;
   is_carried_[root] = share_[root] == 0;
-  share_[root] = share_[root] > kLeastShare ? share_[root] / 2 : 0;
+  share_[root] = share_[root] > kMinShare ? share_[root] / 2 : 0;
 }
 
-void LastLine::gather_zones() {
+void CcdFailSafe::gather_zones() {
   zones_.clear();
   std::vector<int> zone_of(parent_.size(), -1);
   for (int v = 0; v < num_cloth_vertices(); ++v) {
@@ -442,7 +442,7 @@ void LastLine::gather_zones() {
 
 /// Guides weigh so much more than the zone's own motion that the latter only decides the freedom they leave;
 /// for a carried zone not even that, so that it cannot rotate into its guides.
-void LastLine::scale_zone(const Zone& zone) {
+void CcdFailSafe::scale_zone(const Zone& zone) {
   constexpr double kGuideWeight = 1e6;
   const bool is_carried = is_carried_[zone.root] && !zone.guides.empty();
   Vec3 carried = Vec3::Zero();

@@ -53,14 +53,14 @@ double deepest_sample(const World& world, ClothId cloth, const Collider& collide
   return -lowest;
 }
 
-struct HoldOffCase {
+struct ContactProjectionCase {
   const char* name;
   Collider collider;
   const char* integrator;
   int steps_per_second;
 };
 
-std::vector<HoldOffCase> make_hold_off_cases() {
+std::vector<ContactProjectionCase> make_contact_projection_cases() {
   // A corner up: the box's diagonal is vertical.
   const Mat3 corner_up = Eigen::Quaterniond::FromTwoVectors(Vec3::Ones(), Vec3::UnitY()).toRotationMatrix();
   const Mat3 edge_up = rotation_from_angles_deg({0, 20, 0}) * rotation_from_angles_deg({45, 0, 0});
@@ -70,19 +70,19 @@ std::vector<HoldOffCase> make_hold_off_cases() {
       {"small_ball", Sphere{{0, -0.04, 0}, 0.04}, 0.3, {}},
       {"ball", Sphere{{0, -0.25, 0}, 0.25}, 0.3, {}},
       {"capsule", Capsule{{-0.3, -0.03, 0.05}, {0.3, -0.03, -0.05}, 0.03}, 0.3, {}}};
-  std::vector<HoldOffCase> cases;
+  std::vector<ContactProjectionCase> cases;
   for (const Collider& c : colliders) {
     cases.push_back({c.name.c_str(), c, "paper", 600});
     cases.push_back({c.name.c_str(), c, "implicit_euler", 60});
   }
-  for (HoldOffCase& c : cases) c.name = c.collider.name.c_str();
+  for (ContactProjectionCase& c : cases) c.name = c.collider.name.c_str();
   return cases;
 }
 
-class HoldOff : public testing::TestWithParam<int> {};
+class ContactProjection : public testing::TestWithParam<int> {};
 
-TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
-  const HoldOffCase c = make_hold_off_cases()[GetParam()];
+TEST_P(ContactProjection, NoPointOfATriangleGetsIntoACollider) {
+  const ContactProjectionCase c = make_contact_projection_cases()[GetParam()];
   World world;
   world.set_integrator(settings(c.integrator));
   world.add_collider(c.collider);
@@ -101,12 +101,12 @@ TEST_P(HoldOff, NoPointOfATriangleGetsIntoACollider) {
   EXPECT_GT(deepest, -0.01) << "and it did land";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, HoldOff, testing::Range(0, 10), [](const auto& test) {
-  const HoldOffCase c = make_hold_off_cases()[test.param];
+INSTANTIATE_TEST_SUITE_P(Scenes, ContactProjection, testing::Range(0, 10), [](const auto& test) {
+  const ContactProjectionCase c = make_contact_projection_cases()[test.param];
   return c.collider.name + "_" + c.integrator;
 });
 
-class HoldOffMesh : public testing::TestWithParam<const char*> {};
+class ContactProjectionMesh : public testing::TestWithParam<const char*> {};
 
 /// Number of cloth vertices inside the closed mesh.
 int num_inside(const World& world, ClothId cloth, const TriangleMesh& mesh) {
@@ -117,7 +117,7 @@ int num_inside(const World& world, ClothId cloth, const TriangleMesh& mesh) {
   return static_cast<int>(std::count_if(winding.begin(), winding.end(), [](int w) { return w != 0; }));
 }
 
-TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
+TEST_P(ContactProjectionMesh, NoVertexGetsIntoAClosedMesh) {
   const int steps_per_second = GetParam() == std::string("implicit_euler") ? 60 : 300;
   for (const double offset : {0.013, 0.0}) {  // 0: vertices and edges lie exactly above each other
     World world;
@@ -138,7 +138,7 @@ TEST_P(HoldOffMesh, NoVertexGetsIntoAClosedMesh) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, HoldOffMesh,
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactProjectionMesh,
                          testing::Values("explicit", "paper_fixed", "implicit_euler"),
                          [](const auto& test) { return std::string(test.param); });
 

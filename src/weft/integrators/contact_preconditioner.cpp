@@ -1,4 +1,4 @@
-#include "weft/integrators/contact_filter.h"
+#include "weft/integrators/contact_preconditioner.h"
 
 namespace weft::engine {
 namespace {
@@ -8,12 +8,12 @@ constexpr double kNewDirection = 0.3;
 
 }  // namespace
 
-void ContactFilter::clear() {
+void ContactPreconditioner::clear() {
   for (const Held& h : held_) index_[h.at] = -1;
   held_.clear();
 }
 
-void ContactFilter::hold(int at, const Vec3& normal, std::size_t size) {
+void ContactPreconditioner::add_normal(int at, const Vec3& normal, std::size_t size) {
   if (index_.size() != size) index_.assign(size, -1);
   if (index_[at] < 0) {
     index_[at] = static_cast<int>(held_.size());
@@ -27,7 +27,7 @@ void ContactFilter::hold(int at, const Vec3& normal, std::size_t size) {
   h.normal[h.num_normals++] = rest / length;
 }
 
-void ContactFilter::take_normals(Vec3Array& field) const {
+void ContactPreconditioner::remove_normal_components(Vec3Array& field) const {
   for (const Held& h : held_) {
     Vec3 left = field.get(h.at);
     for (int n = 0; n < h.num_normals; ++n) left -= h.normal[n].dot(left) * h.normal[n];
@@ -35,7 +35,7 @@ void ContactFilter::take_normals(Vec3Array& field) const {
   }
 }
 
-void ContactFilter::add_slid(Vec3Array& z) const {
+void ContactPreconditioner::add_slid(Vec3Array& z) const {
   const auto add = [&](float* sum, const float* more) {
     for (std::size_t i = 0; i < z.size(); ++i) sum[i] += more[i];
   };

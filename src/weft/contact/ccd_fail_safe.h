@@ -33,7 +33,7 @@ struct Infeasible {
 };
 
 /// Work done by the CCD fail-safe.
-struct LastLineReport {
+struct CcdFailSafeReport {
   int hits = 0;   // pairs that would have met, in the first detection
   int zones = 0;  // rigid impact zones that remained, wholly or partly rigid
   std::vector<Infeasible> infeasible;
@@ -54,26 +54,28 @@ struct ClosedMesh {
 };
 
 /// The input of a step besides the motion.
-struct LastLineStep {
+struct CcdFailSafeStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
   const std::vector<MovingShape>* shapes = nullptr;   // mesh colliders are tested as vertices instead
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
   const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
   const std::vector<ClosedMesh>* closed_meshes = nullptr;
-  const std::vector<char>* passes = nullptr;     // (cloths and shapes, the same) 1: do not collide; or empty
+  const std::vector<char>* non_colliding =
+      nullptr;                                   // (cloths and shapes, the same) 1: do not collide; or empty
   const ShapeClearance* clearance = nullptr;     // of cloth from primitive shapes
   double thickest = 0;                           // half thickness of the thickest cloth [m]
   std::span<const Separation> separations = {};  // of some triangles, in the order of shapes and triangles
   WorkClock* clock = nullptr;                    // counts detections; null: not counted
 };
 
-class LastLine {
+class CcdFailSafe {
  public:
   /// Changes motion.end of cloth vertices where necessary. Ignores pairs that touch or intersect at the
   /// start, and features inside a closed mesh: they may leave. `proximity` then holds for the motion.
-  LastLineReport hold(const LastLineStep& step, Proximity& proximity, SurfaceMotion& motion, JobSystem& jobs);
+  CcdFailSafeReport resolve(const CcdFailSafeStep& step, Proximity& proximity, SurfaceMotion& motion,
+                            JobSystem& jobs);
 
-  /// The impulses of the last hold(): `push` holds how much each moved [kg m].
+  /// The impulses of the last resolve(): `push` holds how much each moved [kg m].
   const std::vector<Constraint>& pushes() const { return pushes_; }
 
  private:
@@ -96,11 +98,11 @@ class LastLine {
     std::vector<const Guide*> guides;
   };
 
-  void find_hits(JobSystem& jobs, LastLineReport& report);
-  void add_infeasible(const Hit& hit, LastLineReport& report) const;
-  bool is_asked_for(const std::array<int, 4>& vertices, int count) const;
+  void find_hits(JobSystem& jobs, CcdFailSafeReport& report);
+  void add_infeasible(const Hit& hit, CcdFailSafeReport& report) const;
+  bool needs_test(const std::array<int, 4>& vertices, int count) const;
   bool is_rigid(const std::array<int, 4>& vertices) const;
-  bool is_tangled(const Hit& hit) const;
+  bool starts_intersecting(const Hit& hit) const;
   bool comes_from_inside(const Constraint& c) const;
   ImpactLimit limit_for(double thickness, int vertex) const;
   bool test_vertex_triangle(const FeaturePair& pair, Hit& hit) const;
@@ -109,18 +111,18 @@ class LastLine {
   bool test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find, Hit& hit) const;
   void find_shape_hits(int shape);
   bool keeps(const Separation& separation) const;
-  bool pass(int vertex, int shape) const;
+  bool is_non_colliding(int vertex, int shape) const;
   bool test_triangle_shape(int shape, const Triangle& triangle, Hit& hit) const;
   void move(int vertex, const Vec3& to);
-  void push_apart(JobSystem& jobs, LastLineReport& report);
-  void join_zones(JobSystem& jobs, LastLineReport& report);
+  void push_apart(JobSystem& jobs, CcdFailSafeReport& report);
+  void join_zones(JobSystem& jobs, CcdFailSafeReport& report);
   void add_to_zones(const Hit& hit);
   int find_root(int vertex) const;
   void gather_zones();
   void scale_zone(const Zone& zone);
   int num_cloth_vertices() const { return step_.first_vertex->back(); }
 
-  LastLineStep step_;
+  CcdFailSafeStep step_;
   Proximity* proximity_ = nullptr;
   SurfaceMotion* motion_ = nullptr;
   std::vector<Hit> hits_;

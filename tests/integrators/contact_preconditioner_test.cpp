@@ -1,6 +1,6 @@
 /// The preconditioner is symmetric and positive definite for any contacts.
 
-#include "weft/integrators/contact_filter.h"
+#include "weft/integrators/contact_preconditioner.h"
 
 #include <gtest/gtest.h>
 
@@ -24,15 +24,15 @@ auto by_diagonal(double d) {
   };
 }
 
-struct ContactFilterTest : testing::Test {
+struct ContactPreconditionerTest : testing::Test {
   static constexpr double kStiff = 1000, kFree = 2;
   const PaddedRows rows = padded_rows_of(*build_grid_topology(test::square(3, 1), SpringModel::simplified));
-  ContactFilter filter;
+  ContactPreconditioner preconditioner;
   std::unique_ptr<JobSystem> jobs = make_serial_jobs();
 
   Vec3Array apply(const Vec3Array& r) {
     Vec3Array z(rows.size());
-    const double told = filter.apply(by_diagonal(kStiff), by_diagonal(kFree), r, *jobs, z);
+    const double told = preconditioner.apply(by_diagonal(kStiff), by_diagonal(kFree), r, *jobs, z);
     EXPECT_NEAR(told, dot(r, z), 1e-5 * std::abs(told) + 1e-12);
     return z;
   }
@@ -44,31 +44,32 @@ struct ContactFilterTest : testing::Test {
   }
 };
 
-TEST_F(ContactFilterTest, WithoutContactsIsTheFreeOneAlone) {
+TEST_F(ContactPreconditionerTest, WithoutContactsIsTheFreeOneAlone) {
   const Vec3Array z = apply(pushed_at(5, {1, 2, 3}));
   EXPECT_NEAR(z.get(rows.index(5)).z(), 3 / kFree, 1e-6);
 }
 
-TEST_F(ContactFilterTest, IsStiffAlongTheNormalAndFreeAcrossIt) {
-  filter.hold(rows.index(5), Vec3::UnitY(), rows.size());
+TEST_F(ContactPreconditionerTest, IsStiffAlongTheNormalAndFreeAcrossIt) {
+  preconditioner.add_normal(rows.index(5), Vec3::UnitY(), rows.size());
   const Vec3 z = apply(pushed_at(5, {1, 1, 1})).get(rows.index(5));
   EXPECT_NEAR(z.y(), 1 / kStiff, 1e-6);
   EXPECT_NEAR(z.x(), 1 / kStiff + 1 / kFree, 1e-6);
 }
 
-TEST_F(ContactFilterTest, ThreeNormalsLeaveNothingFree) {
-  filter.hold(rows.index(5), Vec3(1, 1, 0).normalized(), rows.size());
-  filter.hold(rows.index(5), Vec3(1, 1, 0.1).normalized(), rows.size());  // almost the same: not a new one
-  filter.hold(rows.index(5), Vec3(0, 1, 1).normalized(), rows.size());
-  filter.hold(rows.index(5), Vec3::UnitX(), rows.size());
+TEST_F(ContactPreconditionerTest, ThreeNormalsLeaveNothingFree) {
+  preconditioner.add_normal(rows.index(5), Vec3(1, 1, 0).normalized(), rows.size());
+  preconditioner.add_normal(rows.index(5), Vec3(1, 1, 0.1).normalized(),
+                            rows.size());  // almost the same: not a new one
+  preconditioner.add_normal(rows.index(5), Vec3(0, 1, 1).normalized(), rows.size());
+  preconditioner.add_normal(rows.index(5), Vec3::UnitX(), rows.size());
   const Vec3 z = apply(pushed_at(5, {1, -2, 3})).get(rows.index(5));
   EXPECT_LT((z - Vec3(1, -2, 3) / kStiff).norm(), 1e-5);
 }
 
-TEST_F(ContactFilterTest, IsSymmetricAndPositive) {
-  filter.hold(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
-  filter.hold(rows.index(6), Vec3(-1, 2, 0).normalized(), rows.size());
-  filter.hold(rows.index(6), Vec3(0, 2, -1).normalized(), rows.size());
+TEST_F(ContactPreconditionerTest, IsSymmetricAndPositive) {
+  preconditioner.add_normal(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
+  preconditioner.add_normal(rows.index(6), Vec3(-1, 2, 0).normalized(), rows.size());
+  preconditioner.add_normal(rows.index(6), Vec3(0, 2, -1).normalized(), rows.size());
   for (const int i : {5, 6}) {
     for (const int j : {5, 6, 7}) {
       const Vec3Array a = pushed_at(i, {0.3, -0.7, 0.2}), b = pushed_at(j, {-0.1, 0.4, 0.9});
@@ -78,8 +79,8 @@ TEST_F(ContactFilterTest, IsSymmetricAndPositive) {
   }
 }
 
-TEST_F(ContactFilterTest, GivesTheSameBitsForAnyNumberOfThreads) {
-  filter.hold(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
+TEST_F(ContactPreconditionerTest, GivesTheSameBitsForAnyNumberOfThreads) {
+  preconditioner.add_normal(rows.index(5), Vec3(1, 2, 3).normalized(), rows.size());
   const Vec3Array r = pushed_at(5, {1, -2, 3});
   const Vec3Array alone = apply(r);
   for (const int threads : {2, 5}) {
@@ -89,9 +90,9 @@ TEST_F(ContactFilterTest, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(ContactFilterTest, ForgetsContacts) {
-  filter.hold(rows.index(5), Vec3::UnitY(), rows.size());
-  filter.clear();
+TEST_F(ContactPreconditionerTest, ForgetsContacts) {
+  preconditioner.add_normal(rows.index(5), Vec3::UnitY(), rows.size());
+  preconditioner.clear();
   EXPECT_NEAR(apply(pushed_at(5, {0, 1, 0})).get(rows.index(5)).y(), 1 / kFree, 1e-6);
 }
 

@@ -1,4 +1,4 @@
-#include "weft/world/grab.h"
+#include "weft/world/attachment.h"
 
 #include <gtest/gtest.h>
 
@@ -26,14 +26,16 @@ struct Sheet {
              .structural = stiffness, .shear = stiffness / 2, .bend = stiffness / 100, .damping = 0.01}});
   }
 
-  Grab middle() const { return make_grab(world.model(cloth), world.state(cloth), kCells * kCells, kWeights); }
+  Attachment middle() const {
+    return make_attachment(world.model(cloth), world.state(cloth), kCells * kCells, kWeights);
+  }
 
   void hold(double stiffness, double damping, const Vec3& target) {
-    Grab grab = middle();
-    grab.stiffness = stiffness;
-    grab.damping = damping;
-    grab.target = target;
-    world.set_grabs(cloth, {grab});
+    Attachment attachment = middle();
+    attachment.stiffness = stiffness;
+    attachment.damping = damping;
+    attachment.target = target;
+    world.set_attachments(cloth, {attachment});
   }
 
   Vec3 held_point() const {
@@ -51,22 +53,22 @@ struct Sheet {
   }
 };
 
-TEST(Grab, SharesTheSpringAmongTheSurroundingsOfAPoint) {
+TEST(Attachment, SharesTheSpringAmongTheSurroundingsOfAPoint) {
   const Sheet sheet("desbrun");
-  const Grab grab = sheet.middle();
+  const Attachment attachment = sheet.middle();
   double sum = 0;
-  for (const double share : grab.shares) {
+  for (const double share : attachment.shares) {
     EXPECT_GT(share, 0);
     sum += share;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
-  EXPECT_GE(grab.particles.size(), 3u);
-  EXPECT_LT(grab.particles.size(), 20u) << "a patch of a few cells, not the whole cloth";
-  EXPECT_LT((grab.target - sheet.held_point()).norm(), 1e-7)
+  EXPECT_GE(attachment.particles.size(), 3u);
+  EXPECT_LT(attachment.particles.size(), 20u) << "a patch of a few cells, not the whole cloth";
+  EXPECT_LT((attachment.target - sheet.held_point()).norm(), 1e-7)
       << "rounding: nothing jumps when cloth is grabbed";
 }
 
-TEST(Grab, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
+TEST(Attachment, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
   const Vec3 aim(0.4, 0.3, 0.6);
   for (const std::string_view name : integrator_names()) {
     // The paper's scheme needs soft springs: the test is about the attachment.
@@ -88,21 +90,21 @@ TEST(Grab, IsStableAtAnyStiffnessAndReachesItsTargetWithEveryIntegrator) {
   }
 }
 
-TEST(Grab, HoldsHeavyClothByOneLightParticle) {
+TEST(Attachment, HoldsHeavyClothByOneLightParticle) {
   // A ten-thousandth of the cloth's mass, and a spring of any stiffness.
   for (const double k : {1e2, 1e5, 1e8}) {
     Sheet sheet("desbrun");
-    Grab grab{
+    Attachment attachment{
         .particles = {40}, .shares = {1}, .offsets = {Vec3::Zero()}, .stiffness = k, .damping = 0.06 * k};
-    grab.target = sheet.world.state(sheet.cloth).position(40) + Vec3(0, 0.2, 0);
-    sheet.world.set_grabs(sheet.cloth, {grab});
+    attachment.target = sheet.world.state(sheet.cloth).position(40) + Vec3(0, 0.2, 0);
+    sheet.world.set_attachments(sheet.cloth, {attachment});
     sheet.advance(240, 1.0 / 60);
     // Desbrun's constant matrix damps the end of the swing slowly.
-    EXPECT_LT((sheet.world.state(sheet.cloth).position(40) - grab.target).norm(), 1.96 / k + 0.02) << k;
+    EXPECT_LT((sheet.world.state(sheet.cloth).position(40) - attachment.target).norm(), 1.96 / k + 0.02) << k;
   }
 }
 
-TEST(Grab, GivesTheMomentumThatItSaysItGives) {
+TEST(Attachment, GivesTheMomentumThatItSaysItGives) {
   for (const char* name : {"explicit", "desbrun", "implicit_euler"}) {
     for (const double k : {10.0, 1e3, 1e6}) {
       Sheet sheet(name, 200);
@@ -111,7 +113,7 @@ TEST(Grab, GivesTheMomentumThatItSaysItGives) {
       Vec3 given = Vec3::Zero();
       for (int s = 0; s < 20; ++s) {
         ASSERT_TRUE(sheet.world.step(1.0 / 240).ok);
-        given += sheet.world.grab_impulse(sheet.cloth);
+        given += sheet.world.attachment_impulse(sheet.cloth);
       }
       const Vec3 momentum = compute_momentum(sheet.world.model(sheet.cloth), sheet.world.state(sheet.cloth));
       EXPECT_GT(momentum.norm(), 0.005) << name << " has been set in motion";
@@ -124,11 +126,11 @@ TEST(Grab, GivesTheMomentumThatItSaysItGives) {
   }
 }
 
-TEST(Grab, LetsGoOfClothThatThenFallsFreely) {
+TEST(Attachment, LetsGoOfClothThatThenFallsFreely) {
   Sheet sheet("desbrun");
   sheet.hold(1e4, 600, sheet.held_point());
   sheet.advance(60, 1.0 / 60);
-  sheet.world.set_grabs(sheet.cloth, {});
+  sheet.world.set_attachments(sheet.cloth, {});
   const double before = sheet.height();
   const double speed =
       compute_momentum(sheet.world.model(sheet.cloth), sheet.world.state(sheet.cloth)).y() / 0.2;
@@ -136,10 +138,10 @@ TEST(Grab, LetsGoOfClothThatThenFallsFreely) {
   const double t = 0.5;
   // The fall of implicit Euler, h/2 ahead; floats.
   EXPECT_NEAR(sheet.height() - before, speed * t - 0.5 * 9.81 * t * (t + 1.0 / 60), 1e-3);
-  EXPECT_EQ(sheet.world.grab_impulse(sheet.cloth), Vec3(Vec3::Zero()));
+  EXPECT_EQ(sheet.world.attachment_impulse(sheet.cloth), Vec3(Vec3::Zero()));
 }
 
-TEST(Grab, LeavesPinsWhereTheyAre) {
+TEST(Attachment, LeavesPinsWhereTheyAre) {
   Sheet sheet("paper_fixed");
   sheet.world.set_pins(sheet.cloth, {{.particles = {40}, .motion = {}}});
   const Vec3 pinned = sheet.world.state(sheet.cloth).position(40);
@@ -148,27 +150,27 @@ TEST(Grab, LeavesPinsWhereTheyAre) {
   EXPECT_LT((sheet.world.state(sheet.cloth).position(40) - pinned).norm(), 1e-6);
 }
 
-TEST(Grab, TwoHandsOnOnePatchAddUp) {
+TEST(Attachment, TwoHandsOnOnePatchAddUp) {
   Sheet one("desbrun"), two("desbrun");
   one.hold(1e3, 60, {0.5, 0.4, 0.5});
-  Grab half = two.middle();
+  Attachment half = two.middle();
   half.stiffness = 5e2;
   half.damping = 30;
   half.target = {0.5, 0.4, 0.5};
-  two.world.set_grabs(two.cloth, {half, half});
+  two.world.set_attachments(two.cloth, {half, half});
   one.advance(20, 1.0 / 60);
   two.advance(20, 1.0 / 60);
   EXPECT_LT((one.held_point() - two.held_point()).norm(), 1e-5) << "rounding";
 }
 
-TEST(Grab, RefusesParticlesThatAreNotThere) {
+TEST(Attachment, RefusesParticlesThatAreNotThere) {
   Sheet sheet("desbrun");
-  Grab grab = sheet.middle();
-  grab.particles[0] = 1000;
-  EXPECT_THROW(sheet.world.set_grabs(sheet.cloth, {grab}), InputError);
-  grab = sheet.middle();
-  grab.stiffness = -1;
-  EXPECT_THROW(sheet.world.set_grabs(sheet.cloth, {grab}), InputError);
+  Attachment attachment = sheet.middle();
+  attachment.particles[0] = 1000;
+  EXPECT_THROW(sheet.world.set_attachments(sheet.cloth, {attachment}), InputError);
+  attachment = sheet.middle();
+  attachment.stiffness = -1;
+  EXPECT_THROW(sheet.world.set_attachments(sheet.cloth, {attachment}), InputError);
 }
 
 }  // namespace

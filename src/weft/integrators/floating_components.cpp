@@ -1,11 +1,11 @@
-#include "weft/integrators/free_pieces.h"
+#include "weft/integrators/floating_components.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace weft::engine {
 
-void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
+void FloatingComponents::find(const ClothModel& model, const std::vector<int>& pinned) {
   const int n = model.num_particles();
   std::vector<int> parent(n);
   std::iota(parent.begin(), parent.end(), 0);
@@ -29,51 +29,51 @@ void FreePieces::find(const ClothModel& model, const std::vector<int>& pinned) {
     if (root(i) == i && number[i] == 0) number[i] = count++;
   }
   count_ = count;
-  piece_.clear();
+  component_.clear();
   if (count == 0) return;
-  for (int i = 0; i < n; ++i) piece_.push_back(number[root(i)]);
+  for (int i = 0; i < n; ++i) component_.push_back(number[root(i)]);
 }
 
 void FreeBodies::begin(std::span<const Member> members) {
   members_.assign(members.begin(), members.end());
-  first_piece_.assign(1, 0);
-  for (const Member& m : members_) first_piece_.push_back(first_piece_.back() + m.pieces->size());
+  first_component_.assign(1, 0);
+  for (const Member& m : members_) first_component_.push_back(first_component_.back() + m.components->size());
   release();
 }
 
 void FreeBodies::release() {
-  parent_.resize(first_piece_.back());
+  parent_.resize(first_component_.back());
   std::iota(parent_.begin(), parent_.end(), 0);
   is_held_.assign(parent_.size(), 0);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     if (members_[m].is_held)
-      std::fill(is_held_.begin() + first_piece_[m], is_held_.begin() + first_piece_[m + 1], char{1});
+      std::fill(is_held_.begin() + first_component_[m], is_held_.begin() + first_component_[m + 1], char{1});
   }
 }
 
-int FreeBodies::root_of(int piece) const {
-  while (parent_[piece] != piece) piece = parent_[piece];
-  return piece;
+int FreeBodies::root_of(int component) const {
+  while (parent_[component] != component) component = parent_[component];
+  return component;
 }
 
-int FreeBodies::piece_of(const Place& place) const {
-  const int piece = members_[place.member].pieces->piece_of(place.particle);
-  return piece < 0 ? -1 : root_of(first_piece_[place.member] + piece);
+int FreeBodies::component_of(const Place& place) const {
+  const int component = members_[place.member].components->component_of(place.particle);
+  return component < 0 ? -1 : root_of(first_component_[place.member] + component);
 }
 
 void FreeBodies::touch(std::span<const Place> places, bool is_mutual) {
   int joined = -1;
   bool is_held = !is_mutual;
   for (const Place& place : places) {
-    const int piece = piece_of(place);
-    is_held |= piece < 0 || is_held_[piece];
-    if (piece < 0 || piece == joined) continue;
+    const int component = component_of(place);
+    is_held |= component < 0 || is_held_[component];
+    if (component < 0 || component == joined) continue;
     if (joined < 0) {
-      joined = piece;
+      joined = component;
       continue;
     }
-    parent_[std::max(joined, piece)] = std::min(joined, piece);
-    joined = std::min(joined, piece);
+    parent_[std::max(joined, component)] = std::min(joined, component);
+    joined = std::min(joined, component);
   }
   if (joined >= 0 && is_held) is_held_[joined] = 1;
 }
@@ -85,12 +85,12 @@ void FreeBodies::remove_mean(std::span<Vec3Array* const> displacements) {
   for (int& p : parent_) p = root_of(p);
   const auto for_free = [&](const auto& body) {
     for (std::size_t m = 0; m < members_.size(); ++m) {
-      const auto& [pieces, rows, weight, is_held] = members_[m];
-      if (pieces->size() == 0) continue;
+      const auto& [components, rows, weight, is_held] = members_[m];
+      if (components->size() == 0) continue;
       for (int i = 0; i < rows->num_particles(); ++i) {
-        const int piece = pieces->piece_of(i);
-        if (piece < 0) continue;
-        const int root = parent_[first_piece_[m] + piece], at = rows->index(i);
+        const int component = components->component_of(i);
+        if (component < 0) continue;
+        const int root = parent_[first_component_[m] + component], at = rows->index(i);
         if (!is_held_[root]) body(root, (*weight)[at], at, *displacements[m]);
       }
     }

@@ -12,16 +12,18 @@
 namespace weft::engine {
 
 /// Floating components: pieces of a cloth connected by springs or elements, without a pinned particle.
-class FreePieces {
+class FloatingComponents {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);
 
   int size() const { return count_; }
-  int piece_of(int particle) const { return piece_.empty() ? -1 : piece_[particle]; }  // -1: held by a pin
+  int component_of(int particle) const {
+    return component_.empty() ? -1 : component_[particle];
+  }  // -1: held by a pin
 
  private:
   int count_ = 0;
-  std::vector<int> piece_;  // (num_particles) -1: pinned or tied to a pin; empty if there are no free pieces
+  std::vector<int> component_;  // (num_particles) -1: pinned or tied to a pin; empty if there are none
 };
 
 /// The floating components of several cloths, joined by the contacts between them. Neither springs nor such
@@ -29,7 +31,7 @@ class FreePieces {
 class FreeBodies {
  public:
   struct Member {
-    const FreePieces* pieces = nullptr;
+    const FloatingComponents* components = nullptr;
     const PaddedRows* rows = nullptr;
     const std::vector<float>* weight = nullptr;  // D, laid out by the rows [N/m]
     bool is_held = false;                        // an external force acts on all of it
@@ -41,7 +43,7 @@ class FreeBodies {
     int member = 0, particle = 0;
   };
 
-  /// Effect of a contact: joins the pieces of its particles if they push each other, else holds them.
+  /// Effect of a contact: joins the components of its particles if they push each other, else holds them.
   void release();
   void touch(std::span<const Place> places, bool is_mutual);
 
@@ -49,13 +51,13 @@ class FreeBodies {
   void remove_mean(std::span<Vec3Array* const> displacements);
 
  private:
-  int root_of(int piece) const;
-  int piece_of(const Place& place) const;
+  int root_of(int component) const;
+  int component_of(const Place& place) const;
 
   std::vector<Member> members_;
-  std::vector<int> first_piece_;  // (members + 1)
-  std::vector<int> parent_;       // (pieces)
-  std::vector<char> is_held_;     // (pieces) counts at roots
+  std::vector<int> first_component_;  // (members + 1)
+  std::vector<int> parent_;           // (pieces)
+  std::vector<char> is_held_;         // (pieces) counts at roots
   std::vector<Vec3> moment_;
   std::vector<double> weight_;
 };

@@ -20,7 +20,7 @@
 
 namespace weft::engine {
 
-struct Grab {
+struct Attachment {
   std::vector<int> particles;
   std::vector<double> shares;  // of the spring (particles), sum 1 [1]
   std::vector<Vec3> offsets;   // of each particle from the held point, constant while held (particles) [m]
@@ -33,20 +33,20 @@ struct Grab {
 /// shares within one and a half of the triangle's longest edge, or `radius` if that is more, at rest [m]. The
 /// target is the point's present position; the spring follows in about 70 ms and sags by 1 cm under the whole
 /// cloth.
-Grab make_grab(const ClothModel& model, const ClothState& state, int triangle, const Vec3& weights,
-               double radius = 0.03);
+Attachment make_attachment(const ClothModel& model, const ClothState& state, int triangle,
+                           const Vec3& weights, double radius = 0.03);
 
 /// Private to the world: the attachments of one cloth, in a step.
-class Hands {
+class Attachments {
  public:
-  void set(std::vector<Grab> grabs) {
-    grabs_ = std::move(grabs);
+  void set(std::vector<Attachment> attachments) {
+    attachments_ = std::move(attachments);
     model_ = nullptr;
   }
-  void set_target(int grab, const Vec3& target) { grabs_[grab].target = target; }
-  int size() const { return static_cast<int>(grabs_.size()); }
-  bool are_empty() const { return grabs_.empty(); }
-  const std::vector<Grab>& grabs() const { return grabs_; }
+  void set_target(int attachment, const Vec3& target) { attachments_[attachment].target = target; }
+  int size() const { return static_cast<int>(attachments_.size()); }
+  bool are_empty() const { return attachments_.empty(); }
+  const std::vector<Attachment>& attachments() const { return attachments_; }
 
   /// Changes the velocities of held particles, and returns the model to integrate with.
   const ClothModel& begin(const std::shared_ptr<const ClothModel>& model, const std::vector<char>& is_pinned,
@@ -58,7 +58,7 @@ class Hands {
  private:
   void fit(const std::shared_ptr<const ClothModel>& model, double step);
 
-  std::vector<Grab> grabs_;
+  std::vector<Attachment> attachments_;
 
   // The heavier model, its heavier particles, and its source.
   std::shared_ptr<const ClothModel> model_, original_;

@@ -18,14 +18,14 @@ namespace weft::engine {
 /// The first has contacts in its diagonal, the second only their friction, for motion along the surface. n
 /// are, for each particle, up to three orthonormal contact normals. Symmetric and positive definite if the
 /// first is.
-class ContactFilter {
+class ContactPreconditioner {
  public:
   void clear();
 
   bool empty() const { return held_.empty(); }
 
   /// Adds a contact on the particle at this index, along this unit vector; `size` is that of the arrays.
-  void hold(int at, const Vec3& normal, std::size_t size);
+  void add_normal(int at, const Vec3& normal, std::size_t size);
 
   /// z = P⁻¹ r; stiff(r, jobs, z) and free(r, jobs, z) compute V r and return r·V r. Returns r·z. With few
   /// threads the two run in parallel on one thread each: inside, threads would mostly wait.
@@ -33,21 +33,21 @@ class ContactFilter {
   double apply(const Stiff& stiff, const Free& free, const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
     if (held_.empty()) return free(r, jobs, z);
     along_surface_ = r;
-    take_normals(along_surface_);
+    remove_normal_components(along_surface_);
     if (slid_.size() != r.size()) slid_ = Vec3Array(r.size());
     double dots[2];
-    const bool is_side_by_side = jobs.num_threads() > 1 && jobs.num_threads() <= kFewThreads;
+    const bool is_parallel = jobs.num_threads() > 1 && jobs.num_threads() <= kFewThreads;
     const auto run = [&](int cycle) {
-      JobSystem& below = is_side_by_side ? *serial_ : jobs;
+      JobSystem& below = is_parallel ? *serial_ : jobs;
       dots[cycle] = cycle == 0 ? stiff(r, below, z) : free(along_surface_, below, slid_);
     };
-    if (is_side_by_side) {
+    if (is_parallel) {
       jobs.run(2, run);
     } else {
       run(0);
       run(1);
     }
-    take_normals(slid_);
+    remove_normal_components(slid_);
     add_slid(z);
     return dots[0] + dots[1];
   }
@@ -61,7 +61,7 @@ class ContactFilter {
 
   static constexpr int kFewThreads = 3;
 
-  void take_normals(Vec3Array& field) const;
+  void remove_normal_components(Vec3Array& field) const;
   void add_slid(Vec3Array& z) const;
 
   std::vector<Held> held_;
