@@ -260,7 +260,7 @@ Hypothesis frequencies(const SectionOptions& options) {
   options.tell("frequencies");
   Hypothesis hypothesis{.title = "Cloth swings at the theoretical frequencies", .source = "Weft"};
   hypothesis.text = {
-      "A chain of a metre with 100 links of 10⁵ N/m hangs from one end and swings by 2 mm in one of its modes, "
+      "A chain of a metre with 100 links of 10⁵ N/m hangs from one end. It swings by 2 mm in one of its modes, "
       "with `newton`. Theory: j/(4π) √(g/L) with the zeros j of the Bessel function J0. The last link has full "
       "mass, which makes the chain half a link too long: −0.25 %. The error of BDF2 itself is −0.13, −0.67 and "
       "−1.6 % at 60 steps per second."};

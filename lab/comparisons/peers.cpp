@@ -84,7 +84,7 @@ Hypothesis compare_springs(const SectionOptions& options) {
       "damping, one thread; a second. Error: mean RMS distance from `explicit` at a quarter of its limit. The "
       "error of this reference is {1:.4f} m, its worst strain {2:.1f} %. Times are those of the fastest of "
       "up to three runs. Newton is the engine of that name, on Warp, here without the graphics card that it is "
-      "made for. Its first setting of each solver, here and below, is that of its own example of hanging "
+      "made for. Its first setting of each solver, here and below, is that of Newton's example of hanging "
       "cloth.",
       side, reference.error, 100 * reference.strain)};
   Comparison comparison(options, cloth, reference);

@@ -162,7 +162,7 @@ Hypothesis damping_feeds_motion() {
   Hypothesis hypothesis{.title = "Eq. 2 has the wrong sign", .source = "not in the paper"};
   hypothesis.text = {
       "The damping force on particle i is printed as d (v_i − v_j), which accelerates relative motion. "
-      "Measured: the energy of a free sheet of 11² particles with random velocities after 50 steps of 1 ms, "
+      "Measured: energy of a free sheet of 11² particles with random velocities after 50 steps of 1 ms, "
       "over that at the start (10 N/m, d = 0.01 N·s/m)."};
   const auto topology = build_grid_topology({.cells_x = 10, .cells_z = 10}, SpringModel::simplified);
   const auto model = build_cloth_model(
