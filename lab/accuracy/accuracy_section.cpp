@@ -39,14 +39,14 @@ std::vector<MethodResult> hold_contest(const HungCloth& cloth, const Reference& 
 std::string cell_of(const std::optional<double>& ms) { return ms ? fmt::format("{:.2f}", *ms) : "–"; }
 
 Hypothesis error_against_time(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "At equal error, `newton` is the cheapest of all", .source = "Weft"};
+  Hypothesis hypothesis{.title = "At equal error, `newton` is the cheapest integrator", .source = "Weft"};
   std::vector<HungCloth> cloths;
   for (const int side : options.quick ? std::vector<int>{33} : std::vector<int>{33, 64, 128})
     cloths.push_back(make_hung_sheet(side, "simplified", {}));
   cloths.push_back(make_hung_strip(8, 48, {}));
   hypothesis.found.tables = {
       {{"CPU ms per frame at an error of 0.045 m"}, {}},
-      {{"cloth", "particles", "the reference's own error, m", "its worst strain, %"}, {}}};
+      {{"cloth", "particles", "error of the reference, m", "its worst strain, %"}, {}}};
   for (const std::string_view name : integrator_names())
     hypothesis.found.tables[0].rows.push_back({"`" + std::string(name) + "`"});
   hypothesis.found.tables[0].rows.push_back({"**xpbd over newton**"});
@@ -77,21 +77,23 @@ Hypothesis error_against_time(const SectionOptions& options) {
     }
   }
   hypothesis.text = {
-      "Sheets of a square metre hung by two corners, and a strip of 17 by 100 cm hung by its short edge, let "
-      "go from horizontal; one thread. Error: RMS distance from a reference (`explicit`, at a quarter of its "
-      "limit), mean over a second. The time at equal error is found between the two nearest settings of each "
-      "integrator; –: not reached with any setting tried."};
+      "Sheets of a square metre hung by two corners, and a strip of 17 by 100 cm hung by its short edge. All "
+      "are released from horizontal; one thread. Error: RMS distance from a reference (`explicit`, at a "
+      "quarter of its limit), mean over a second. The time at equal error is interpolated between the two "
+      "nearest settings of each integrator; –: not reached with any tested setting."};
   hypothesis.found.metrics = {{"newton_error_33", at_33, "m", "≤ 0.045", 0.01},
                               {"least_xpbd_over_newton", least, "1", "> 1", 0}};
-  hypothesis.text.push_back(fmt::format(
-      "`xpbd` takes {:.1f} to {:.1f} times as long as `newton`, the more the larger the cloth: its substeps "
-      "grow with the particles per side, "
-      "`newton`'s iterations do not. On small cloth, and for errors of millimetres, it is a good choice.",
-      least, most));
+  hypothesis.text.push_back(
+      fmt::format("`xpbd` takes {:.1f} to {:.1f} times as long as `newton`. The ratio grows with the size of "
+                  "the cloth: the "
+                  "substeps of `xpbd` grow with the particles per side, the iterations of `newton` do not. "
+                  "`xpbd` is a good "
+                  "choice for small cloth, and for errors of millimetres.",
+                  least, most));
   hypothesis.verdict = least > 1 ? Verdict::holds : Verdict::holds_in_part;
-  hypothesis.found.pictures = {{"accuracy_frontier.svg",
-                                "Error against processor time; each dot one setting, lines join the best.",
-                                to_svg(plot)}};
+  hypothesis.found.pictures = {
+      {"accuracy_frontier.svg",
+       "Error against processor time. A dot is a setting; lines join the best settings.", to_svg(plot)}};
   return hypothesis;
 }
 
@@ -120,7 +122,7 @@ Frame swing_strip_exactly() {
 
 Hypothesis convergence_in_step(const SectionOptions& options) {
   options.report_progress("convergence in step");
-  Hypothesis hypothesis{.title = "`newton` is of second order, its kin of first", .source = "Weft"};
+  Hypothesis hypothesis{.title = "`newton` is of second order, `implicit_euler` of first", .source = "Weft"};
   const Frame truth = swing_strip_exactly();
   const std::vector<int> counts = {60, 120, 240, 480, 960};
   hypothesis.found.tables = {{{"integrator"}, {}}};
@@ -151,9 +153,9 @@ Hypothesis convergence_in_step(const SectionOptions& options) {
     if (name == "implicit_euler") euler = order;
   }
   hypothesis.text = {
-      "A strip of 12.5 by 100 cm with 3×17 particles and 200 N/m, hung by its short edge and let go: RMS "
-      "error after half a second against `explicit` with 40 000 and 80 000 steps per second, extrapolated; "
-      "order: from 480 to 1920 steps per second."};
+      "A strip of 12.5 by 100 cm with 3×17 particles and 200 N/m, hung by its short edge and released. RMS "
+      "error after half a second; the reference is `explicit`, extrapolated from 40 000 and 80 000 steps per "
+      "second. Order: from 480 to 1920 steps per second."};
   hypothesis.found.metrics = {{"newton_order", newton, "1", "2", 0.3},
                               {"implicit_euler_order", euler, "1", "1", 0.2}};
   hypothesis.verdict =
@@ -166,15 +168,16 @@ Hypothesis convergence_in_step(const SectionOptions& options) {
 
 Hypothesis energy_over_time(const SectionOptions& options) {
   options.report_progress("energy over time");
-  Hypothesis hypothesis{.title = "No integrator but the printed ones makes energy", .source = "Weft"};
+  Hypothesis hypothesis{.title = "No integrator creates energy, except the paper's as printed",
+                        .source = "Weft"};
   const int side = 17, frames = options.quick ? 120 : 300;
-  hypothesis.text = {
-      fmt::format("The sheet with {}² particles and no damping at all for {} s at 60 frames per second, as "
-                  "each integrator is usually run: kinetic, elastic and gravitational energy together, over "
-                  "what gravity had given at the lowest point of a metre's fall (m g × 1 m). The truth stays "
-                  "at 0; what goes down is numerical damping.",
-                  side, frames / 60)};
-  hypothesis.found.tables = {{{"integrator", "steps per frame", "most", "at the end"}, {}}};
+  hypothesis.text = {fmt::format(
+      "The sheet with {}² particles, without damping, for {} s at 60 frames per second, with the "
+      "usual steps of each integrator. Total energy, kinetic, elastic and gravitational, over the "
+      "work of gravity in a fall of a metre (m g × 1 m). The exact value is 0; a decrease is "
+      "numerical damping.",
+      side, frames / 60)};
+  hypothesis.found.tables = {{{"integrator", "steps per frame", "maximum", "at the end"}, {}}};
   Plot plot{.x_title = "time, s",
             .y_title = "energy / (m g · 1 m)",
             .panels = {{"hung sheet", {}}},
@@ -221,8 +224,7 @@ Hypothesis energy_over_time(const SectionOptions& options) {
   hypothesis.found.metrics = {{"newton_energy_most", newton_most, "1", "0", 0.01},
                               {"newton_energy_end", newton_end, "1", "", 0}};
   hypothesis.verdict = all_hold ? Verdict::holds : Verdict::holds_in_part;
-  hypothesis.found.pictures = {
-      {"accuracy_energy.svg", "Energy over time; 0 is what a frictionless cloth keeps.", to_svg(plot)}};
+  hypothesis.found.pictures = {{"accuracy_energy.svg", "Energy over time; exact: 0.", to_svg(plot)}};
   return hypothesis;
 }
 
@@ -259,11 +261,14 @@ double chain_frequency(double bessel_zero, double step, NewtonQuality quality) {
 
 Hypothesis frequencies(const SectionOptions& options) {
   options.report_progress("frequencies");
-  Hypothesis hypothesis{.title = "Cloth swings at the frequencies of theory", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Cloth swings at the theoretical frequencies", .source = "Weft"};
   hypothesis.text = {
-      "A chain of a metre with 100 links of 10⁵ N/m hangs from one end and swings by 2 mm in one of its "
-      "modes; `newton`. Theory: j/(4π) √(g/L) with the zeros j of the Bessel function J0. The last link has "
-      "full mass, which makes the chain half a link too long: −0.25 %. BDF2 itself errs by −0.13, −0.67 and "
+      "A chain of a metre with 100 links of 10⁵ N/m hangs from one end. It swings by 2 mm in one of its "
+      "modes, "
+      "with `newton`. Theory: j/(4π) √(g/L) with the zeros j of the Bessel function J0. The last link has "
+      "full "
+      "mass, which makes the chain half a link too long: −0.25 %. The error of BDF2 itself is −0.13, −0.67 "
+      "and "
       "−1.6 % at 60 steps per second."};
   hypothesis.found.tables = {{{"mode", "theory, Hz", "`high`, 60 steps/s: %", "`high`, 240 steps/s: %",
                                "`default`, 60 steps/s: %", "`default`, 240 steps/s: %"},
@@ -285,11 +290,11 @@ Hypothesis frequencies(const SectionOptions& options) {
   }
   hypothesis.found.metrics = {{"worst_frequency_error_240", worst, "%", "≤ 1", 0.3},
                               {"worst_frequency_error_240_default", worst_default, "%", "≤ 1", 0}};
-  hypothesis.text.push_back(
-      fmt::format("With `quality = \"high\"` to {:.2f} %. The default chooses its iterations for the motion "
-                  "that is seen; a tremble of millimetres in a chain so stiff it feeds instead, and higher "
-                  "modes drown ({:.0f} % off).",
-                  worst, worst_default));
+  hypothesis.text.push_back(fmt::format(
+      "The error with `quality = \"high\"` is at most {:.2f} %. The default has enough iterations "
+      "for visible motion only. In such a stiff chain it amplifies oscillations of millimetres, "
+      "which hide higher modes (error {:.0f} %).",
+      worst, worst_default));
   hypothesis.verdict = worst > 1           ? Verdict::fails
                        : worst_default > 1 ? Verdict::holds_in_part
                                            : Verdict::holds;
@@ -300,16 +305,17 @@ Hypothesis frequencies(const SectionOptions& options) {
 
 Hypothesis convergence_in_mesh(const SectionOptions& options) {
   options.report_progress("convergence in mesh");
-  Hypothesis hypothesis{.title = "A finer mesh is the same cloth", .source = "Weft"};
+  Hypothesis hypothesis{.title = "A finer mesh gives the same cloth", .source = "Weft"};
   const std::vector<int> sides =
       options.quick ? std::vector<int>{9, 17, 33} : std::vector<int>{9, 17, 33, 65, 129};
   hypothesis.text = {
-      "The sheet hung by its whole first row, with springs of 2000 N/m on every mesh (which is one fabric: "
-      "stiffness per width is the springs'), swinging from horizontal with `newton`: where the middle of its "
-      "lower edge is after half a second, and what the sheet measures along its middle at rest. Theory at "
-      "rest: ρ g L²/(2k) more than its side."};
-  hypothesis.found.tables = {{{"particles", "lower edge after 0.5 s: y, m",
-                               "its difference to the finest, mm", "lengthening at rest, mm"},
+      "The sheet hung by its whole first row swings from horizontal with `newton`. Springs have 2000 N/m on "
+      "every mesh: this is one fabric, because the stiffness per width is that of the springs. Measured: the "
+      "middle of the lower edge after half a second, and the length along the middle at rest. Theory at "
+      "rest: "
+      "ρ g L²/(2k) more than its side."};
+  hypothesis.found.tables = {{{"particles", "lower edge after 0.5 s: y, m", "difference to the finest, mm",
+                               "lengthening at rest, mm"},
                               {}}};
   std::vector<double> edge, longer;
   for (const int side : sides) {
@@ -336,7 +342,7 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
   const double theory = 0.2 * kGravity / (2 * 2000);
   const double at_33 = longer[2];
   hypothesis.found.metrics = {{"lengthening_at_33", 1000 * at_33, "mm",
-                               fmt::format("{:.3f} in an endless sheet", 1000 * theory), 0.02}};
+                               fmt::format("{:.3f} in an infinite sheet", 1000 * theory), 0.02}};
   hypothesis.verdict = std::abs(at_33 / theory - 1) < 0.1 ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
 }
@@ -344,16 +350,16 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
 // ---- on a ball
 
 Hypothesis drape_on_ball(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "Cloth on a ball comes to the same shape, whoever moves it",
+  Hypothesis hypothesis{.title = "Cloth on a ball comes to the same shape with every integrator",
                         .source = "Weft"};
   const int frames = options.quick ? 60 : 180;
-  hypothesis.text = {
-      fmt::format("The scene `drape_sphere` for {:.0f} s with contact, by every integrator that may be asked "
-                  "for real fabric. Height: of the centre of mass at the end. Where a fold falls is chance; "
-                  "heights and strains are not.",
-                  frames / 60.0)};
+  hypothesis.text = {fmt::format(
+      "The scene `drape_sphere` for {:.0f} s with contact, by every integrator that supports real "
+      "fabric. Height: of the centre of mass at the end. The positions of folds are random; "
+      "heights and strains are not.",
+      frames / 60.0)};
   hypothesis.found.tables = {
-      {{"integrator", "steps per frame", "height, m", "worst strain, %", "crossings", "CPU ms per frame"},
+      {{"integrator", "steps per frame", "height, m", "worst strain, %", "intersections", "CPU ms per frame"},
        {}}};
   struct Run {
     std::string name;
@@ -390,10 +396,10 @@ Hypothesis drape_on_ball(const SectionOptions& options) {
 
 Section study_accuracy(const SectionOptions& options) {
   Section section{.name = "accuracy",
-                  .title = "How right, for how much time",
+                  .title = "Error against time",
                   .introduction =
                       "Every integrator against converged references and against theory. `newton` is the "
-                      "default, and the others say what it is worth."};
+                      "default; the others are for comparison."};
   section.hypotheses = {error_against_time(options),  convergence_in_step(options),
                         convergence_in_mesh(options), energy_over_time(options),
                         frequencies(options),         drape_on_ball(options)};

@@ -58,7 +58,7 @@ void print(const MethodResult& r) {
     fmt::print("| {:<14} | {:<16} | {:>16.2f} | {:>8.4f} | {:>10.1f} % |\n", r.method, r.setting, r.cpu_ms,
                r.error, 100 * r.strain);
   } else {
-    fmt::print("| {:<14} | {:<16} | {:>42} |\n", r.method, r.setting, "flies apart");
+    fmt::print("| {:<14} | {:<16} | {:>42} |\n", r.method, r.setting, "diverges");
   }
   std::fflush(stdout);
 }

@@ -104,7 +104,7 @@ class Kernels {
 
   void measure() {
     row("energy, force, Hessian", kLinearise, [&] { potential_.linearise(offset_, *jobs_, force_); });
-    row("energy alone", kEnergy, [&] { potential_.energy(offset_, *jobs_); });
+    row("energy only", kEnergy, [&] { potential_.energy(offset_, *jobs_); });
     row("product with the Hessian", kMultiply, [&] { potential_.multiply(force_, *jobs_, product_); });
     row("V-cycle", kVCycle, [&] { preconditioner_.apply(force_, *jobs_, product_); });
     // Ten iterations of a solver with free matrix and preconditioner.
@@ -112,7 +112,7 @@ class Kernels {
     row(
         "vectors of one CG iteration", kVectors,
         [&] { gradients_.solve(nothing, nothing, force_, {.iterations = 10}, *jobs_, direction_); }, 10);
-    fmt::print("| {}² | {} | hierarchy's values anew | {:.2f} | – | – | – | – |\n", size_, threads_,
+    fmt::print("| {}² | {} | hierarchy's values, recomputed | {:.2f} | – | – | – | – |\n", size_, threads_,
                per_particle(time_of([&] { preconditioner_.set_diagonal(potential_.weight, *jobs_); },
                                     options_.seconds)));
   }

@@ -93,9 +93,8 @@ bool bench_random(const RandomBenchOptions& options) {
     }
   }
   fmt::print(
-      "\n{}, {} scenes of {} steps: {} became infinite; {} gained more than 10 % in one step, {} more than 1 "
-      "% "
-      "over ten; of {} free ones {} fell wrongly\n",
+      "\n{}, {} scenes of {} steps: {} became infinite; {} gained more than 10 % in one step, {} more than "
+      "1 % over ten; of {} without pins, {} fell with a wrong speed\n",
       options.integrator, options.scenes, options.steps, infinite, gaining, gaining_on_average, free_pieces,
       falling_wrong);
   return infinite == 0 && falling_wrong == 0;

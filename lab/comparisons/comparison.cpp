@@ -41,7 +41,7 @@ void Comparison::add_absence(const std::string& engine, const std::string& why) 
 
 void Comparison::add_row(const std::string& engine, const std::string& how, const MethodResult& result) {
   results_.push_back(result);
-  std::vector<std::string> measured = {"flies apart", "", ""};
+  std::vector<std::string> measured = {"diverges", "", ""};
   if (result.ok)
     measured = {fmt::format("{:.2f}", result.cpu_ms), fmt::format("{:.4f}", result.error),
                 fmt::format("{:.1f}", 100 * result.strain)};

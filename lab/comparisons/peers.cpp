@@ -41,17 +41,17 @@ struct NewtonSolver {
 };
 
 constexpr NewtonSolver kNewtonXpbd = {"XPBD", "xpbd", "springs",
-                                      "springs, compliance 1/k, all at once; it has no triangles"};
+                                      "springs, compliance 1/k, Jacobi; no triangles"};
 constexpr NewtonSolver kNewtonVbd = {"VBD", "vbd", "springs", "springs, particles in three colours"};
 constexpr NewtonSolver kNewtonExplicit = {"semi-implicit", "semi_implicit", "springs",
                                           "springs, symplectic Euler"};
 constexpr NewtonSolver kNewtonVbdMembrane = {
     "VBD", "vbd", "membrane",
-    "stable neo-Hookean triangles, tri_ke = tri_ka = 1000 N/m: the same where strain is small"};
+    "stable neo-Hookean triangles, tri_ke = tri_ka = 1000 N/m: equal for small strain"};
 constexpr NewtonSolver kNewtonStyle3d = {
     "Style3D", "style3d", "membrane",
-    "triangles, ku = kv = 2667, ks = 1000 N/m: it has no springs and no Poisson's ratio, and takes 0.2 % of "
-    "every velocity in each substep"};
+    "triangles, ku = kv = 2667, ks = 1000 N/m: no springs, no Poisson's ratio; damps velocities by 0.2 % per "
+    "substep"};
 
 struct NewtonSetting {
   NewtonSolver solver;
@@ -81,12 +81,12 @@ Hypothesis compare_springs(const SectionOptions& options) {
   const HungCloth cloth = make_hung_sheet(side, "simplified", {});
   const Reference reference = find_explicit_reference(cloth, options);
   hypothesis.text = {fmt::format(
-      "{0}×{0} particles of 0.2 kg/m², springs of 2000, 1000 and 20 N/m, hung by two corners, no "
-      "contact, no damping, one thread; a second. "
-      "Error: mean RMS distance from `explicit` at a quarter of its limit, known to {1:.4f} m; "
-      "its worst strain is {2:.1f} %. The fastest of up to three runs. Newton is the engine of "
-      "that name, on Warp, here without the graphics card that it is made for; its first setting of "
-      "each solver, here and below, is that of its own example of hanging cloth.",
+      "{0}×{0} particles of 0.2 kg/m², springs of 2000, 1000 and 20 N/m, hung by two corners, no contact, no "
+      "damping, one thread; a second. Error: mean RMS distance from `explicit` at a quarter of its limit. The "
+      "error of this reference is {1:.4f} m, its worst strain {2:.1f} %. Times are those of the fastest of "
+      "up to three runs. Newton is the engine of that name, on Warp, here without the graphics card that it is "
+      "made for. Its first setting of each solver, here and below, is that of Newton's example of hanging "
+      "cloth.",
       side, reference.error, 100 * reference.strain)};
   Comparison comparison(options, cloth, reference);
   add_newton(comparison, "springs");
@@ -99,7 +99,7 @@ Hypothesis compare_springs(const SectionOptions& options) {
         "links; stiffness C/(W + 1/(h²k)), which is XPBD's; one position iteration per substep, no drag",
         make_bullet_method);
   if (list_bullet_entries().empty())
-    comparison.add_absence("Bullet", "not there when this Weft was built (libbullet-dev)");
+    comparison.add_absence("Bullet", "this Weft was built without it (libbullet-dev)");
   std::vector<NewtonSetting> settings = {{kNewtonXpbd, 10, 10}, {kNewtonXpbd, 100, 1},
                                          {kNewtonVbd, 10, 10},  {kNewtonVbd, 40, 5},
                                          {kNewtonExplicit, 32}, {kNewtonExplicit, 200}};
@@ -165,7 +165,7 @@ Peer describe_mujoco(int side, bool quick) {
   const auto add = [&](const std::string& integrator, int steps) {
     peer.settings.push_back({"", fmt::format("{}, {} step{}", integrator, steps, steps == 1 ? "" : "s"),
                              fmt::format("{} {} {}", side, steps, integrator),
-                             "flex, dim 2, elastic2d stretch; Python's own time is in the frame"});
+                             "flex, dim 2, elastic2d stretch; times include Python"});
   };
   for (const int steps : {1, 4, 16}) add("discrete", steps);
   if (!quick) add("Euler", 100);
@@ -178,12 +178,12 @@ Hypothesis compare_membranes(const SectionOptions& options) {
   options.report_progress("membrane: reference");
   const Reference reference = make_membrane_reference(cloth);
   hypothesis.text = {fmt::format(
-      "{0}×{0} particles of 0.2 kg/m², an isotropic membrane of triangles (Young's modulus times "
-      "thickness 2667 N/m, Poisson's ratio 1/3, no bending), hung by two corners, no "
-      "contact, no damping, one thread; a second. Error: mean RMS distance from `newton` at "
-      "`high` with 64 steps per frame; half as many differ from it by {1:.4f} m. "
-      "MuJoCo's grid has all diagonals parallel, ours alternate, and its particles weigh the "
-      "same at borders: some millimetres of its error are that. Newton's mesh and weights are ours.",
+      "{0}×{0} particles of 0.2 kg/m² as an isotropic membrane of triangles: Young's modulus times thickness "
+      "2667 N/m, Poisson's ratio 1/3, no bending. The sheet hangs from two corners; no contact, no damping, "
+      "one thread; a second. Error: mean RMS distance from `newton` at `high` with 64 steps per frame; with 32 "
+      "steps the distance is {1:.4f} m. MuJoCo's grid has parallel diagonals, ours alternating ones, and its "
+      "particles at borders have the full mass. Some millimetres of its error come from these differences. "
+      "Newton has our mesh and masses.",
       kQuickSide, reference.error)};
   Comparison comparison(options, cloth, reference);
   add_newton(comparison, "triangles");
@@ -220,23 +220,22 @@ Peer describe_blender(int side, bool quick) {
   for (const int steps : quick ? std::vector{5, 20} : std::vector{5, 20, 80})
     peer.settings.push_back(
         {"", fmt::format("quality {}", steps), fmt::format("{} {}", side, steps),
-         "edges; tension and compression k times their mean length, angular bending of 0; conjugate "
-         "gradients to 1 %; all of a change of frame is timed"});
+         "edges; tension and compression k times their mean length, angular bending 0; conjugate gradients to "
+         "1 %; times include the whole frame change"});
   return peer;
 }
 
 Hypothesis compare_even_springs(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "The hanging sheet of even springs: Blender's cloth", .source = "Weft"};
+  Hypothesis hypothesis{.title = "The hanging sheet of equal springs: Blender's cloth", .source = "Weft"};
   const HungCloth cloth = make_even_sheet(kQuickSide);
   const Reference reference = find_explicit_reference(cloth, options);
   hypothesis.text = {fmt::format(
-      "Blender's cloth has one stiffness for all edges, its shear springs resist no compression, "
-      "and its particles weigh the same. So here all springs, along edges and one diagonal of each "
-      "cell, have 2000 N/m, nothing resists bending, and all {0}×{0} particles weigh the same, "
-      "0.2 kg together: the springs are those of Blender one by one. Its clock counts frames: "
-      "gravity and stiffness are given per frame², for 60 frames a second; quality is its number "
-      "of steps per frame, 5 by default. The rest as above; the reference is known to {1:.4f} m, "
-      "and its worst strain is {2:.1f} %.",
+      "Blender's cloth has one stiffness for all edges, its shear springs do not resist compression, and its "
+      "particles have equal masses. Here all springs, along edges and one diagonal of each cell, therefore "
+      "have 2000 N/m, without bending. All {0}×{0} particles have equal masses, 0.2 kg together. The springs "
+      "are exactly those of Blender. Its unit of time is the frame: gravity and stiffness are given per "
+      "frame², for 60 frames per second. Quality is its number of steps per frame, 5 by default. Other settings "
+      "as above. The error of the reference is {1:.4f} m, its worst strain {2:.1f} %.",
       kQuickSide, reference.error, 100 * reference.strain)};
   Comparison comparison(options, cloth, reference);
   add_newton(comparison, "springs");
@@ -246,9 +245,9 @@ Hypothesis compare_even_springs(const SectionOptions& options) {
 }
 
 Hypothesis what_was_not_measured() {
-  Hypothesis hypothesis{.title = "What was not measured", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Engines that are not measured", .source = "Weft"};
   hypothesis.found.tables = {
-      {{"engine", "why"}, {{"NvCloth, Jolt, PositionBasedDynamics", "no packages for Debian or PyPI"}}}};
+      {{"engine", "reason"}, {{"NvCloth, Jolt, PositionBasedDynamics", "no packages for Debian or PyPI"}}}};
   return hypothesis;
 }
 
@@ -256,10 +255,10 @@ Hypothesis what_was_not_measured() {
 
 Section study_peers(const SectionOptions& options) {
   Section section{.name = "peers",
-                  .title = "Other engines, the same cloth",
+                  .title = "The same cloth in other engines",
                   .introduction =
-                      "Each engine gets the same cloth or the nearest it knows, with the settings that its "
-                      "authors would use for it; they stand in the tables."};
+                      "Each engine simulates the same cloth, or the nearest that it supports, with the settings "
+                      "that its authors would use. The tables list the settings."};
   section.hypotheses = {compare_springs(options), compare_membranes(options), compare_even_springs(options),
                         what_was_not_measured()};
   return section;

@@ -263,10 +263,9 @@ bool bench_collision(const CollisionBenchOptions& options) {
       "SIMD {}, clock {:.2f} GHz. Sheets of cells of {:.0f} mm, boxes {:.0f} mm beyond each triangle.\n",
       to_string(simd_level()), 1e-9 * measure_clock(), 1e3 * kSpacing, 1e3 * kMargin);
   fmt::print(
-      "Times are medians in ms; both: refit and query of all pairs without a common vertex. cmp: numbers\n"
-      "compared per pair of boxes compared; Mbox/s: such pairs per second of a query; M/s: pairs found per "
-      "second\n"
-      "of both. Grid, brute: their time over the tree's, on one thread.\n\n");
+      "Times are medians in ms. Both: refit and query of all pairs without a common vertex. cmp: scalar\n"
+      "comparisons per compared pair of boxes. Mbox/s: compared pairs of boxes per second of a query. M/s: pairs\n"
+      "found per second of both. Grid, brute: their time over the tree's, on one thread.\n\n");
   fmt::print("{:<7} {:>8} {:>2} {:>8} {:>7} {:>7} {:>8} {:>7} {:>8} {:>5} {:>7} {:>7} {:>7} {:>7}\n", "shape",
              "size", "T", "build", "refit", "query", "both", "k found", "k boxes", "cmp", "Mbox/s", "M/s",
              "grid ×", "brute ×");

@@ -76,9 +76,9 @@ void print_work(const RunReport& report) {
 
 void print_where_frames_go(const std::vector<RunReport>& reports) {
   fmt::print(
-      "## Where a frame goes\n\n"
-      "Shares of the time of steps in %, on the thread that calls them; `retries` are parts that were thrown "
-      "away, and count in the others too. Pairs in the longest list of the run, and counts per frame.\n\n"
+      "## Time of a frame by kind of work\n\n"
+      "Shares of the time of steps in %, on the calling thread. `retries` are discarded parts of steps, and are "
+      "included in the other shares too. Pairs in the longest list of the run, and counts per frame.\n\n"
       "| scene | threads | ms | lists | narrow phase | rows | set up | product | V-cycle | projection | CCD "
       "| "
       "rest | retries | longest list | tested | active | renewals | looks |\n"
@@ -168,9 +168,9 @@ void bench_layers(bool quick) {
   const int cells = quick ? 24 : 48;
   fmt::print(
       "## Cost against the number of contacts\n\n"
-      "Sheets of {0}×{0} cells on each other and on a floor, `newton`, one thread; without contact they "
-      "float.\n\n"
-      "| layers | contacts that bear | tremble mm/s | ms per step | without contact | µs per contact | |\n"
+      "Stacks of sheets of {0}×{0} cells on a floor, `newton`, one thread; without contact there is no "
+      "gravity.\n\n"
+      "| layers | loaded contacts | jitter mm/s | ms per step | without contact | µs per contact | |\n"
       "|--:|--:|--:|--:|--:|--:|---|\n",
       cells);
   for (const int layers : {1, 2, 3, 4, 6, 8}) {
@@ -219,7 +219,7 @@ double measure_memory(int cells) {
 
 void bench_overhead(bool quick) {
   const int cells = quick ? 63 : 127, cells_on_ball = quick ? 127 : 255;
-  fmt::print("## Memory, and nothing near\n\n");
+  fmt::print("## Memory, and overhead without contacts\n\n");
   fmt::print("contact/ball_and_floor with {0}×{0} particles: {1:.0f} bytes per particle after a second.\n",
              cells_on_ball + 1, measure_memory(cells_on_ball));
   fmt::print(
@@ -231,9 +231,9 @@ void bench_overhead(bool quick) {
 void bench_rest(const ContactExperiment& setup, double seconds) {
   fmt::print(
       "## Rest\n\n"
-      "A sheet of 0.8 m, {0}×{0} cells, dropped from 1 cm; of the second half of {1} s. `rise` is the most "
-      "that its middle rose by "
-      "in a step at any time, `force` what all contacts bear over the weight, on the mean.\n\n"
+      "A sheet of 0.8 m, {0}×{0} cells, dropped from 1 cm: results of the second half of {1} s. `rise`: maximum "
+      "rise of the middle in a step, over the whole time. `force`: mean of the contact forces over the "
+      "weight.\n\n"
       "| on | kinetic energy J/kg | drift mm | rise mm | force |\n|---|--:|--:|--:|--:|\n",
       setup.cells, seconds);
   for (const auto& [name, support] :
@@ -247,7 +247,7 @@ void bench_rest(const ContactExperiment& setup, double seconds) {
 }
 
 void bench_laws(const ContactExperiment& setup) {
-  fmt::print("## Friction\n\n| experiment | µ | measured | by the law | off by |\n|---|--:|--:|--:|--:|\n");
+  fmt::print("## Friction\n\n| experiment | µ | measured | predicted | error |\n|---|--:|--:|--:|--:|\n");
   for (const double friction : {0.0, 0.2, 0.4, 0.566, 0.59}) {
     const Slide slide = slide_on_incline(setup, 30, friction);
     const std::string off = slide.expected > 0
@@ -263,7 +263,7 @@ void bench_laws(const ContactExperiment& setup) {
   }
   for (const double friction : {0.02, 0.03, 0.6}) {
     const Spin spin = spin_ball(setup, friction);
-    fmt::print("| ball that turns by {:.2f} rad: the sheet, rad | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
+    fmt::print("| ball, rotates by {:.2f} rad: the sheet, rad | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
                spin.turned_ball, friction, spin.turned_sheet, spin.expected,
                100 * (spin.turned_sheet / spin.expected - 1));
   }
@@ -285,9 +285,9 @@ void bench_laws(const ContactExperiment& setup) {
 /// Coulomb's law contact by contact, and for the sheet as a whole.
 void bench_friction_audit(const ContactExperiment& setup, bool quick) {
   fmt::print(
-      "\nOver the contacts that slide, all steps together: Σ|T| over µ ΣN; the torque about the axis over "
-      "µ Σ N r,\nby the contacts' forces and by the sheet's angular momentum. 1: Coulomb's law.\n\n"
-      "| experiment | cells | µ | measured over the law | Σ\\|T\\| | torque, contacts | torque, momentum |\n"
+      "\nSums over the sliding contacts of all steps: Σ|T| over µ ΣN; torque about the axis over µ Σ N r,\n"
+      "from contact forces and from angular momentum. 1: Coulomb's law.\n\n"
+      "| experiment | cells | µ | measured over predicted | Σ\\|T\\| | torque, contacts | torque, momentum |\n"
       "|---|--:|--:|--:|--:|--:|--:|\n");
   const auto print_row = [](const char* what, int cells, double friction, double share,
                             const FrictionAudit& f, double torque) {
@@ -308,7 +308,7 @@ void bench_friction_audit(const ContactExperiment& setup, bool quick) {
       ContactExperiment own = setup;
       own.cells = cells;
       const Spin spin = spin_ball(own, friction);
-      print_row("ball that turns", cells, friction, spin.turned_sheet / spin.expected, spin.friction,
+      print_row("rotating ball", cells, friction, spin.turned_sheet / spin.expected, spin.friction,
                 spin.torque);
     }
   }
@@ -319,10 +319,9 @@ void bench_momentum(const ContactExperiment& setup) {
   const Collision collision = collide_sheets(setup, 0.5);
   fmt::print(
       "\n## Momentum\n\n"
-      "A folded sheet in free fall gains g h of mean velocity per step, in the worst one of half a second to "
-      "{:.4f} %.\nTwo free sheets that fly into each other (up to {} contacts) change their common momentum "
-      "by {:.1g} "
-      "of one sheet's.\n",
+      "A folded sheet in free fall gains g h of mean velocity per step, with an error of at most {:.4f} % in "
+      "half a second.\nTwo free sheets that collide (up to {} contacts) change their total momentum by {:.1g} of "
+      "one sheet's.\n",
       100 * std::abs(fall.worst_gain - 1), collision.contacts, collision.momentum_change);
 }
 
@@ -362,10 +361,9 @@ void bench_energy_of(const char* name, const char* damping, const Overrides& ove
 void bench_energy(bool quick) {
   fmt::print(
       "\n## Energy\n\n"
-      "Nothing is driven: every rise of kinetic and potential energy is made from nothing. With one step per "
-      "frame the\nlargest rise in a frame, its share of the gravitational energy that fell until then, and "
-      "the "
-      "worst strain of structural\nsprings; and that with {0} steps per frame.\n\n"
+      "Without external drive, every rise of kinetic plus potential energy is an error. Results with one step "
+      "per frame:\nlargest rise in a frame, its share of the released gravitational energy, worst strain of "
+      "structural springs.\nThe last column is the worst strain with {0} steps per frame.\n\n"
       "| scene | damping | frames | rise J | in frame | share | strain | {0} steps |\n"
       "|---|---|--:|--:|--:|--:|--:|--:|\n",
       kFineSteps);

@@ -15,20 +15,18 @@ namespace weft::engine::lab {
 namespace {
 
 Hypothesis nothing_crosses(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "Nothing crosses, whatever happens",
-                        .source = "the paper, section 5, and Weft"};
+  Hypothesis hypothesis{.title = "No frame has intersections", .source = "the paper, section 5, and Weft"};
   const int most_frames = options.quick ? 8 : 90;
-  hypothesis.text = {
-      fmt::format("The first {} frames of every scene in `scenes/contact`, {} thread{}, every frame given to "
-                  "the independent checker: pairs of "
-                  "triangles that cross, and the deepest point of cloth inside a collider. `make scenes` and "
-                  "`weft bench contact` run them "
-                  "whole. Hits are what the repulsion of the solve left to the last line; zones what "
-                  "impulses could not part.",
-                  most_frames, options.threads, options.threads == 1 ? "" : "s")};
-  hypothesis.found.tables = {
-      {{"scene", "particles", "crossings", "deepest, mm", "infeasible", "hits", "zones", "ms per frame"},
-       {}}};
+  hypothesis.text = {fmt::format(
+      "The first {} frames of every scene in `scenes/contact`, {} thread{}. The independent checker "
+      "tests every frame for intersecting triangles and for the deepest point of cloth inside a "
+      "collider. `make scenes` and `weft bench contact` run the scenes completely. CCD hits: pairs "
+      "that the contact terms of the solve leave to the CCD fail-safe. Zones: rigid impact zones, "
+      "for pairs that impulses cannot separate.",
+      most_frames, options.threads, options.threads == 1 ? "" : "s")};
+  hypothesis.found.tables = {{{"scene", "particles", "intersections", "deepest, mm", "infeasible", "CCD hits",
+                               "zones", "ms per frame"},
+                              {}}};
   int crossings = 0, infeasible = 0;
   double deepest = 0;
   for (const ShippedScene& shipped : list_scenes()) {
@@ -51,7 +49,7 @@ Hypothesis nothing_crosses(const SectionOptions& options) {
   hypothesis.found.metrics = {
       {"contact_crossings", static_cast<double>(crossings), "1", "0", 0.5},
       {"contact_deepest", 1e6 * deepest, "µm", "≤ 1", 1},
-      {"contact_infeasible", static_cast<double>(infeasible), "1", "0 but for self_crossing_body", 0.5}};
+      {"contact_infeasible", static_cast<double>(infeasible), "1", "0 except for self_crossing_body", 0.5}};
   hypothesis.verdict = crossings > 0                      ? Verdict::fails
                        : infeasible > 0 || deepest > 1e-6 ? Verdict::holds_in_part
                                                           : Verdict::holds;
@@ -60,14 +58,14 @@ Hypothesis nothing_crosses(const SectionOptions& options) {
 
 Hypothesis friction_is_coulombs(const SectionOptions& options) {
   options.report_progress("friction");
-  Hypothesis hypothesis{.title = "Friction is Coulomb's", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Friction follows Coulomb's law", .source = "Weft"};
   const ContactExperiment setup;
   hypothesis.text = {fmt::format(
       "A sheet of {0}×{0} cells on an incline of 30° (tan = 0.577), `newton`: its acceleration against g "
-      "(sin α − µ cos α). A strip "
-      "over half a turn of a drum that turns: the ratio of the tensions at its ends against e^{{µπ}}.",
+      "(sin α − µ cos α). A strip over half a turn of a rotating drum: the ratio of the tensions at its ends "
+      "against e^{{µπ}}.",
       setup.cells)};
-  hypothesis.found.tables = {{{"experiment", "µ", "measured", "by the law", "off by, %"}, {}}};
+  hypothesis.found.tables = {{{"experiment", "µ", "measured", "predicted", "error, %"}, {}}};
   double incline = 0, capstan = 0;
   bool sticks = true;
   for (const double friction : {0.0, 0.2, 0.4, 0.566, 0.59}) {
@@ -98,11 +96,15 @@ Hypothesis friction_is_coulombs(const SectionOptions& options) {
 
 Hypothesis ball_takes_cloth_along(const SectionOptions& options) {
   options.report_progress("a ball that turns");
-  Hypothesis hypothesis{.title = "A ball takes cloth along as far as friction says", .source = "Weft"};
+  Hypothesis hypothesis{.title = "A rotating ball drags cloth as far as Coulomb's law predicts",
+                        .source = "Weft"};
   hypothesis.text = {
-      "A sheet on a ball that is spun up to half a turn per second within a second: how far both have turned "
-      "after that second, and how far a rigid flat sheet would slide along, µ g ⟨r⟩/(2⟨r²⟩)."};
-  hypothesis.found.tables = {{{"µ", "ball, rad", "sheet, rad", "by the law, rad"}, {}}};
+      "A sheet on a ball that accelerates to half a turn per second within a second. Measured: the rotation "
+      "of "
+      "both after that second. Predicted: the rotation of a sliding rigid flat sheet, µ g ⟨r⟩/(2⟨r²⟩), or "
+      "that "
+      "of the ball."};
+  hypothesis.found.tables = {{{"µ", "ball, rad", "sheet, rad", "predicted, rad"}, {}}};
   double worst = 0;
   for (const double friction : {0.02, 0.03, 0.6}) {
     const Spin spin = spin_ball({}, friction);
@@ -117,14 +119,13 @@ Hypothesis ball_takes_cloth_along(const SectionOptions& options) {
 }
 
 Hypothesis cloth_comes_to_rest(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "Cloth comes to rest and stays", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Cloth comes to rest and stays at rest", .source = "Weft"};
   const double seconds = options.quick ? 6 : 20;
-  hypothesis.text = {
-      fmt::format("A sheet of 0.8 m dropped from 1 cm, `newton` at 60 steps per second: of the second half "
-                  "of {:.0f} s the most kinetic energy per mass, how far its "
-                  "middle has moved, by how much that ever rose in a step, and what all contacts bear over "
-                  "its weight on the mean.",
-                  seconds)};
+  hypothesis.text = {fmt::format(
+      "A sheet of 0.8 m dropped from 1 cm, `newton` at 60 steps per second. In the second half of "
+      "{:.0f} s: maximum kinetic energy per mass, drift of the middle, and mean of the contact "
+      "forces over the weight. In the whole time: maximum rise of the middle in a step.",
+      seconds)};
   hypothesis.found.tables = {
       {{"on", "kinetic energy, J/kg", "drift, mm", "rise in a step, mm", "force over weight"}, {}}};
   double energy = 0, drift = 0, force = 0;
@@ -148,16 +149,15 @@ Hypothesis cloth_comes_to_rest(const SectionOptions& options) {
 
 Hypothesis momentum_is_kept(const SectionOptions& options) {
   options.report_progress("momentum");
-  Hypothesis hypothesis{.title = "Contact keeps momentum", .source = "Weft"};
+  Hypothesis hypothesis{.title = "Contact conserves momentum", .source = "Weft"};
   const FoldedFall fall = drop_fold({}, 0.5);
   const Collision collision = collide_sheets({}, 0.5);
   const double gain = 100 * std::abs(fall.worst_gain - 1);
-  hypothesis.text = {
-      fmt::format("A folded sheet in free fall, its halves within reach of each other: mean velocity gained "
-                  "per step over g h, the worst of half a second. Two free "
-                  "sheets that fly into each other (up to {} contacts): change of their common momentum over "
-                  "one sheet's.",
-                  collision.contacts)};
+  hypothesis.text = {fmt::format(
+      "A folded sheet in free fall, its halves within contact distance: gain of mean velocity per "
+      "step over g h, the worst in half a second. Two free sheets that collide (up to {} "
+      "contacts): change of their total momentum over the momentum of one sheet.",
+      collision.contacts)};
   hypothesis.found.metrics = {{"fold_gain_error", gain, "%", "≤ 0.1", 0.1},
                               {"collision_momentum_change", collision.momentum_change, "1", "≤ 1e-5", 1e-5}};
   hypothesis.verdict =
@@ -171,8 +171,8 @@ Section study_contact(const SectionOptions& options) {
   Section section{.name = "contact",
                   .title = "Contact",
                   .introduction =
-                      "\"It is not allowed that cloth is embedded in itself or in the objects in the "
-                      "scene\": what Weft makes of it."};
+                      "Tests of a requirement of the paper: \"It is not allowed that cloth is embedded in "
+                      "itself or in the objects in the scene\"."};
   section.hypotheses = {nothing_crosses(options), friction_is_coulombs(options),
                         ball_takes_cloth_along(options), cloth_comes_to_rest(options),
                         momentum_is_kept(options)};

@@ -137,7 +137,7 @@ std::int64_t count_close_pairs(const Stack& stack) {
 void bench_response(int cells, double seconds) {
   fmt::print(
       "\nResponse: stacks of sheets of {0}×{0} cells on a floor, one step of {1:.1f} ms on one thread. Kept: "
-      "the\nlists of near pairs still hold; searched: they are made anew. µs: per close pair.\n\n",
+      "the\nlists of near pairs are still valid; searched: they are rebuilt. µs: per close pair.\n\n",
       cells, 1e3 * kStep);
   fmt::print("{:>6} {:>10} {:>11} {:>9} {:>9} {:>12} {:>9}\n", "sheets", "triangles", "close pairs",
              "kept ms", "µs/pair", "searched ms", "µs/pair");

@@ -76,12 +76,13 @@ std::string growth_cell(double growth) { return growth > 0 ? fmt::format("{:.4f}
 Hypothesis gravity_is_filtered() {
   Hypothesis hypothesis{.title = "Gravity is filtered like every other force", .source = "not in the paper"};
   hypothesis.text = {
-      "Eq. 16 is exactly two Jacobi sweeps of Eq. 14 from Δv = 0, and gravity passes through them too. With "
-      "a = h²Σk/m, a particle whose neighbours share its a gets (1 + 2a)/(1 + a)² of it. Measured: the first "
-      "step of a free sheet of 17² particles from rest, its middle particle; and the largest deviation of "
-      "any particle, border and all, from its own formula Δv = g h [1 + h²/m Σ k/(1 + a_j)]/(1 + a)."};
+      "Eq. 16 is exactly two Jacobi sweeps of Eq. 14 from Δv = 0, and these also filter gravity. With "
+      "a = h²Σk/m, a particle with the same a as its neighbours gets (1 + 2a)/(1 + a)² of gravity. The "
+      "measurement is the first step from rest of a free sheet of 17² particles, for its middle particle. "
+      "Deviation: the maximum over all particles, with the border, from their formula "
+      "Δv = g h [1 + h²/m Σ k/(1 + a_j)]/(1 + a)."};
   hypothesis.found.tables = {
-      {{"a", "share of g measured", "formula", "largest deviation of any particle"}, {}}};
+      {{"a", "measured share of g", "formula", "largest deviation of any particle"}, {}}};
   constexpr int kSide = 17;
   constexpr std::size_t kMiddle = kSide * kSide / 2;
   const HungCloth sheet = make_hung_sheet(kSide, "simplified", {});
@@ -108,9 +109,9 @@ Hypothesis gravity_is_filtered() {
                               {"gravity_formula_deviation", worst, "1", "0", 1e-5}};
   hypothesis.text.push_back(
       "Real fabric has a = 56 000 at 60 steps per second: it hangs in the air, stable and wrong. The fix "
-      "keeps all uniform acceleration outside the filter (`paper_fixed`); an exact solve of Eq. 12 "
-      "(`desbrun`) needs none, for the rows of H sum to zero.");
-  hypothesis.found.pictures = {{"paper_gravity.svg", "Share of gravity that Eq. 16 lets through.",
+      "(`paper_fixed`) keeps uniform acceleration outside the filter. An exact solve of Eq. 12 (`desbrun`) "
+      "needs no fix, because the rows of H sum to zero.");
+  hypothesis.found.pictures = {{"paper_gravity.svg", "Share of gravity after the filter of Eq. 16.",
                                 to_svg({.x_title = "a = h²Σk/m",
                                         .y_title = "share of gravity",
                                         .panels = {{"first step from rest", {measured, formula}}},
@@ -119,12 +120,13 @@ Hypothesis gravity_is_filtered() {
 }
 
 Hypothesis no_damping_of_its_own() {
-  Hypothesis hypothesis{.title = "Between Eq. 9 and Eq. 12 a term is lost, and with it the damping",
+  Hypothesis hypothesis{.title = "A term of Eq. 9 is missing in Eq. 12, and with it the damping",
                         .source = "not in the paper"};
   hypothesis.text = {
-      "Implicit Euler damps fast swings: per step of ω h = x their amplitude falls to 1/√(1 + x²). It owes "
-      "that to the term h·H·v, which Eq. 9 has and Eq. 12 has not. Measured: two particles on a spring, "
-      "growth of the amplitude per step over 600 steps."};
+      "Implicit Euler damps fast oscillations: per step of ω h = x their amplitude falls by the factor "
+      "1/√(1 + x²). The cause is the term h·H·v, which is in Eq. 9 but not in Eq. 12. Measured: growth of "
+      "the "
+      "amplitude per step for two particles on a spring, over 600 steps."};
   const double sizes[] = {0.1, 0.5, 2.0};
   hypothesis.found.tables = {{{"integrator", "ω h = 0.1", "0.5", "2", "theory at 0.5"}, {}}};
   const double euler = 1 / std::sqrt(1.25);
@@ -154,17 +156,17 @@ Hypothesis no_damping_of_its_own() {
       {"desbrun_growth", desbrun, "1", "0.8944", 1e-3},
       {"newton_growth", newton, "1", fmt::format("{:.4f} (BDF2)", bdf2_growth(0.5)), 1e-3}};
   hypothesis.text.emplace_back(
-      "So cloth moved by Eq. 16 needs damping of its own springs, d > 0, or it never comes to rest. "
-      "`paper_fixed` and `desbrun` keep the term.");
+      "Without damping of its springs, d > 0, cloth with Eq. 16 therefore never comes to rest. `paper_fixed` "
+      "and `desbrun` keep the term.");
   return hypothesis;
 }
 
 Hypothesis damping_feeds_motion() {
   Hypothesis hypothesis{.title = "Eq. 2 has the wrong sign", .source = "not in the paper"};
   hypothesis.text = {
-      "The damping force on particle i is printed as d (v_i − v_j): it pushes apart what moves apart. "
-      "Measured: the energy of a free, trembling sheet of 11² particles after 50 steps of 1 ms, over that at "
-      "the start (10 N/m, d = 0.01 N·s/m)."};
+      "The damping force on particle i is printed as d (v_i − v_j), which accelerates relative motion. "
+      "Measured: energy of a free sheet of 11² particles with random velocities after 50 steps of 1 ms, "
+      "over that at the start (10 N/m, d = 0.01 N·s/m)."};
   const auto topology = build_grid_topology({.cells_x = 10, .cells_z = 10}, SpringModel::simplified);
   const auto model = build_cloth_model(
       topology,

@@ -143,13 +143,14 @@ Hypothesis one_shear_spring(const SectionOptions& options) {
                   {"alternating, doubled", "alternating", 2}};
   Hypothesis hypothesis{.title = "One shear spring behaves like two", .source = "the paper, section 3"};
   hypothesis.text = {
-      "The sheet has a mirror plane, which two diagonals per cell keep and one breaks. Distance: RMS, from "
-      "the sheet with two diagonals, mean over the first second. Askew: RMS distance of the sheet from its "
-      "own mirror image at the worst moment, in percent of its side. Shear springs of half the structural "
-      "stiffness; *doubled* gives the one that is left the stiffness of both."};
-  hypothesis.found.tables = {{{"structural springs, N/m", "springs", "distance, m", "askew, %"}, {}}};
+      "The sheet has a mirror plane. Two diagonals per cell preserve the symmetry, one breaks it. Distance: "
+      "RMS, from the sheet with two diagonals, mean over the first second. Asymmetry: maximum RMS distance "
+      "of "
+      "the sheet from its mirror image, in percent of its side. Shear springs have half the structural "
+      "stiffness; *doubled*: the remaining spring has the stiffness of both."};
+  hypothesis.found.tables = {{{"structural springs, N/m", "springs", "distance, m", "asymmetry, %"}, {}}};
   Plot plot{.x_title = "time, s",
-            .y_title = "askew, % of the side",
+            .y_title = "asymmetry, % of the side",
             .panels = {{"2000 N/m", {}}},
             .x_scale = PlotScale::linear,
             .y_scale = PlotScale::linear,
@@ -187,13 +188,13 @@ Hypothesis one_shear_spring(const SectionOptions& options) {
                               {"alternating_distance", alternating, "m", "0", 0.005},
                               {"simplified_over_alternating", simplified / alternating, "1", "", 0}};
   hypothesis.verdict = askew < 0.5 ? Verdict::holds : Verdict::holds_in_part;
-  hypothesis.text.push_back(
-      fmt::format("It saves a sixth of the springs and looks like cloth, but not like the same cloth: it "
-                  "hangs askew by {:.1f} % of its side. Letting the diagonal alternate from cell to cell "
-                  "costs as little, keeps the symmetry, and is {:.1f} times closer to two diagonals.",
-                  askew, simplified / alternating));
+  hypothesis.text.push_back(fmt::format(
+      "One diagonal saves a sixth of the springs. The result is plausible, but not the same cloth: "
+      "its asymmetry is {:.1f} % of its side. Alternating diagonals have the same cost, preserve "
+      "the symmetry, and are {:.1f} times closer to two diagonals.",
+      askew, simplified / alternating));
   hypothesis.found.pictures = {
-      {"paper_askew.svg", "How far the sheet is from its mirror image.", to_svg(plot)}};
+      {"paper_askew.svg", "Distance of the sheet from its mirror image.", to_svg(plot)}};
   return hypothesis;
 }
 
@@ -204,9 +205,10 @@ Hypothesis large_steps(const SectionOptions& options) {
   const std::vector<double> stiffnesses =
       options.quick ? std::vector<double>{200, 20000} : std::vector<double>{20, 200, 2000, 20000};
   hypothesis.text = {fmt::format(
-      "The longest step with which the sheet ({}² particles, no damping, no gravity), trembling at 0.1 m/s, "
-      "stays within ten metres for 300 steps: by halving between 1 µs and {} s; one substep of `explicit` "
-      "and `xpbd`. Theory for `explicit`: 2/ω, with the bound ω² = 2 max Σk/m.",
+      "The longest step with which the sheet stays within ten metres for 300 steps, by bisection between 1 "
+      "µs "
+      "and {1} s. The sheet has {0}² particles, random velocities of 0.1 m/s, no damping and no gravity. "
+      "`explicit` and `xpbd` use one substep. Theory for `explicit`: 2/ω, with the bound ω² = 2 max Σk/m.",
       side, kLongestStep)};
   hypothesis.found.tables = {{{"integrator"}, {}}};
   for (const double k : stiffnesses)
@@ -238,8 +240,8 @@ Hypothesis large_steps(const SectionOptions& options) {
       {"paper_limit", paper, "s", fmt::format("{} s, the longest tried", kLongestStep), 0.01}};
   hypothesis.verdict = paper >= kLongestStep ? Verdict::holds : Verdict::fails;
   hypothesis.text.push_back(
-      "Eq. 16 is stable at any step that was tried. But stable is not right: what it does to the sheet then "
-      "is told below (*gravity is filtered*).");
+      "Eq. 16 is stable at every tested step. Stability does not imply accuracy: *gravity is filtered* below "
+      "describes the error.");
   return hypothesis;
 }
 
@@ -258,7 +260,7 @@ Hypothesis faster_than_implicit(const SectionOptions& options) {
         measure_method([&] { return make_integrator_method(entry, cloth); }, entry, cloth, reference));
   }
   hypothesis.found.tables = {{{"integrator", "CPU ms per step of 1/60 s",
-                               "CPU ms per frame at an error of 0.045 m", "least error reached, m"},
+                               "CPU ms per frame at an error of 0.045 m", "smallest error, m"},
                               {}}};
   double paper = 0, desbrun = 0;
   std::optional<double> paper_equal, newton_equal;
@@ -277,24 +279,24 @@ Hypothesis faster_than_implicit(const SectionOptions& options) {
   }
   hypothesis.found.metrics = {{"desbrun_over_paper_per_step", desbrun / paper, "1", "> 1", 0}};
   hypothesis.text = {fmt::format(
-      "The sheet with {}² particles, one thread. At equal step, and at equal error: RMS distance from a "
-      "converged reference, mean over a second (the reference itself is known to {:.1g} m).",
+      "The sheet with {}² particles, one thread. Comparison at equal step and at equal error. Error: RMS "
+      "distance from a converged reference, mean over a second (error of the reference: {:.1g} m).",
       side, reference.error)};
   if (paper_equal && newton_equal) {
     hypothesis.found.metrics.push_back(
         {"paper_over_newton_at_equal_error", *paper_equal / *newton_equal, "1", "< 1", 0});
     hypothesis.text.push_back(fmt::format(
-        "Per step it is. But as printed it filters gravity, and comes near the right motion only in so many "
-        "small steps that `newton`, which solves a linear system, is {:.0f} times cheaper.",
+        "Per step Eq. 16 is faster. But as printed it filters gravity, and requires many small steps for the "
+        "correct motion. At equal error `newton`, which solves a linear system, is {:.0f} times cheaper.",
         *paper_equal / *newton_equal));
   } else {
     hypothesis.text.emplace_back(
-        "Per step it is. At equal error the question has no answer: as printed it filters gravity, and does "
-        "not come near the right motion with any setting tried.");
+        "Per step Eq. 16 is faster. At equal error there is no result: as printed it filters gravity, and no "
+        "tested setting reaches the error.");
   }
   hypothesis.text.emplace_back(
-      "`paper_fixed` lets gravity through but keeps h·H·v with the paper's H, which is stiff across springs "
-      "as well as along them: this damps the fall itself, in small steps too.");
+      "`paper_fixed` does not filter gravity, but keeps h·H·v with the paper's H. This H is stiff across "
+      "springs as well as along them, which damps the fall itself, also in small steps.");
   const bool is_cheaper = paper_equal && newton_equal && *paper_equal < *newton_equal;
   hypothesis.verdict = is_cheaper ? Verdict::holds : Verdict::holds_in_part;
   return hypothesis;
@@ -334,8 +336,9 @@ Hypothesis linear_cost(const SectionOptions& options) {
     plot.panels[0].series.push_back(series);
   }
   hypothesis.text = {
-      "One step of 1/60 s, one thread, the least of twelve; the slope of time over particles on logarithmic "
-      "axes. `desbrun` keeps its factorised matrix from step to step here, which is its best case."};
+      "Time of one step of 1/60 s, one thread, minimum of twelve. Exponent: slope of time against particles "
+      "on "
+      "logarithmic axes. `desbrun` reuses its factorised matrix in all steps here, which is its best case."};
   hypothesis.found.metrics = {{"paper_cost_exponent", paper, "1", "1", 0}};
   hypothesis.verdict = paper < 1.15 ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.found.pictures = {
@@ -344,11 +347,12 @@ Hypothesis linear_cost(const SectionOptions& options) {
 }
 
 Hypothesis real_time(const SectionOptions& options) {
-  Hypothesis hypothesis{.title = "It runs in real time", .source = "the paper, section 6"};
+  Hypothesis hypothesis{.title = "The method runs in real time", .source = "the paper, section 6"};
   hypothesis.text = {
-      "Every scene of the paper as it ships, with contact, on one thread: frames of 1/60 s simulated per "
-      "second of wall time (median frame), without drawing. The `_real` twins have the stiffness of real "
-      "fabric and use `newton`."};
+      "Every shipped scene of the paper, with contact, on one thread: simulated frames of 1/60 s per second "
+      "of "
+      "wall time (median frame), without drawing. The variants `_real` have the stiffness of real fabric and "
+      "use `newton`."};
   hypothesis.found.tables = {{{"scene", "integrator", "particles", "frames per second"}, {}}};
   double slowest = 1e9;
   for (const ShippedScene& shipped : list_scenes()) {
@@ -371,13 +375,14 @@ Hypothesis real_time(const SectionOptions& options) {
 }
 
 Hypothesis parameters_change_freely() {
-  Hypothesis hypothesis{.title = "Parameters may change at any moment", .source = "the paper, section 4"};
+  Hypothesis hypothesis{.title = "Parameters may change at any time", .source = "the paper, section 4"};
   constexpr int kSide = 65;
   hypothesis.text = {fmt::format(
-      "The sheet with {}² particles; stiffness, mass and step change before every step by a tenth up or "
-      "down, or stay. A method that keeps a factorised matrix pays for every change; Eq. 16 keeps nothing.",
+      "The sheet with {}² particles. Before every step, stiffness, mass and step length change by a tenth up "
+      "or down, or are kept. A method with a factorised matrix pays for every change; Eq. 16 stores nothing.",
       kSide)};
-  hypothesis.found.tables = {{{"integrator", "step, numbers kept, ms", "numbers changed, ms", "ratio"}, {}}};
+  hypothesis.found.tables = {
+      {{"integrator", "step, parameters kept, ms", "parameters changed, ms", "ratio"}, {}}};
   double paper = 0;
   for (const std::string name : {"paper", "paper_fixed", "desbrun", "newton"}) {
     const auto measure = [&](bool changes) {
@@ -415,11 +420,11 @@ Hypothesis figures_remade(const SectionOptions& options) {
   Hypothesis hypothesis{.title = "Figures 1 to 6", .source = "the paper"};
   hypothesis.text = {
       "Figures 1 and 2 are the springs of the basic and of the simplified model: structural ones blue, shear "
-      "orange, bending "
-      "green. Figures 3 to 6 each at the start and twice on the way, with Eq. 16 as printed and springs soft "
-      "enough for it."};
+      "orange, bending green. Figures 3 to 6 each have three frames: the start and two later ones, with Eq. "
+      "16 "
+      "as printed and springs soft enough for it."};
   if (!options.paint) {
-    hypothesis.text.emplace_back("(Not painted: no pictures were asked for.)");
+    hypothesis.text.emplace_back("(No pictures were requested.)");
     return hypothesis;
   }
   for (const std::string model : {"basic", "simplified"}) {

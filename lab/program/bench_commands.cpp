@@ -36,7 +36,7 @@ void add_common_options(CLI::App& command, Options& options, std::string& simd) 
   command.add_option("--seconds", options.seconds, "Per measurement")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_option("--simd", simd, "Use at most baseline, avx2 or avx512 (default: the best there is)");
+  command.add_option("--simd", simd, "Use at most baseline, avx2 or avx512 (default: the best available)");
 }
 
 void add_integrators(CLI::App& bench) {
@@ -61,7 +61,7 @@ void add_kernels(CLI::App& bench) {
   auto options = std::make_shared<KernelBenchOptions>();
   auto simd = std::make_shared<std::string>();
   CLI::App* command =
-      bench.add_subcommand("kernels", "How far each kernel of newton is from what the machine allows");
+      bench.add_subcommand("kernels", "Time of each kernel of newton against the limits of the machine");
   command->add_option("--sizes", options->sizes, "Particles per side")
       ->delimiter(',')
       ->check(CLI::Range(2, 4096))
@@ -76,8 +76,8 @@ void add_kernels(CLI::App& bench) {
 void add_frontier(CLI::App& bench) {
   auto options = std::make_shared<FrontierOptions>();
   CLI::App* command = bench.add_subcommand(
-      "frontier", "How right the cloth is for how much time, for each integrator at several settings");
-  command->add_option("--methods", options->methods, "Integrators, or Bullet (default: all there are)")
+      "frontier", "Error against time for each integrator at several settings");
+  command->add_option("--methods", options->methods, "Integrators, or Bullet (default: all)")
       ->delimiter(',');
   command->add_option("--sizes", options->sizes, "Particles per side of the sheets")
       ->delimiter(',')
@@ -99,12 +99,12 @@ void add_collision(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<CollisionBenchOptions>();
   auto simd = std::make_shared<std::string>();
   CLI::App* command =
-      bench.add_subcommand("collision", "Cost of finding close pairs, and of holding them apart");
+      bench.add_subcommand("collision", "Cost of finding close pairs, and of contact response");
   command->add_option("--sizes", options->sizes, "Triangles")
       ->delimiter(',')
       ->check(CLI::Range(2, 10'000'000))
       ->capture_default_str();
-  command->add_option("--cells", options->cells, "Per side of the sheets that are held apart")
+  command->add_option("--cells", options->cells, "Per side of the sheets for contact response")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_common_options(*command, *options, *simd);
@@ -118,7 +118,7 @@ void add_contact(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<ContactBenchOptions>();
   CLI::App* command = bench.add_subcommand(
       "contact",
-      "What contact holds and what it costs: every scene checked at every frame, rest, friction, energy");
+      "Accuracy and cost of contact: all scenes, checked at every frame, rest, friction, energy");
   command->add_option("--scenes", options->scenes, "Which (default: all of contact/)")->delimiter(',');
   command->add_option("--threads", options->threads, "Numbers of threads")
       ->delimiter(',')
@@ -145,7 +145,7 @@ void add_pictures(CLI::App& bench) {
   command->add_option("--height", options->size.height, "Pixels")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Pictures per figure")
+  command->add_option("--repeats", options->repeats, "Pictures per measurement")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options] { bench_pictures(*options); });
@@ -154,7 +154,7 @@ void add_pictures(CLI::App& bench) {
 void add_scaling(CLI::App& bench) {
   auto options = std::make_shared<ScalingBenchOptions>();
   CLI::App* command =
-      bench.add_subcommand("scaling", "How the cost of newton grows with the cloth, at the same accuracy");
+      bench.add_subcommand("scaling", "Cost of newton against size, at the same accuracy");
   command->add_option("--sizes", options->sizes, "Particles per side")
       ->delimiter(',')
       ->check(CLI::Range(2, 4096))
@@ -171,14 +171,14 @@ void add_scaling(CLI::App& bench) {
   command->add_option("--steps", options->steps, "Per measurement")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  command->add_flag("--motion", options->motion, "Tell how far each size moves from the one before it");
+  command->add_flag("--motion", options->motion, "Also report the distance between the motions of consecutive sizes");
   command->callback([options] { bench_scaling(*options); });
 }
 
 void add_garments(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<GarmentBenchOptions>();
   CLI::App* command = bench.add_subcommand(
-      "garments", "Garments and a figure as people bring them, with defaults: what crosses, strain, cost");
+      "garments", "Typical user garments on a figure, with defaults: intersections, strain, cost");
   command->add_option("--garments", options->garments, "Which, as in dress,coat (default: all)")
       ->delimiter(',');
   command->add_option("--motions", options->motions, "Which of stand, walk, kick, fold, sit (default: all)")

@@ -34,10 +34,10 @@ struct SectionCommand {
 
 const std::vector<SectionCommand>& section_commands() {
   static const std::vector<SectionCommand> commands = {
-      {"paper", "The paper's claims, and what it does not say", study_paper, 240, 30},
-      {"accuracy", "How right every integrator is, for how much time", study_accuracy, 600, 40},
-      {"contact", "What contact holds, and at what cost", study_contact, 900, 60},
-      {"fabric", "One fabric on many meshes and at many steps", study_fabric, 600, 40},
+      {"paper", "The paper's claims, and its errata", study_paper, 240, 30},
+      {"accuracy", "Error against time of every integrator", study_accuracy, 600, 40},
+      {"contact", "Intersections, friction, rest and momentum", study_contact, 900, 60},
+      {"fabric", "One fabric on several meshes and with several steps", study_fabric, 600, 40},
       {"peers", "The same cloth in other engines", study_peers, 300, 90},
   };
   return commands;
@@ -162,7 +162,7 @@ void run_all(const ReportOptions& options) {
       say(command.name + ": kept from an earlier run (--fresh runs it again)");
       sections.push_back(*kept);
     } else {
-      say(fmt::format("{}: chapter {} of {}, about {:.0f} s left", command.name, sections.size() + 1,
+      say(fmt::format("{}: section {} of {}, about {:.0f} s left", command.name, sections.size() + 1,
                       commands.size(), pace * left));
       sections.push_back(run_study(command, options));
       write_section(options.out, sections.back());
@@ -197,18 +197,18 @@ void add_section_commands(CLI::App& studies) {
     const auto options = std::make_shared<ReportOptions>();
     CLI::App* command = studies.add_subcommand(section.name, section.about);
     add_options(*command, options);
-    command->add_option("--out", options->out, "A folder for study.md, study.html, pictures and figures")
+    command->add_option("--out", options->out, "A folder for study.md, study.html, pictures and results")
         ->type_name("DIR");
     command->callback([&section, options] { run_section(section, *options); });
   }
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* all =
-      studies.add_subcommand("all", "Every chapter, and the report of them; goes on where it was left");
+      studies.add_subcommand("all", "All sections, and their report; resumes an interrupted run");
   add_options(*all, options);
   options->out = "out/study";
-  all->add_option("--out", options->out, "Its folder")->type_name("DIR")->capture_default_str();
-  all->add_option("--only", options->only, "Chapters, by name")->delimiter(',')->check(CLI::IsMember(names));
-  all->add_flag("--fresh", options->fresh, "Run again what an earlier run has done");
+  all->add_option("--out", options->out, "Folder of the report")->type_name("DIR")->capture_default_str();
+  all->add_option("--only", options->only, "Names of sections")->delimiter(',')->check(CLI::IsMember(names));
+  all->add_flag("--fresh", options->fresh, "Repeat the sections of an earlier run");
   all->callback([options] { run_all(*options); });
 }
 

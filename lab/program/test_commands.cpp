@@ -99,7 +99,7 @@ void add_membrane_option(CLI::App& command, StudyOptions& options) {
                                                                     {"springs", SpecimenMembrane::springs}};
   command
       .add_option("--membrane", options.specimen.membrane,
-                  "Elements or springs that stand for them: triangle (default) or springs")
+                  "Elements, or springs that approximate them: triangle (default) or springs")
       ->transform(CLI::CheckedTransformer(membranes));
 }
 
@@ -112,7 +112,7 @@ CLI::App* add(CLI::App& studies, const std::string& name, const std::string& abo
       ->required();
   static const std::map<std::string, SpecimenMesh> meshes = {{"grid", SpecimenMesh::grid},
                                                              {"random", SpecimenMesh::random}};
-  command->add_option("--mesh", options->specimen.mesh, "Regular or crooked: grid (default) or random")
+  command->add_option("--mesh", options->specimen.mesh, "Regular or irregular: grid (default) or random")
       ->transform(CLI::CheckedTransformer(meshes));
   command
       ->add_option("--resolution", options->specimen.resolution,
@@ -133,7 +133,7 @@ void add_study_command(CLI::App& app) {
   studies->require_subcommand(1);
   add_section_commands(*studies);
   const auto strip = make_options();
-  CLI::App* cantilever = add(*studies, "cantilever", "Bending length: a strip sinks under its own weight",
+  CLI::App* cantilever = add(*studies, "cantilever", "Bending length: a strip bends under its own weight",
                              strip, [](const Fabric& fabric, const StudyOptions& options) {
                                return test_cantilever(fabric, options.specimen, options.direction);
                              });
@@ -141,16 +141,16 @@ void add_study_command(CLI::App& app) {
       {"warp", StripDirection::warp}, {"weft", StripDirection::weft}, {"bias", StripDirection::bias}};
   cantilever
       ->add_option("--direction", strip->direction,
-                   "Which way the strip is cut: warp (default), weft or bias")
+                   "Direction in which the strip is cut: warp (default), weft or bias")
       ->transform(CLI::CheckedTransformer(directions));
   const auto pulled = make_options(), sheared = make_options();
-  CLI::App* tensile = add(*studies, "tensile", "c11, c22 and c12 between clamps that draw apart", pulled,
+  CLI::App* tensile = add(*studies, "tensile", "c11, c22 and c12: stretching between clamps", pulled,
                           [](const Fabric& fabric, const StudyOptions& options) {
                             return test_tensile(fabric, options.specimen);
                           });
   add_membrane_option(*tensile, *pulled);
   CLI::App* shear = add(
-      *studies, "shear", "g between clamps that slide", sheared,
+      *studies, "shear", "g: simple shear between clamps", sheared,
       [](const Fabric& fabric, const StudyOptions& options) { return test_shear(fabric, options.specimen); });
   add_membrane_option(*shear, *sheared);
   add(*studies, "buckling", "Load at which an upright strip tips over", make_options(),

@@ -80,7 +80,7 @@ std::string format_value(const Metric& figure) {
 }
 
 Table table_of(const std::vector<Metric>& figures) {
-  Table table{{"figure", "value", "aim"}, {}};
+  Table table{{"metric", "value", "target"}, {}};
   for (const Metric& f : figures) table.rows.push_back({"`" + f.name + "`", format_value(f), f.aim});
   return table;
 }
@@ -94,7 +94,7 @@ std::vector<Table> tables_of(const Hypothesis& hypothesis) {
 }
 
 Table summary_of(const Report& report) {
-  Table table{{"claim", "by", "verdict"}, {}};
+  Table table{{"hypothesis", "source", "verdict"}, {}};
   for (const Section& section : report.sections) {
     for (const Hypothesis& hypothesis : section.hypotheses)
       table.rows.push_back({hypothesis.title, hypothesis.source, to_string(hypothesis.verdict)});
@@ -107,13 +107,13 @@ std::string command_of(const Section& section) {
 }
 
 std::string words_about(const Section& section) {
-  return fmt::format("`{}`, {:.0f} s here.", command_of(section), section.seconds);
+  return fmt::format("`{}`, run time {:.0f} s.", command_of(section), section.seconds);
 }
 
 std::string words_about(const Report& report) {
   return fmt::format(
-      "Weft {} on {}. Every figure comes from the command that stands under its chapter's title; times are "
-      "this machine's, and compare with each other only.",
+      "Weft {} on {}. Every metric comes from the command under its section's title. Times are those of this "
+      "machine, and comparable only with each other.",
       report.version, report.machine);
 }
 
@@ -285,7 +285,7 @@ Section section_from_json(const std::string& text, const std::string& source) {
     for (const Json& hypothesis : json.at("claims")) section.hypotheses.push_back(hypothesis_of(hypothesis));
     return section;
   } catch (const Json::exception& error) {
-    throw InputError(source + ": not a chapter of `weft study`: " + error.what());
+    throw InputError(source + ": not a section of `weft study`: " + error.what());
   }
 }
 

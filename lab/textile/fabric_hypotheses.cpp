@@ -91,9 +91,9 @@ double mean_of(const std::vector<double>& values) {
 
 Findings fabric_constants(const SectionOptions& options) {
   Findings result;
-  Table table{{"fabric", "membrane, mesh", "c11", "of", "c22", "of", "c12", "of", "g", "of"},
+  Table table{{"fabric", "membrane, mesh", "c11", "given", "c22", "given", "c12", "given", "g", "given"},
               {},
-              "What tensile and shear tests give back [N/m]"};
+              "Stiffness from tensile and shear tests, and given stiffness [N/m]"};
   const std::vector<const char*> names =
       options.quick ? std::vector<const char*>{"denim"}
                     : std::vector<const char*>{"silk", "denim", "11oz_black_denim", "gray_interlock",
@@ -131,7 +131,7 @@ Findings fabric_cantilever(const SectionOptions& options) {
   Findings result;
   Table table{{"fabric", "mesh", "cells", "warp", "weft", "bias"},
               {},
-              "H/W of a strip cut along warp, weft and bias, the elastica's being 0.88473"};
+              "H/W of a strip cut along warp, weft and bias; elastica: 0.88473"};
   const std::vector<int> resolutions = options.quick ? std::vector{10} : std::vector{10, 25, 50};
   for (const char* name : {"denim", "silk"}) {
     if (options.quick && name != std::string("denim")) continue;
@@ -165,10 +165,10 @@ Findings fabric_cantilever(const SectionOptions& options) {
 Findings fabric_drape(const SectionOptions& options) {
   Findings result;
   const std::vector<int> rings = options.quick ? std::vector{10, 15} : std::vector{15, 20, 30, 45};
-  Table table{{"rings", "regular", "folds", "crooked", "folds"},
+  Table table{{"rings", "regular", "folds", "irregular", "folds"},
               {},
               "Drape coefficient of denim, mean and spread of five specimens [%]"};
-  PlotPanel panel{"drape coefficient of denim", {{"regular rings", {}}, {"crooked rings", {}}}};
+  PlotPanel panel{"drape coefficient of denim", {{"regular rings", {}}, {"irregular rings", {}}}};
   for (const int n : rings) {
     std::vector<std::string> row = {std::to_string(n)};
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
@@ -189,7 +189,7 @@ Findings fabric_drape(const SectionOptions& options) {
   result.metrics.push_back(expect("drape_change_with_resolution", last->y - (last - 1)->y, "%", 0, 3));
   result.tables.push_back(std::move(table));
   result.pictures.push_back({"fabric_drape.svg",
-                             "Drape coefficient of denim over the rings of the disc's mesh.",
+                             "Drape coefficient of denim against the number of rings of the mesh.",
                              to_svg({.x_title = "rings of triangles",
                                      .y_title = "drape coefficient, %",
                                      .panels = {std::move(panel)},
@@ -202,7 +202,7 @@ Findings fabric_drape(const SectionOptions& options) {
 Findings fabric_meshes(const SectionOptions& options) {
   Findings result;
   Fabric fabric = find_fabric("cotton_shirting");
-  Table table{{"mesh", "drape coefficient [%]", "folds", "sag [m]", "swing [s]"},
+  Table table{{"mesh", "drape coefficient [%]", "folds", "sag [m]", "period [s]"},
               {},
               "Cotton shirting on five meshes"};
   std::vector<double> drapes, sags, periods;
@@ -229,7 +229,7 @@ Findings fabric_strain_limit(const SectionOptions& options) {
   Findings result;
   Table table{{"fabric", "mesh", "cells", "stretch", "Newton steps", "stretch without a limit"},
               {},
-              "Largest principal stretch less one [%] and Newton steps per frame with strain_limit = 0.01"};
+              "Maximum principal stretch minus one [%] and Newton steps per frame, with strain_limit = 0.01"};
   const std::vector<int> resolutions = options.quick ? std::vector{12} : std::vector{16, 32, 64};
   double worst = 0;
   for (const char* name : {"gray_interlock", "cotton_shirting"}) {
@@ -254,7 +254,7 @@ Findings fabric_strain_limit(const SectionOptions& options) {
 
 Findings fabric_steps(const SectionOptions& options) {
   Findings result;
-  Table table{{"steps per second", "sag [m]", "swing [s]"}, {}, "One fabric at three steps"};
+  Table table{{"steps per second", "sag [m]", "period [s]"}, {}, "Denim at three step lengths"};
   const Fabric& denim = find_fabric("denim");
   const int cells = options.quick ? 12 : 32;
   std::vector<double> sags;

@@ -12,11 +12,11 @@ struct FabricHypothesis {
 };
 
 constexpr FabricHypothesis kHypotheses[] = {
-    {"Laboratory tests give back the stiffness that was put in", fabric_constants},
-    {"Strips sink as the elastica does", fabric_cantilever},
+    {"Laboratory tests measure the given stiffness", fabric_constants},
+    {"Strips bend like the elastica", fabric_cantilever},
     {"The drape coefficient converges with the mesh", fabric_drape},
-    {"One fabric is the same cloth on five meshes", fabric_meshes},
-    {"One fabric is the same cloth at every step", fabric_steps},
+    {"One fabric behaves the same on five meshes", fabric_meshes},
+    {"One fabric behaves the same at every step length", fabric_steps},
     {"A strain limit holds at any resolution", fabric_strain_limit},
 };
 
@@ -68,9 +68,9 @@ Section study_fabric(const SectionOptions& options) {
   Section section{.name = "fabric",
                   .title = "Fabrics",
                   .introduction =
-                      "What is one fabric in SI units on many meshes and at many steps, by a laboratory's "
-                      "own tests (`weft study "
-                      "cantilever`, `tensile`, `shear`, `drape`, `buckling` run one test on any fabric)."};
+                      "A fabric in SI units on several meshes and with several step lengths, measured by "
+                      "standard laboratory tests. `weft study cantilever`, `tensile`, `shear`, `drape` and "
+                      "`buckling` run one test on any fabric."};
   for (const FabricHypothesis& hypothesis : kHypotheses)
     section.hypotheses.push_back(test(hypothesis, options));
   return section;

@@ -57,7 +57,7 @@ TEST_F(App, StudyOfOneChapterPrintsItsReport) {
   std::ofstream(fs::path("notes.json")) << "{}";
   expect_bad_input(
       "mkdir -p out && cp notes.json out/paper.json && weft study all --only paper --quick --out out",
-      "out/paper.json: not a chapter");
+      "out/paper.json: not a section");
 }
 
 }  // namespace
