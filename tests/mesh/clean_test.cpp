@@ -66,7 +66,7 @@ TEST(CleanMesh, DropsRepeatedTrianglesAndIsolatedVertices) {
   EXPECT_EQ(clean.mesh.positions, kSquare.positions);
   EXPECT_EQ(clean.mesh.triangles, kSquare.triangles);
   EXPECT_EQ(clean.vertex_of_source, (std::vector<int>{-1, 0, 1, 2, 3}));
-  EXPECT_TRUE(has_warning(clean, "repeat"));
+  EXPECT_TRUE(has_warning(clean, "duplicate triangles"));
   EXPECT_TRUE(has_warning(clean, "unused vertices"));
 }
 
