@@ -100,7 +100,7 @@ void add_fabrics_command(CLI::App& app, int&) {
   auto name = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("fabrics", "List the named fabrics, or show one");
-  command->add_option("FABRIC", *name, "A name, or a fabric file; none: list the names");
+  command->add_option("FABRIC", *name, "A name, or a fabric file; omit it to list the names");
   command->add_flag("--json", *json, "Print JSON");
   command->footer("The output for one fabric is a valid fabric file.");
   command->callback([name, json] { name->empty() ? list(*json) : show(*name, *json); });

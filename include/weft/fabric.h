@@ -30,27 +30,27 @@ struct StretchPoint {
 
 /// The defaults are those of the preset `cotton_shirting`, which gives their sources.
 struct Fabric {
-  /// Mass per area. Real: 0.03 (chiffon) to 0.5 (coating). More: hangs straighter, swings slower in wind. >
-  /// 0, and at most that of sheet lead of the fabric's thickness [kg/m²].
+  /// Mass per area. Typical: 0.03 (chiffon) to 0.5 (coating). Higher: hangs straighter, swings slower in
+  /// wind. > 0, and at most that of sheet lead of the fabric's thickness [kg/m²].
   double density = 0.12;
 
-  /// Stretching stiffness along warp. Real: 25 (jumper) to 10000 (canvas). More: sags and stretches less. > 0
-  /// [N/m].
+  /// Stretching stiffness along warp. Typical: 25 (jumper) to 10000 (canvas). Higher: sags and stretches
+  /// less. > 0 [N/m].
   double c11 = 2800;
 
   /// Along weft: as c11 [N/m].
   double c22 = 1400;
 
   /// Coupling: contraction across the direction of stretching. c12² < c11 c22 keeps the matrix positive
-  /// definite. More: narrows more when pulled; 0 for most woven fabric. May be negative [N/m].
+  /// definite. Higher: narrows more when pulled; 0 for most woven fabric. May be negative [N/m].
   double c12 = 0;
 
-  /// Shearing stiffness, force per width and radian. Real: 14 (silk) to 120 (denim), leather 700. Less:
+  /// Shearing stiffness, force per width and radian. Typical: 14 (silk) to 120 (denim), leather 700. Lower:
   /// drapes softer and fits double curvature better. > 0 [N/m].
   double g = 45;
 
-  /// Bending rigidity along warp: a cylinder around weft threads. Real: 1e-6 (silk) to 1e-4 (coating). More:
-  /// larger, fewer folds. >= 0 [N·m].
+  /// Bending rigidity along warp: a cylinder around weft threads. Typical: 1e-6 (silk) to 1e-4 (coating).
+  /// Higher: larger, fewer folds. >= 0 [N·m].
   double bend_warp = 7e-6;
 
   /// Along weft: as bend_warp [N·m].
@@ -62,23 +62,23 @@ struct Fabric {
 
   /// Time constant τ of internal damping (Kelvin–Voigt): every elastic stress σ(e) has a viscous companion τ
   /// dσ/dt, in stretching, shearing and bending alike. A vibration of angular frequency ω then has the
-  /// damping ratio ½ωτ, independent of the mesh: with the default 0.6 % at 1 Hz and 60 % at 100 Hz. More:
+  /// damping ratio ½ωτ, independent of the mesh: with the default 0.6 % at 1 Hz and 60 % at 100 Hz. Higher:
   /// small, quick wrinkles decay sooner; large motion, which air brakes, hardly changes. Real fabric loses
   /// energy by friction between yarns, a share per cycle that depends little on frequency; τ matches it at
   /// one frequency. From 0 to 10; the default is typical of published scenes (ARCSim: 1e-3 to 3e-2) [s].
   double damping = 2e-3;
 
-  /// Minimum distance between two layers. Real: 0.1e-3 to 2e-3. More: thicker piles, earlier contact. From
-  /// 1e-6 to 0.05 [m].
+  /// Minimum distance between two layers. Typical: 0.1e-3 to 2e-3. Higher: thicker stacks, earlier contact.
+  /// From 1e-6 to 0.05 [m].
   double thickness = 0.5e-3;
 
-  /// Coulomb coefficient of the fabric on itself. Real: 0.2 (silk) to 0.6 (wool). More: slides later. From 0
-  /// to 10 [1].
+  /// Coulomb coefficient of the fabric on itself. Typical: 0.2 (silk) to 0.6 (wool). Higher: slides later.
+  /// From 0 to 10 [1].
   double friction = 0.3;
 
-  /// Strain limit in any direction, 0.01 for 1 %; 0: none. Beyond 0.85 of it an additional tension grows; it
-  /// stops unforced motion at about 1.25 of it (membrane_law.h). Less: less rubbery, and more work for the
-  /// solver. `springs` apply it along each spring [1].
+  /// Strain limit in any direction, 0.01 for 1 %; 0: none. Beyond 0.85 times the limit an additional tension
+  /// grows; it stops unforced motion at about 1.25 times the limit (membrane_law.h). Lower: less rubbery, and
+  /// more work for the solver. `springs` apply it along each spring [1].
   double strain_limit = 0;
 
   /// Measured curves along warp and weft, from the origin through these points, at most kMaxStretchPoints;

@@ -149,7 +149,7 @@ Slide slide_on_incline(const ContactExperiment& setup, double angle_deg, double 
   run(world, setup, kSeconds, [] {});
   const double way = -(middle_of(world, sheet) - before).dot(tilt * Vec3::UnitX());
   const double angle = radians(angle_deg);
-  // Implicit and semi-implicit Euler alike: n steps from rest cover a h² n (n + 1) / 2.
+  // In implicit and semi-implicit Euler, n steps from rest cover a h² n (n + 1) / 2.
   const double h = 1.0 / setup.steps_per_second, n = std::round(kSeconds / h);
   return {way / (0.5 * h * h * n * (n + 1)),
           std::max(0.0, kGravity * (std::sin(angle) - friction * std::cos(angle)))};

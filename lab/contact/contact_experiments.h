@@ -1,6 +1,6 @@
 #pragma once
-/// Small contact experiments with a known analytic result: each builds its world, runs it and measures.
-/// `weft bench contact` prints them, tests check their tolerances.
+/// Small contact experiments with a known analytic result: each builds and runs a world, and measures it.
+/// `weft bench contact` prints the results; tests check them against tolerances.
 
 #include <string>
 

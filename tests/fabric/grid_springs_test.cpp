@@ -115,7 +115,7 @@ TEST(GridSprings, FabricsThatSpringsCannotBeAreRefusedWithWhatToDo) {
             "fabric \"jersey\": springs cannot represent it: c11 = 33.2 N/m must exceed g = 36.9 N/m; use "
             "membrane = "
             "\"triangle\", a smaller g, or a larger c11");
-  EXPECT_NE(complaint({4, 1, 10, 10}, kFabric).find("times the cells' (length/width)², 800 N/m"),
+  EXPECT_NE(complaint({4, 1, 10, 10}, kFabric).find("times the cells' (length/width)² = 800 N/m"),
             std::string::npos);
 }
 

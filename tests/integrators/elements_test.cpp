@@ -86,7 +86,7 @@ TEST(Elements, DampingDoesNotBrakeARotation) {
 
 TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
   // In one step from strain e₀ to e the potential gains τ/(2h) C (e − e₀)²: τ/h times the elastic energy of
-  // the difference. Hinges and stencils alike, stretching and bending alike.
+  // the difference. This holds for hinges and stencils, in stretching and in bending.
   constexpr double kTau = 0.03;
   Fabric fabric = find_fabric("denim");
   for (const BendingModel bending : kBendings) {
@@ -103,8 +103,8 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
     const double stretching = energy(0, mesh.positions, stretched);
     EXPECT_NEAR(energy(kTau, mesh.positions, stretched) / stretching, 1 + kTau / kStep, 1e-3)
         << "the strain's second order is 1e-4 of it";
-    // Curvature 0.2/m, then 0.1/m more: the difference has a quarter of the energy at 0.2/m. A soft membrane,
-    // so that its resistance to the chords is negligible.
+    // Curvature 0.2/m, then 0.3/m: the difference of 0.1/m has a ninth of the energy at 0.3/m. The membrane
+    // is soft: its resistance to chords shorter than their arcs is negligible.
     fabric.c11 = fabric.c22 = 1e-6;
     fabric.g = 1e-6;
     const auto some = test::rolled(mesh, 0.2, 0), more = test::rolled(mesh, 0.3, 0);

@@ -317,8 +317,8 @@ TEST(Sew, ClosesAPillowAndKeepsItsCorners) {
 
 // ---- Random cuts
 
-/// A sheet cut along random edges. Edges of the right part, and some of the left part's, are divided at
-/// random at the cut; the right part is moved.
+/// A sheet cut along random edges. At the cut, edges of the right part and fewer of the left part are divided
+/// at random points; then the right part is moved.
 struct CutSheet {
   TriangleMesh whole, cut;
   double distance = 0, way = 0;  // [m]

@@ -103,8 +103,8 @@ TEST(WindingNumbers, AgreeWithTheSphere) {
 }
 
 TEST(WindingNumbers, CountPointsBelowVerticesAndEdgesOnce) {
-  // A cloth's grid above, in and under the box, in line with its corners and diagonals; and a mesh with a ray
-  // through its pole.
+  // A grid of points above, in and below the box, in line with its corners and diagonals; and the same points
+  // with a sphere, where a ray passes through the pole.
   std::vector<Vec3> points;
   for (const double y : {-2.0, -0.5, 0.0, 0.5, 2.0}) {
     for (int i = -4; i <= 4; ++i) {

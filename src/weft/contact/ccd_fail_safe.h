@@ -14,7 +14,7 @@
 ///
 ///     3. Hits that remain are between bodies whose kinematic motions are infeasible. They are listed.
 ///
-/// The tested ends are the positions that will be stored, with their rounding.
+/// The tested end positions are those that will be stored, with their rounding.
 
 #include <vector>
 
@@ -130,10 +130,10 @@ class CcdFailSafe {
   std::vector<char> is_moved_;      // (num_vertices) since the last detection
   std::vector<Constraint> pushes_;  // constraints of the impulses
   std::vector<int> near_pushes_;    // work space
-  std::vector<Vec3> pushed_;        // (num_vertices) ends with impulses, before rounding
+  std::vector<Vec3> pushed_;        // (num_vertices) end positions with impulses, before rounding
 
   // Zones.
-  std::vector<Vec3> wanted_;      // (cloth vertices) ends after the impulses
+  std::vector<Vec3> wanted_;      // (cloth vertices) end positions after the impulses
   std::vector<int> parent_;       // (cloth vertices) union-find forest, -1: in no zone
   std::vector<double> share_;     // (cloth vertices) of a root: share of the remainder its zone keeps
   std::vector<char> is_halved_;   // (cloth vertices) of a root: share_ has been lowered in this round

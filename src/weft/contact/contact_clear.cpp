@@ -24,7 +24,7 @@ constexpr int kStepsWithout = 15;
 /// Additional distance from colliders [m].
 constexpr double kRoomFromColliders = 1e-4;
 
-/// One component of the predicted ends: x + h v + gain · share, where `share` is the share of the
+/// One component of the predicted end positions: x + h v + gain · share, where `share` is the fraction of the
 /// acceleration that acted in the last step.
 WEFT_ALWAYS_INLINE void predict_ballistic_body(const float* x, const float* v, const float* share, float step,
                                                float gain, int count, float* ends) {

@@ -72,7 +72,7 @@ class ContactSystem {
   /// The contacts of all cloths. Particles are numbered through the cloths.
   void find_contacts(std::vector<Contact>& contacts);
 
-  /// Reads the cloths' states as the ends of the step. `contacts` are those from find_contacts, solved for,
+  /// Reads the cloths' states at the end of the step. `contacts` are those from find_contacts, solved for,
   /// or none.
   void read_solution(std::span<const Contact> contacts);
 
@@ -245,8 +245,8 @@ class ContactSystem {
   double pressed_in_ = 0;          // share of the gap that may be missing now [1]
   std::vector<Vec3Array> starts_;  // (cloths) offsets of particles
   SurfaceMotion motion_;
-  std::vector<Vec3> expected_;  // (cloth vertices) predicted ends used for the solve's contacts; or empty [m]
-  std::vector<Vec3> ballistic_;              // (cloth vertices) ballistic prediction [m]
+  std::vector<Vec3> expected_;   // (cloth vertices, or empty) end positions predicted for the solve [m]
+  std::vector<Vec3> ballistic_;  // (cloth vertices) ballistic prediction [m]
   double thinnest_ = 0, thickest_ = 0;       // half thickness of the thinnest and the thickest cloth [m]
   double longest_edge_ = 0;                  // upper bound for cloth edges [m]
   std::vector<double> inverse_mass_;         // (num_vertices) 0 where prescribed [1/kg]

@@ -328,7 +328,7 @@ class Untangler {
     }
   }
 
-  /// Edges that are pierced at a common adjacent triangle belong to one curve.
+  /// Intersecting edges with a common adjacent triangle belong to one curve.
   void join_curves(const std::vector<EdgeFaceIntersection>& edge_face) {
     curve_.resize(surface_.edges.size());
     std::iota(curve_.begin(), curve_.end(), 0);
@@ -449,8 +449,8 @@ class Untangler {
          (is_cloth(i) ? 1.0 : -1.0) * limited(kShortening * mean_edge_) * out);
   }
 
-  /// Moves the edge against the triangle so that the end of the cut, where the triangles at the edge meet the
-  /// pierced one, moves towards the inside of the cut:
+  /// Moves the edge against the triangle that it intersects so that the end of the cut, where the edge's own
+  /// triangles meet this one, moves towards the inside of the cut:
   ///
   ///     Σ R − (E·R)/(E·N) N        R along the cut from the edge, E along the edge, N the triangle's normal
   void shorten_cut(const EdgeFaceIntersection& p) {

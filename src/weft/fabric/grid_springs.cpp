@@ -9,7 +9,7 @@ namespace {
 void require_stiffer(double c, double shear, const char* key, const Fabric& fabric, const std::string& name) {
   if (c > shear) return;
   const std::string why =
-      shear == fabric.g ? "" : " times the cells' (length/width)², " + short_text(shear) + " N/m";
+      shear == fabric.g ? "" : " times the cells' (length/width)² = " + short_text(shear) + " N/m";
   throw InputError("fabric \"" + name + "\": springs cannot represent it: " + key + " = " + short_text(c) +
                    " N/m must exceed g = " + short_text(fabric.g) + " N/m" + why +
                    "; use membrane = \"triangle\", a smaller g, or a larger " + key);

@@ -36,9 +36,9 @@ struct LimitResponse {
 };
 LimitResponse limit_response(const StrainLimit& limit, double strain);
 
-/// Limit for a cloth of this area [m²] and this mean edge length [m]. It begins at 0.85 strain_limit and is
-/// full at 1.05 of it. At 1.3 of it, it bears the tension of twenty times the cloth's weight on a single
-/// edge: more than cloth that is dropped, swung or pulled. None for strain_limit = 0.
+/// Limit for a cloth of this area [m²] and this mean edge length [m]. It begins at 0.85 and is full at 1.05
+/// times strain_limit. At 1.3 times, it bears twenty times the cloth's weight on a single edge: more than the
+/// load of cloth that is dropped, swung or pulled. None for strain_limit = 0.
 StrainLimit make_strain_limit(const Fabric& fabric, double cloth_area, double edge_length);
 
 /// A Green strain along a thread at which the slope of the stress changes.

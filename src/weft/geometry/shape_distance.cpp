@@ -88,8 +88,8 @@ double deepest_inside(const Vec3& p, const Vec3& d, const Vec3& h) {
   return 0.5 * (detail::clamp_01(first) + detail::clamp_01(last));
 }
 
-/// The minimum of the squared distance φ = Σ_k max(|p_k| − h_k, 0)² on p + t d, 0 <= t <= 1. Its slope rises
-/// with t and is linear between the points where the line crosses the faces' planes.
+/// The t in [0, 1] that minimises the squared distance φ = Σ_k max(|q_k| − h_k, 0)² of q = p + t d. The slope
+/// of φ rises with t and is linear between the points where the line crosses the planes of the faces.
 double nearest_outside(const Vec3& p, const Vec3& d, const Vec3& h) {
   const auto slope = [&](double t) {  // half of φ'
     const Vec3 q = p + t * d;

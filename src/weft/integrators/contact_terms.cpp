@@ -141,7 +141,7 @@ void ContactTerms::guess(std::span<const Positions> y) {
     }
     t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * depth_of(t), c.depth_before);
     const Vec3 slide = slide_of(t);
-    // Mutual contacts: both sides are driven alike.
+    // Mutual contacts: both sides are driven equally.
     Vec3 driven = c.is_mutual() ? Vec3(Vec3::Zero()) : driven_;
     driven -= driven.dot(c.normal) * c.normal;
     t.slide = (slide - driven).norm();

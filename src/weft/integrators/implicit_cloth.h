@@ -58,7 +58,7 @@ class ImplicitCloth {
   bool is_pinned(int i) const { return is_pinned_[i] != 0; }
   int num_springs() const { return static_cast<int>(model_->topology->springs.size()); }
   const std::vector<Vec3>& inertial() const { return inertial_; }  // y, relative to the origin [m]
-  const std::vector<Vec3>& placed() const { return placed_; }      // y with pins at their ends [m]
+  const std::vector<Vec3>& placed() const { return placed_; }      // y with pins at their end positions [m]
   double effective_step() const { return step_; }                  // T [s]
 
  private:

@@ -83,7 +83,7 @@ class NewtonGroup {
  private:
   /// BDF2; implicit Euler while contact is active in this step or was in the last one, because BDF2 uses
   /// velocities from before an impact and would bounce part of them back. All cloths use the same scheme:
-  /// they exchange momentum correctly only if their steps are alike.
+  /// they exchange momentum correctly only if their steps are the same.
   void predict() {
     bool is_euler =
         std::any_of(cloths_.begin(), cloths_.end(), [](const NewtonCloth* c) { return c->is_first_order(); });

@@ -1,5 +1,5 @@
 /// XPBD with small steps, as in most engines: the baseline for `newton`. xpbd_projection.h describes the
-/// method with its source, xpbd_elements.h that of fabrics.
+/// method and its source, xpbd_elements.h the method for fabrics.
 
 #include "weft/integrators/common.h"
 #include "weft/integrators/xpbd_projection.h"

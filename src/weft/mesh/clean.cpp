@@ -21,8 +21,8 @@ constexpr double kMaxOpenSeam = 0.005;
 
 std::string number(long long n) { return std::to_string(n); }
 
-/// The lowest-numbered vertex that each vertex merges with: closer than `distance`, directly or through
-/// others. Found by a sweep in a direction to which real meshes are not aligned, so that few vertices tie.
+/// For each vertex, the lowest-numbered one it merges with: within `distance`, directly or through a chain of
+/// others. Sweeps in a direction with which real meshes are not aligned, so that few vertices tie.
 std::vector<int> find_twins(const std::vector<Vec3>& positions, double distance) {
   const Vec3 direction = Vec3(0.6180, 0.5377, 0.5735).normalized();
   const int n = static_cast<int>(positions.size());

@@ -17,7 +17,7 @@ enum class RunOutcome { done, interrupted, failed };
 /// Energies of all cloths at the end of each frame, and the energy audit of the frame (frames) [J].
 struct EnergySeries {
   std::vector<double> kinetic, elastic, bending, gravitational;
-  // With RunOptions::audit, else empty: work and remainder of a frame (world/energy_audit.h).
+  // With RunOptions::audit, else empty: work and left_over of a frame (world/energy_audit.h).
   std::vector<double> work_pins, work_shapes, work_wind, work_hands, left_over;
 };
 
@@ -39,7 +39,7 @@ struct RunReport {
   std::vector<double> kinetic_energy;            // (frames) [J]
   std::vector<double> potential_energy;  // (frames) elastic plus gravity, zero at the world's origin [J]
   EnergySeries energy;
-  std::vector<double> lowest_y;  // (frames) the first one after the first frame [m]
+  std::vector<double> lowest_y;  // (frames) after each frame [m]
   // Work of the solver, empty for integrators that do not count it:
   std::vector<int> newton_steps;      // (frames) nonlinear iterations, all cloths [1]
   std::vector<int> cg_iterations;     // (frames) linear iterations inside them [1]

@@ -42,8 +42,8 @@ void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& cu
   }
 }
 
-/// Validates the combination of all numbers; each mistake is reported at the number that it names. An
-/// unreadable number has its default here, and is reported already.
+/// Validates the combination of all numbers; each mistake is reported at the number that it names.
+/// Unreadable numbers have their defaults here, and have already been reported.
 void check_fabric(TomlTable& table, const Fabric& fabric) {
   for (const FabricMistake& mistake : find_mistakes(fabric)) {
     if (const TomlValue value = table.get(mistake.field))

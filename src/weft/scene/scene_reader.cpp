@@ -69,7 +69,7 @@ void read_air(TomlTable& wind, WindDesc& desc) {
   air.read("drag", desc.air.drag, above_zero());
   desc.air.lift = std::min(desc.air.lift, desc.air.drag);
   if (air.read("lift", desc.air.lift, not_negative()) && desc.air.lift > desc.air.drag)
-    air.get("lift").mistake("must not exceed drag: the air would do work");
+    air.get("lift").mistake("must not exceed drag: otherwise the air would add energy");
 }
 
 void read_gusts(TomlTable& wind, WindDesc& desc) {

@@ -29,7 +29,7 @@ struct TomlSection {
   const toml::table* table = nullptr;  // nullptr: not in the document; its keys are recorded all the same
   std::string path;                    // "cloth.fabric"; empty: the document
   std::vector<std::string> keys;       // known ones, in the order of queries
-  std::vector<std::string> refused;    // keys that were reported already
+  std::vector<std::string> refused;    // keys that have already been reported
   std::vector<Requirement> required;
   bool any_keys = false;       // unknown keys are allowed
   std::vector<KeyNote> notes;  // of keys that were read with a type

@@ -217,7 +217,7 @@ PassageWatch::PassageWatch(const Frame& start, double tolerance)
   colliders_ = start.colliders;
 }
 
-/// Reads the ends of the motion.
+/// Reads the end positions of the motion.
 void PassageWatch::read(const Frame& frame) {
   std::size_t s = 0;
   for (const NamedCloth& cloth : frame.cloths)

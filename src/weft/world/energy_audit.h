@@ -1,19 +1,19 @@
 #pragma once
 /// Energy audit of a step: the change of a world's energy, and the work that caused it.
 ///
-///     Δ(kinetic + elastic + bending + gravitational) = W_pins + W_shapes + W_wind + W_hands + left over
+///     Δ(kinetic + elastic + bending + gravitational) = W_pins + W_shapes + W_wind + W_grabs + left_over
 ///
-/// The remainder is negative where damping, friction or the integrator dissipate energy, positive where
+/// `left_over` is negative where damping, friction or the integrator dissipates energy, and positive where
 /// energy is created.
 ///
 ///     const AuditStart start = begin_energy_audit(world);
 ///     world.step(dt);
 ///     const EnergyAudit audit = finish_energy_audit(start, world);
 ///
-/// Work is the force at the end of the step times the displacement in it, the balance of implicit Euler; for
-/// smooth motion the error is of first order in the step. The work of shapes, and of pins against contacts,
-/// requires World::track_contacts(true) before the step. For a step with substeps (`explicit`, `xpbd`) the
-/// forces are those of the last one: audit these integrators with steps of one substep.
+/// Work is the force at the end of the step times the displacement in it, as implicit Euler balances energy.
+/// For smooth motion the error is of first order in the step. The work of shapes, and of pins against
+/// contacts, requires World::track_contacts(true) before the step. For a step with substeps (`explicit`,
+/// `xpbd`) the forces are those of the last one: audit these integrators with steps of one substep.
 
 #include "weft/world/world.h"
 
@@ -54,7 +54,7 @@ struct EnergyAudit {
 AuditStart begin_energy_audit(const World& world);
 
 /// `world` must be one step after `start`, with the same cloths, pins, grabs, wind and colliders as during
-/// it. For a failed step work and remainder are zero.
+/// it. For a failed step work and left_over are zero.
 EnergyAudit finish_energy_audit(const AuditStart& start, const World& world);
 
 }  // namespace weft::engine

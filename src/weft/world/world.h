@@ -231,8 +231,8 @@ class World {
     int calm = 0;               // number of consecutive parts that could have been longer
   };
   Snapshot snapshot() const;
-  /// Takes a snapshot of this world, or of one built alike: throws InputError if cloths or colliders do not
-  /// match.
+  /// Takes a snapshot of this world, or of one built in the same way. Throws InputError if cloths or
+  /// colliders do not match.
   void restore(const Snapshot& snapshot);
 
   /// Hash of the bits of time, positions and velocities.
