@@ -213,6 +213,23 @@ TEST_F(SceneWriter, WritesMeshesInMemoryBesideTheScene) {
   EXPECT_EQ(from_memory.world.state_hash(), from_file.world.state_hash());
 }
 
+TEST_F(SceneWriter, GivesBodiesOfLikeNamesTheirOwnFiles) {
+  SceneDesc scene = make_scene_in_memory();
+  scene.cloths[0].name = "a b";
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].name = "a_b";
+  PlacedMesh& body = std::get<PlacedMesh>(scene.colliders[0].shape);
+  body.frame_positions.clear();
+  scene.colliders[0].name = "a/b";
+  const SceneDesc read = round_trip(scene);
+  const fs::path first = std::get<MeshSource>(read.cloths[0].shape).file,
+                 second = std::get<MeshSource>(read.cloths[1].shape).file,
+                 third = std::get<PlacedMesh>(read.colliders[0].shape).source.file;
+  EXPECT_NE(first, second);
+  EXPECT_NE(first, third);
+  EXPECT_NE(second, third);
+}
+
 TEST_F(SceneWriter, ChecksASceneByTheSentencesOfTheReader) {
   SceneDesc scene = make_scene_in_memory();
   scene.fps = -1;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <map>
 #include <random>
 #include <sstream>
 
+#include "weft/core/file_name.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
@@ -112,17 +112,17 @@ class MeshFiles {
     return (name.empty() ? fs::absolute(file) : name).generic_string();
   }
 
-  std::string name_of(const MeshSource& source, const std::string& owner) const {
+  std::string name_of(const MeshSource& source, const std::string& owner) {
     if (!source.mesh) return relative(source.file);
-    const std::string name = stem_ + "_" + file_stem(owner) + ".obj";
+    const std::string name = names_.add(stem_ + "_" + owner) + ".obj";
     write_obj(folder_ / name, to_engine(*source.mesh), to_engine(source.mesh->uv));
     return name;
   }
 
   /// A name with a star.
-  std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) const {
+  std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) {
     if (mesh.frame_positions.empty()) return relative(pattern_of(mesh.frames, owner));
-    const std::string begin = stem_ + "_" + file_stem(owner) + "_";
+    const std::string begin = names_.add(stem_ + "_" + owner) + "_";
     TriangleMesh moved = to_engine(*mesh.source.mesh);
     for (std::size_t k = 0; k < mesh.frame_positions.size(); ++k) {
       moved.positions = mesh.frame_positions[k];
@@ -134,13 +134,6 @@ class MeshFiles {
   }
 
  private:
-  static std::string file_stem(std::string name) {
-    for (char& c : name) {
-      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-    }
-    return name;
-  }
-
   /// The pattern that matches exactly these files.
   static fs::path pattern_of(const std::vector<fs::path>& frames, const std::string& owner) {
     const std::string first = frames.front().filename().string();
@@ -163,6 +156,7 @@ class MeshFiles {
 
   fs::path folder_;
   std::string stem_;
+  FileNames names_;
 };
 
 void add_mesh_keys(const MeshSource& mesh, Table& table) {
@@ -241,7 +235,7 @@ std::string springs_text(const ClothSceneDesc& cloth) {
   return table.in_line();
 }
 
-std::string shape_lines(const ClothSceneDesc& cloth, const MeshFiles& files) {
+std::string shape_lines(const ClothSceneDesc& cloth, MeshFiles& files) {
   Table table;
   if (const Grid* grid = std::get_if<Grid>(&cloth.shape)) {
     const Table inner = Table()
@@ -258,7 +252,7 @@ std::string shape_lines(const ClothSceneDesc& cloth, const MeshFiles& files) {
   return table.lines();
 }
 
-std::string cloth_text(const ClothSceneDesc& cloth, const MeshFiles& files) {
+std::string cloth_text(const ClothSceneDesc& cloth, MeshFiles& files) {
   Table table;
   table.add_text("fabric", cloth.fabric ? fabric_text(*cloth.fabric) : springs_text(cloth));
   if (cloth.fabric && cloth.fabric->membrane == Membrane::springs)
@@ -284,7 +278,7 @@ std::string cloth_text(const ClothSceneDesc& cloth, const MeshFiles& files) {
 
 /// Shape and keys of a collider.
 struct ShapeKeys {
-  const MeshFiles& files;
+  MeshFiles& files;
   const std::string& owner;
   Table& table;
 
@@ -316,7 +310,7 @@ struct ShapeKeys {
   }
 };
 
-std::string collider_text(const ColliderSceneDesc& collider, const MeshFiles& files) {
+std::string collider_text(const ColliderSceneDesc& collider, MeshFiles& files) {
   if (collider.motion.passage())
     throw InputError("collider \"" + collider.name + "\": a scene file has motions by key frames only");
   Table table;
@@ -387,7 +381,7 @@ std::string solver_text(const SceneDesc& scene) {
   return "\n[solver]\n" + table.lines();
 }
 
-std::string scene_text(const SceneDesc& scene, const MeshFiles& files) {
+std::string scene_text(const SceneDesc& scene, MeshFiles& files) {
   Table head;
   head.add("format", 1)
       .add("description", scene.description, std::string())
@@ -446,7 +440,8 @@ class TemporaryFolder {
 }  // namespace
 
 void write_scene(const fs::path& file, const SceneDesc& scene) {
-  write_file(file, scene_text(scene, MeshFiles(file)));
+  MeshFiles files(file);
+  write_file(file, scene_text(scene, files));
 }
 
 std::vector<std::string> check_scene(const SceneDesc& scene) {
@@ -454,7 +449,8 @@ std::vector<std::string> check_scene(const SceneDesc& scene) {
   const fs::path file = folder.path() / "scene.toml";
   std::vector<std::string> messages;
   try {
-    const std::string text = scene_text(scene, MeshFiles(file));
+    MeshFiles files(file);
+    const std::string text = scene_text(scene, files);
     try {
       parse_scene(text, file);
     } catch (const SceneError& error) {
