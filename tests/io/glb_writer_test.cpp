@@ -223,5 +223,26 @@ TEST(GlbWriter, RefusesAnimationsThatNoViewerCouldShow) {
   refuses({.title = "", .cloths = {torn}, .bodies = {}});
 }
 
+/// Size of a file of so many frames of a waving flag and two balls [bytes].
+double size_of(int num_frames) {
+  Animation animation{.title = "", .cloths = {make_flag(num_frames)}, .bodies = {make_ball(num_frames)}};
+  animation.bodies.push_back(make_ball(1));
+  const std::string file = output_file("size");
+  write_glb(file, animation);
+  return static_cast<double>(std::filesystem::file_size(file));
+}
+
+TEST(GlbWriter, KnowsHowManyFramesThereIsRoomFor) {
+  // Extrapolated by the parabola through three sizes: the full file is below 4 GiB, and not far below.
+  const double at_100 = size_of(100), at_200 = size_of(200), at_300 = size_of(300);
+  StagedFile file(output_file("room"));
+  GlbWriter writer(file, {.cloths = {make_flag(1)}, .bodies = {make_ball(1), make_ball(1)}});
+  writer.add_frame(get_frame({.cloths = {make_flag(1)}, .bodies = {make_ball(1), make_ball(1)}}, 0));
+  const double frames = static_cast<double>(writer.max_frames()), x = frames / 100 - 1;
+  const double size = at_100 + (at_200 - at_100) * x + (at_300 - 2 * at_200 + at_100) * x * (x - 1) / 2;
+  EXPECT_LT(size, 4294967296.0) << frames << " frames";
+  EXPECT_GT(size, 0.6 * 4294967296.0) << frames << " frames";
+}
+
 }  // namespace
 }  // namespace weft::engine

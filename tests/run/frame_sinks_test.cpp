@@ -5,24 +5,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 
+#include "tests/run/shipped.h"
+#include "weft/core/file_name.h"
 #include "weft/io/glb_reader.h"
 #include "weft/io/obj_reader.h"
 #include "weft/run/file_sinks.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
-#include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
-
-SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
-  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
-}
 
 class FrameSinks : public testing::Test {
  protected:
@@ -37,15 +33,13 @@ class FrameSinks : public testing::Test {
 
 /// Stores the numbers of frames and the world's time at each.
 struct Listener : FrameSink {
-  void begin(SceneRun& run, RunReport&) override { add_frame(run, *this); }
-  void add_frame(const SceneRun& run, RunReport&) override { add_frame(run, *this); }
+  void begin(SceneRun& run, RunReport& report) override { add_frame(run, report); }
+  void add_frame(const SceneRun& run, RunReport&) override {
+    frames.push_back(run.frame());
+    times.push_back(run.world().time());
+  }
   void begin_step(const SceneRun&) override { ++steps; }
   void finish(const SceneRun&, RunReport& report) override { hash = report.state_hash; }
-
-  static void add_frame(const SceneRun& run, Listener& self) {
-    self.frames.push_back(run.frame());
-    self.times.push_back(run.world().time());
-  }
 
   std::vector<int> frames;
   std::vector<double> times;
@@ -137,8 +131,7 @@ TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
   run_scene(shipped("two_layers", {"cloth[0].grid.cells=[6, 6]", "cloth[1].grid.cells=[6, 6]"}),
             {.frames = 3}, {&obj, &film});
   for (const AnimatedCloth& cloth : film.animation().cloths) {
-    std::string name = cloth.name;  // "upper sheet"
-    std::replace(name.begin(), name.end(), ' ', '_');
+    const std::string name = FileNames().add(cloth.name);  // "upper_sheet"
     for (int k = 0; k <= 3; ++k) {
       const ObjMesh read = read_obj(folder_ / (name + "_000" + std::to_string(k) + ".obj"));
       EXPECT_EQ(read.mesh.triangles, cloth.triangles);

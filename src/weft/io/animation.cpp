@@ -58,4 +58,13 @@ void append_frame(AnimationFrame frame, Animation& animation) {
   }
 }
 
+void replace_frames(AnimationFrame frame, Animation& animation) {
+  for (AnimatedCloth& cloth : animation.cloths) cloth.frames.clear();
+  for (AnimatedBody& body : animation.bodies) {
+    body.poses.clear();
+    body.frames.clear();
+  }
+  append_frame(std::move(frame), animation);
+}
+
 }  // namespace weft::engine

@@ -71,6 +71,9 @@ std::size_t count_frames(const Animation& animation);
 /// Frame `k` of the animation; a body with one pose has it in every frame.
 AnimationFrame get_frame(const Animation& animation, std::size_t k);
 
+/// Makes this frame the only one.
+void replace_frames(AnimationFrame frame, Animation& animation);
+
 /// Appends a frame. A body that is still at rest keeps one pose.
 void append_frame(AnimationFrame frame, Animation& animation);
 

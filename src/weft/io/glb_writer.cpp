@@ -18,7 +18,9 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kRoughness = 0.8;  // cloth scatters light
+constexpr size_t kJsonPerTarget = 1024;  // more than the accessors and views of a morph target take [bytes]
+constexpr size_t kJsonPerMesh = 8192;    // more than the rest of a mesh takes [bytes]
+constexpr double kRoughness = 0.8;       // cloth scatters light
 
 /// Format of an accessor, in glTF's terms.
 struct Layout {
@@ -178,14 +180,35 @@ class GlbWriter::Builder {
       else if (num_frames_ == 0)
         add_vertices(body.name, body.mesh.triangles, flatten(body.mesh.positions), own);
     }
-    ++num_frames_;
-    require_space();
+    if (++num_frames_ == 1) size_of_first_ = bytes_.size();
+    if (num_frames_ > max_frames())
+      throw InputError(file_.file().string() + " cannot be written: " + std::to_string(num_frames_) +
+                       " frames are more than the 4 GiB that glTF allows; write fewer frames");
+  }
+
+  /// By an upper bound of the size: vertices, poses, key times and weights, and their JSON text.
+  size_t max_frames() const {
+    size_t morphed = 0, per_frame = sizeof(float);
+    for (const MeshInFile& own : meshes_in_file_) {
+      if (own.is_moving) ++morphed, per_frame += 2 * own.base.size() * sizeof(float) + kJsonPerTarget;
+    }
+    per_frame += poses_.size() * 7 * sizeof(float);
+    const size_t fixed = size_of_first_ + kJsonPerMesh * meshes_in_file_.size();
+    const auto fits = [&](size_t frames) {
+      const size_t weights = morphed > 0 ? frames * frames * sizeof(float) : 0;
+      const size_t weights_in_json = morphed * frames * 4;  // "0.0,"
+      return fixed + frames * per_frame + weights + weights_in_json <= std::numeric_limits<uint32_t>::max();
+    };
+    size_t most = 0;
+    for (size_t step = size_t{1} << 31; step > 0; step /= 2) {
+      if (fits(most + step)) most += step;
+    }
+    return most;
   }
 
   void finish() {
     if (num_frames_ == 0) throw InputError("the animation has no frames");
     add_motion();
-    require_space();
     write_document();
     file_.finish();
   }
@@ -297,12 +320,6 @@ class GlbWriter::Builder {
     }
     add_channel(own.node, "translation", add_sampler(add_floats(translations, kTranslations)));
     add_channel(own.node, "rotation", add_sampler(add_floats(rotations, kRotations)));
-  }
-
-  void require_space() const {
-    if (bytes_.size() <= max_glb_size()) return;
-    throw InputError(file_.file().string() + " cannot be written: " + std::to_string(num_frames_) +
-                     " frames are more than the 4 GiB that glTF allows; write fewer frames");
   }
 
   /// A header, the JSON chunk and the binary chunk: glTF 2.0, section 4.4.
@@ -450,27 +467,16 @@ class GlbWriter::Builder {
   tinygltf::Animation motion_;
   std::vector<MeshInFile> meshes_in_file_;              // (cloths, then bodies)
   std::vector<std::vector<AnimatedBody::Pose>> poses_;  // (bodies) of (num_frames)
-  size_t num_frames_ = 0;
-  int times_ = -1;  // accessor of the key times
+  size_t num_frames_ = 0, size_of_first_ = 0;           // [bytes]
+  int times_ = -1;                                      // accessor of the key times
 };
 
 GlbWriter::GlbWriter(StagedFile& file, const Animation& meshes)
     : builder_(std::make_unique<Builder>(file, meshes)) {}
 GlbWriter::~GlbWriter() = default;
 void GlbWriter::add_frame(const AnimationFrame& frame) { builder_->add_frame(frame); }
+size_t GlbWriter::max_frames() const { return builder_->max_frames(); }
 void GlbWriter::finish() { builder_->finish(); }
-
-size_t max_glb_size() {
-  constexpr size_t kRoomForJson = size_t{1} << 28;
-  return std::numeric_limits<uint32_t>::max() - kRoomForJson;
-}
-
-size_t glb_size(const Animation& meshes, size_t num_vertices, size_t num_frames) {
-  constexpr size_t kBytesPerVertex = 6 * sizeof(float);  // position and normal
-  size_t size = num_frames * num_vertices * kBytesPerVertex + num_frames * num_frames * sizeof(float);
-  for (const AnimatedCloth& cloth : meshes.cloths) size += cloth.triangles.size() * sizeof(Triangle);
-  return size;
-}
 
 void write_glb(const std::filesystem::path& file, const Animation& animation) {
   require_equal_counts(animation);

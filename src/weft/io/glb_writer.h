@@ -22,7 +22,7 @@ namespace weft::engine {
 /// radius), `box` (center, half_size, rotation: nine numbers row by row) and `mesh`. The asset's extras hold
 /// `title` and `passing`.
 ///
-/// The lengths in a .glb have 32 bits, so that it holds less than 4 GiB: see glb_size(). All functions throw
+/// The lengths in a .glb have 32 bits, so that it holds less than 4 GiB: see max_frames(). All functions throw
 /// InputError if the file cannot be written, with the system's reason, or is full. They also throw it for a
 /// frame that viewers cannot show: other meshes than before, or coordinates that are not finite.
 class GlbWriter {
@@ -33,6 +33,9 @@ class GlbWriter {
 
   void add_frame(const AnimationFrame& frame);
 
+  /// Number of frames that the file has room for; known after the first frame.
+  std::size_t max_frames() const;
+
   /// Writes the file up to StagedFile::finish(), after at least one frame; the caller calls replace().
   void finish();
 
@@ -40,12 +43,6 @@ class GlbWriter {
   class Builder;
   std::unique_ptr<Builder> builder_;
 };
-
-/// Size of the file, without its JSON text [bytes].
-std::size_t glb_size(const Animation& meshes, std::size_t num_vertices, std::size_t num_frames);
-
-/// Maximum size of a .glb [bytes].
-std::size_t max_glb_size();
 
 /// Writes a whole animation, whose meshes all have the same number of frames (>= 1). An earlier file is
 /// replaced completely or not at all.

@@ -25,7 +25,7 @@ class GlbSink : public FrameSink {
  private:
   StagedFile& file_;
   std::optional<GlbWriter> writer_;
-  int room_ = 0;  // for so many frames, the start included
+  std::size_t room_ = 0;  // frames that fit, with the start
 };
 
 /// Writes a sequence of OBJ files, one per cloth and frame: `FOLDER/sheet_0000.obj` is the start of cloth
