@@ -1,3 +1,4 @@
+#include "weft/run/recorder.h"
 #include "weft/run/scene_run.h"
 #include "weft/run/film.h"
 
@@ -9,18 +10,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/scene/scene_library.h"
-#include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
 namespace weft::engine {
 namespace {
-
-SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
-  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
-}
 
 bool warns(const RunReport& report, const std::string& words) {
   for (const std::string& warning : report.warnings) {
@@ -463,6 +460,33 @@ TEST(Report, OfAnAuditBalancesAndTheMotionIsTheSame) {
 
 TEST(Report, CannotBeWrittenIntoAMissingFolder) {
   EXPECT_THROW(write_report("/nonexistent/folder/report.json", {}), InputError);
+}
+
+TEST(Report, HasTheProblemsOfSettling) {
+  // A ball goes through a sheet held by its corners within two steps before frame 0, in steps that may divide once.
+  const std::string scene = R"([scene]
+format = 1
+settle = 0.0333333333333333
+[[cloth]]
+grid = { size = [1, 1], cells = [16, 16] }
+fabric = "denim"
+position = [-0.5, 0, -0.5]
+pins = ["corner:0,0", "corner:1,0", "corner:0,1", "corner:1,1"]
+[[collider]]
+shape = "sphere"
+center = [0, -0.3, 0]
+radius = 0.2
+motion = [{ time = -0.033 }, { time = 0, position = [0, 0.6, 0] }]
+[solver]
+max_steps_per_frame = 2
+)";
+  Recorder recorder;
+  SceneRun run(parse_scene(scene, "scene.toml"), make_serial_jobs(), {&recorder});
+  const RunReport report = run.finish();  // without a frame
+  const bool is_reported =
+      std::any_of(report.problems.begin(), report.problems.end(),
+                  [](const RunProblem& p) { return p.code == WarningCode::cap_reached; });
+  EXPECT_TRUE(is_reported);
 }
 
 }  // namespace

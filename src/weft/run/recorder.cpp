@@ -56,6 +56,7 @@ void add_strains(const World& world, RunReport& report) {
 
 void Recorder::begin(SceneRun& run, RunReport&) {
   problems_.emplace(run.world());
+  for (const StepReport& step : run.notes().settling) problems_->add_step(step);
   run.world().track_contacts(has_audit_);
 }
 

@@ -99,9 +99,7 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   const auto non_colliding = world.non_colliding_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
     const std::string& cloth = world.name(world.cloth(c));
-    std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < world.state(world.cloth(c)).x.size(); ++i)
-      positions.push_back(world.state(world.cloth(c)).position(i));
+    const std::vector<Vec3> positions = positions_of(world.state(world.cloth(c)));
     for (const Collider& collider : world.colliders()) {
       const std::array<std::string, 2> pair{cloth, collider.name};
       if (std::find(non_colliding.begin(), non_colliding.end(), pair) != non_colliding.end()) continue;
@@ -133,8 +131,8 @@ void untangle(World& world, SceneNotes& built) {
 void settle(const SceneDesc& scene, PublicScene& built) {
   const int steps = std::max(1, static_cast<int>(std::ceil(scene.settle / scene.step_length() - 1e-9)));
   for (int s = 0; s < steps; ++s) {
-    const StepReport done = built.world.step(scene.settle / steps);
-    if (!done.ok)
+    built.settling.push_back(built.world.step(scene.settle / steps));
+    if (!built.settling.back().ok)
       throw InputError("scene.settle: the simulation failed in step " + std::to_string(s + 1) + " of " +
                        std::to_string(steps) + "; a lower value, or 0, starts without it");
   }

@@ -15,6 +15,7 @@ namespace weft::engine {
 struct SceneNotes {
   double untangle_seconds = 0;        // time for removing initial intersections [s]
   std::vector<std::string> warnings;  // suspect properties of meshes, pins and colliders
+  std::vector<StepReport> settling;   // of the steps before time 0
   std::vector<std::string> notes;     // changes to meshes that the scene asks for
 };
 
