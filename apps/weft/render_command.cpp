@@ -77,7 +77,7 @@ class Source {
     bar.clear();
     for (const std::string& warning : report.warnings) say("warning: " + warning);
     if (report.outcome == RunOutcome::failed) say("the simulation failed at " + report.failure);
-    return {film.animation(), report.outcome};
+    return {film.take(), report.outcome};
   }
 
   std::vector<SpringsToDraw> springs() const {

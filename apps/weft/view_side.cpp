@@ -25,8 +25,7 @@ ViewSide::ViewSide(const SceneDesc& scene, int threads)
 
 bool ViewSide::update() {
   if (!live_.take_newest(frame_)) return false;
-  animation_ = without_frames(animation_);
-  append_frame(frame_.meshes, animation_);
+  replace_frames(frame_.meshes, animation_);
   for (std::size_t c = 0; c < frame_.topologies.size(); ++c)
     animation_.cloths[c].triangles = frame_.topologies[c]->mesh.triangles;
   return true;

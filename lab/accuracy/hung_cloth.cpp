@@ -93,12 +93,6 @@ HungCloth make_hung_disc(int num_rings, const ClothMaterial& material) {
   return hang("disc of " + std::to_string(topology->num_particles()), topology, material, {first, quarter});
 }
 
-std::vector<Vec3> positions_of(const ClothState& state) {
-  std::vector<Vec3> positions(state.x.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = state.position(i);
-  return positions;
-}
-
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();

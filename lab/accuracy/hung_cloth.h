@@ -30,9 +30,6 @@ HungCloth make_hung_disc(int num_rings, const ClothMaterial& material);
 /// length [m] and stiffness [N/m] join neighbours.
 HungCloth make_chain(const std::vector<Vec3>& places, double mass, double rest_length, double stiffness);
 
-/// The particles' positions (num_particles) [m].
-std::vector<Vec3> positions_of(const ClothState& state);
-
 /// Root mean square distance of two sets of positions of equal size [m].
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 

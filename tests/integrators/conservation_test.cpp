@@ -171,9 +171,7 @@ std::vector<Vec3> swing(std::string_view name, int steps) {
   environment.pins = {{0, 8}, {state.position(0), state.position(8)}};
   const IntegratorSettings settings{.integrator = std::string(name), .implicit_euler = {.tolerance = 1e-9}};
   test::advance(*make_integrator(settings), *model, environment, 0.2 / steps, steps, state);
-  std::vector<Vec3> positions;
-  for (int i = 0; i < model->num_particles(); ++i) positions.push_back(state.position(i));
-  return positions;
+  return positions_of(state);
 }
 
 double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

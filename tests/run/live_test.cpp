@@ -4,16 +4,12 @@
 
 #include <functional>
 
+#include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/run/scene_run.h"
-#include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
 namespace {
-
-SceneDesc shipped(const std::string& name, Overrides overrides = {}) {
-  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
-}
 
 /// 13 x 13 particles over a ball, six steps a frame, soft enough for every integrator.
 SceneDesc small_scene(const std::string& integrator = "paper_fixed") {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "tests/run/shipped.h"
 #include "weft/run/scene_run.h"
-#include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
 
 namespace weft::engine {
@@ -19,10 +19,6 @@ Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points) {
 
 Eigen::AlignedBox3d reach_of(const SceneDesc& scene) {
   return box_around(find_reach(build_world(scene, make_serial_jobs()).world));
-}
-
-SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
-  return read_scene(std::string(WEFT_SOURCE_DIR) + "/scenes/" + name + ".toml", overrides);
 }
 
 TEST(Reach, HoldsWhatHangsFromItsPins) {

@@ -26,6 +26,12 @@ Vec3 middle(const Vec3Array& x) {
 
 }  // namespace
 
+std::vector<Vec3> positions_of(const ClothState& state) {
+  std::vector<Vec3> positions(state.x.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = state.position(i);
+  return positions;
+}
+
 ClothState make_state(const std::vector<Vec3>& positions) {
   ClothState state;
   Vec3 low = positions.front(), high = low;

@@ -36,6 +36,9 @@ struct ClothState {
   void set_position(std::size_t i, const Vec3& position) { x.set(i, position - origin); }
 };
 
+/// Positions of all particles (num_particles) [m].
+std::vector<Vec3> positions_of(const ClothState& state);
+
 /// A state at rest at the given positions (num_particles) [m], with the origin at their centre.
 ClothState make_state(const std::vector<Vec3>& positions);
 

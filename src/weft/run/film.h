@@ -21,6 +21,7 @@ class FilmSink : public FrameSink {
   void add_frame(const SceneRun& run, RunReport& report) override;
 
   const Animation& animation() const { return animation_; }
+  Animation take() { return std::move(animation_); }
 
  private:
   Animation animation_;

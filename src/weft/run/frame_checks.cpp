@@ -55,12 +55,6 @@ Solid place(const ColliderShape& shape, bool is_closed, FrameToCheck& result) {
   return std::get<OrientedBox>(shape);
 }
 
-std::vector<Vec3> positions_of(const ClothState& state) {
-  std::vector<Vec3> positions(state.x.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = state.position(i);
-  return positions;
-}
-
 std::vector<Vec3> to_positions(const std::vector<float>& coordinates) {
   std::vector<Vec3> positions(coordinates.size() / 3);
   for (std::size_t i = 0; i < positions.size(); ++i) {

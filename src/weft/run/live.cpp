@@ -294,9 +294,7 @@ void LiveSimulation::change_model(SpringModel model) {
 
 /// After a change of solver or springs: recomputes the warnings and discards results of earlier steps.
 void LiveSimulation::check_solver() {
-  SceneDesc now = scene_now();
-  now.solver = solver_;
-  status_.warnings = check_paper(now, world());
+  status_.warnings = check_paper(solver_, scene_now().step_length(), world());
   status_.failure.clear();
   status_.step_warnings.clear();
   step_ms_.clear();

@@ -31,7 +31,7 @@ RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const Wor
   report.warnings = notes.warnings;
   report.notes = notes.notes;
   report.untangle_seconds = notes.untangle_seconds;
-  const std::vector<std::string> paper = check_paper(scene, world);
+  const std::vector<std::string> paper = check_paper(scene.solver, scene.step_length(), world);
   report.warnings.insert(report.warnings.end(), paper.begin(), paper.end());
   return report;
 }
@@ -141,11 +141,11 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std
   return run.finish();
 }
 
-std::vector<std::string> check_paper(const SceneDesc& scene, const World& world) {
+std::vector<std::string> check_paper(const IntegratorSettings& solver, double step, const World& world) {
   std::vector<std::string> warnings;
-  if (scene.solver.integrator != "paper") return warnings;
+  if (solver.integrator != "paper") return warnings;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const double a = compute_stiffness_number(world.model(world.cloth(c)), scene.step_length());
+    const double a = compute_stiffness_number(world.model(world.cloth(c)), step);
     if (a <= 1) continue;
     char text[256];
     std::snprintf(

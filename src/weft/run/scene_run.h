@@ -96,6 +96,6 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options,
 
 /// Warnings for cloths that are too stiff for the paper's Eq. 16, which reduces gravity by a factor that
 /// grows with stiffness and step.
-std::vector<std::string> check_paper(const SceneDesc& scene, const World& world);
+std::vector<std::string> check_paper(const IntegratorSettings& solver, double step, const World& world);
 
 }  // namespace weft::engine

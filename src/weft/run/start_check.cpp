@@ -45,13 +45,10 @@ Vec3 size_of(const std::vector<Vec3>& positions) {
 std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
   std::vector<MeshBody> bodies;
   for (int c = 0; c < world.num_cloths(); ++c) {
-    std::vector<Vec3> positions;
-    for (int i = 0; i < world.model(world.cloth(c)).num_particles(); ++i)
-      positions.push_back(world.state(world.cloth(c)).position(i));
-    bodies.push_back({"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions),
-                      world.model(world.cloth(c)).topology->mesh.num_triangles(),
-                      std::get_if<MeshSource>(&scene.cloths[c].shape),
-                      !scene.cloths[c].rotation_deg.isZero()});
+    bodies.push_back(
+        {"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions_of(world.state(world.cloth(c)))),
+         world.model(world.cloth(c)).topology->mesh.num_triangles(),
+         std::get_if<MeshSource>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
   }
   for (std::size_t c = 0; c < world.colliders().size(); ++c) {
     const ColliderShape shape = shape_at(world.colliders()[c], 0);

@@ -83,13 +83,11 @@ World World::make_stage() const {
   stage.set_division({.shortest = kStep / 16});
   for (const Collider& collider : colliders_) stage.add_collider(still(collider, time_));
   for (const Cloth& cloth : cloths_) {
-    std::vector<Vec3> positions;
-    for (int i = 0; i < cloth.model->num_particles(); ++i) positions.push_back(cloth.state.position(i));
     const ClothId id = stage.add_cloth({.name = cloth.name,
                                         .topology = cloth.model->topology,
                                         .material = cloth.model->material,
                                         .elements = cloth.model->elements,
-                                        .positions = std::move(positions)});
+                                        .positions = positions_of(cloth.state)});
     Pin held;
     for (const PinnedParticle& pinned : cloth.pinned) held.particles.push_back(pinned.particle);
     stage.set_pins(id, {held});
