@@ -264,12 +264,9 @@ Hypothesis frequencies(const SectionOptions& options) {
   Hypothesis hypothesis{.title = "Cloth swings at the theoretical frequencies", .source = "Weft"};
   hypothesis.text = {
       "A chain of a metre with 100 links of 10⁵ N/m hangs from one end. It swings by 2 mm in one of its "
-      "modes, "
-      "with `newton`. Theory: j/(4π) √(g/L) with the zeros j of the Bessel function J0. The last link has "
-      "full "
-      "mass, which makes the chain half a link too long: −0.25 %. The error of BDF2 itself is −0.13, −0.67 "
-      "and "
-      "−1.6 % at 60 steps per second."};
+      "modes, with `newton`. Theory: j/(4π) √(g/L) with the zeros j of the Bessel function J0. The last link "
+      "has full mass, which makes the chain half a link too long: −0.25 %. The error of BDF2 itself is "
+      "−0.13, −0.67 and −1.6 % at 60 steps per second."};
   hypothesis.found.tables = {{{"mode", "theory, Hz", "`high`, 60 steps/s: %", "`high`, 240 steps/s: %",
                                "`default`, 60 steps/s: %", "`default`, 240 steps/s: %"},
                               {}}};
@@ -312,8 +309,7 @@ Hypothesis convergence_in_mesh(const SectionOptions& options) {
       "The sheet hung by its whole first row swings from horizontal with `newton`. Springs have 2000 N/m on "
       "every mesh: this is one fabric, because the stiffness per width is that of the springs. Measured: the "
       "middle of the lower edge after half a second, and the length along the middle at rest. Theory at "
-      "rest: "
-      "ρ g L²/(2k) more than its side."};
+      "rest: ρ g L²/(2k) more than its side."};
   hypothesis.found.tables = {{{"particles", "lower edge after 0.5 s: y, m", "difference to the finest, mm",
                                "lengthening at rest, mm"},
                               {}}};

@@ -89,8 +89,7 @@ void bench_integrators(const IntegratorBenchOptions& options) {
              to_string(simd_level()), 1e-9 * clock, options.model);
   fmt::print(
       "Bytes: what a step must move per particle. Share: of the bandwidth measured on a working set of the "
-      "same "
-      "size.\n\n");
+      "same size.\n\n");
   fmt::print("{:<15} {:>5} {:>2} {:>11} {:>10} {:>12} {:>9} {:>8} {:>11}\n", "integrator", "size", "T",
              "ns/particle", "M part./s", "cycles/spring", "bytes", "GB/s", "share");
   for (const std::string& name : names) {

@@ -100,10 +100,8 @@ Hypothesis ball_takes_cloth_along(const SectionOptions& options) {
                         .source = "Weft"};
   hypothesis.text = {
       "A sheet on a ball that accelerates to half a turn per second within a second. Measured: the rotation "
-      "of "
-      "both after that second. Predicted: the rotation of a sliding rigid flat sheet, µ g ⟨r⟩/(2⟨r²⟩), or "
-      "that "
-      "of the ball."};
+      "of both after that second. Predicted: the rotation of a sliding rigid flat sheet, µ g ⟨r⟩/(2⟨r²⟩), or "
+      "that of the ball."};
   hypothesis.found.tables = {{{"µ", "ball, rad", "sheet, rad", "predicted, rad"}, {}}};
   double worst = 0;
   for (const double friction : {0.02, 0.03, 0.6}) {

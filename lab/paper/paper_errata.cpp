@@ -125,8 +125,7 @@ Hypothesis no_damping_of_its_own() {
   hypothesis.text = {
       "Implicit Euler damps fast oscillations: per step of ω h = x their amplitude falls by the factor "
       "1/√(1 + x²). The cause is the term h·H·v, which is in Eq. 9 but not in Eq. 12. Measured: growth of "
-      "the "
-      "amplitude per step for two particles on a spring, over 600 steps."};
+      "the amplitude per step for two particles on a spring, over 600 steps."};
   const double sizes[] = {0.1, 0.5, 2.0};
   hypothesis.found.tables = {{{"integrator", "ω h = 0.1", "0.5", "2", "theory at 0.5"}, {}}};
   const double euler = 1 / std::sqrt(1.25);

@@ -145,8 +145,7 @@ Hypothesis one_shear_spring(const SectionOptions& options) {
   hypothesis.text = {
       "The sheet has a mirror plane. Two diagonals per cell preserve the symmetry, one breaks it. Distance: "
       "RMS, from the sheet with two diagonals, mean over the first second. Asymmetry: maximum RMS distance "
-      "of "
-      "the sheet from its mirror image, in percent of its side. Shear springs have half the structural "
+      "of the sheet from its mirror image, in percent of its side. Shear springs have half the structural "
       "stiffness; *doubled*: the remaining spring has the stiffness of both."};
   hypothesis.found.tables = {{{"structural springs, N/m", "springs", "distance, m", "asymmetry, %"}, {}}};
   Plot plot{.x_title = "time, s",
@@ -206,8 +205,7 @@ Hypothesis large_steps(const SectionOptions& options) {
       options.quick ? std::vector<double>{200, 20000} : std::vector<double>{20, 200, 2000, 20000};
   hypothesis.text = {fmt::format(
       "The longest step with which the sheet stays within ten metres for 300 steps, by bisection between 1 "
-      "µs "
-      "and {1} s. The sheet has {0}² particles, random velocities of 0.1 m/s, no damping and no gravity. "
+      "µs and {1} s. The sheet has {0}² particles, random velocities of 0.1 m/s, no damping and no gravity. "
       "`explicit` and `xpbd` use one substep. Theory for `explicit`: 2/ω, with the bound ω² = 2 max Σk/m.",
       side, kLongestStep)};
   hypothesis.found.tables = {{{"integrator"}, {}}};
@@ -337,8 +335,8 @@ Hypothesis linear_cost(const SectionOptions& options) {
   }
   hypothesis.text = {
       "Time of one step of 1/60 s, one thread, minimum of twelve. Exponent: slope of time against particles "
-      "on "
-      "logarithmic axes. `desbrun` reuses its factorised matrix in all steps here, which is its best case."};
+      "on logarithmic axes. `desbrun` reuses its factorised matrix in all steps here, which is its best "
+      "case."};
   hypothesis.found.metrics = {{"paper_cost_exponent", paper, "1", "1", 0}};
   hypothesis.verdict = paper < 1.15 ? Verdict::holds : Verdict::holds_in_part;
   hypothesis.found.pictures = {
@@ -350,8 +348,8 @@ Hypothesis real_time(const SectionOptions& options) {
   Hypothesis hypothesis{.title = "The method runs in real time", .source = "the paper, section 6"};
   hypothesis.text = {
       "Every shipped scene of the paper, with contact, on one thread: simulated frames of 1/60 s per second "
-      "of "
-      "wall time (median frame), without drawing. The variants `_real` have the stiffness of real fabric and "
+      "of wall time (median frame), without drawing. The variants `_real` have the stiffness of real fabric "
+      "and "
       "use `newton`."};
   hypothesis.found.tables = {{{"scene", "integrator", "particles", "frames per second"}, {}}};
   double slowest = 1e9;
@@ -421,8 +419,7 @@ Hypothesis figures_remade(const SectionOptions& options) {
   hypothesis.text = {
       "Figures 1 and 2 are the springs of the basic and of the simplified model: structural ones blue, shear "
       "orange, bending green. Figures 3 to 6 each have three frames: the start and two later ones, with Eq. "
-      "16 "
-      "as printed and springs soft enough for it."};
+      "16 as printed and springs soft enough for it."};
   if (!options.paint) {
     hypothesis.text.emplace_back("(No pictures were requested.)");
     return hypothesis;

@@ -1,6 +1,4 @@
-#include "weft/run/recorder.h"
 #include "weft/run/scene_run.h"
-#include "weft/run/film.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +11,8 @@
 #include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"
+#include "weft/run/film.h"
+#include "weft/run/recorder.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_world.h"
 
