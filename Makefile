@@ -2,12 +2,15 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help program lab build demo test scenes pictures videos study docs build asan tsan fuzz format clean
+.PHONY: help program lab build python wheel wheel-all demo test scenes pictures videos study docs asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
 	@echo "make lab     build weft-lab, which runs weft study and weft bench"
 	@echo "make test    install what is missing, build, run all tests"
+	@echo "make python  build the Python package: PYTHONPATH=build/release/python; for \$$WEFT_PYTHON, else python3"
+	@echo "make wheel   dist/weft-*.whl and the source distribution, tried in an environment of their own"
+	@echo "make wheel-all  a wheel for each of Python 3.10 to 3.13 that is there"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
@@ -15,14 +18,23 @@ help:
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
-	@echo "make fuzz    fuzz the readers of scenes, OBJ, .glb and saved worlds, FUZZ_SECONDS each (default 60)"
+	@echo "make fuzz    fuzz the readers of scenes, meshes, glTF and saved worlds, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
 
-# The program weft; with the laboratory weft-lab; everything.
-program lab build:
+# The program weft; with the laboratory weft-lab; with the Python package; everything.
+targets_program = --target weft_app
+targets_lab = --target weft_app --target weft_lab_app
+targets_python = --target weft_app --target weft_python
+program lab build python:
 	@tools/install_deps.sh
-	@cmake --preset release > /dev/null
-	@cmake --build --preset release -j $(JOBS) $(if $(filter program,$@),--target weft_app) $(if $(filter lab,$@),--target weft_lab_app --target weft_app)
+	@cmake --preset release $(if $(filter build python,$@),$$(tools/make_venv.sh)) > /dev/null
+	@cmake --build --preset release -j $(JOBS) $(targets_$@)
+
+wheel: python
+	@tools/make_wheel.sh build/venv/bin/python
+
+wheel-all: python
+	@tools/make_wheel.sh build/venv/bin/python $(foreach version,3.10 3.11 3.12 3.13,python$(version))
 
 demo: program
 	@build/release/bin/weft demo
@@ -50,7 +62,7 @@ docs:
 
 asan tsan:
 	@tools/install_deps.sh
-	@cmake --preset $@ > /dev/null
+	@cmake --preset $@ $(if $(filter asan,$@),$$(tools/make_venv.sh)) > /dev/null
 	@cmake --build --preset $@ -j $(JOBS)
 	@ctest --preset $@
 

@@ -23,8 +23,7 @@ class Recorder {
   void record(const weft::World& world) {
     if (filmed_ == nullptr) {
       filmed_ = &world;
-      scene_.cloths.resize(static_cast<std::size_t>(world.num_cloths()));
-      animation_ = weft::engine::make_animation(scene_, weft::WorldAccess::engine(world));
+      animation_ = weft::engine::make_animation(weft::WorldAccess::engine(world));
     }
     if (&world == filmed_)
       weft::engine::append_frame(weft::engine::capture_frame(weft::WorldAccess::engine(world)), animation_);
@@ -36,7 +35,6 @@ class Recorder {
   }
 
  private:
-  weft::engine::SceneDesc scene_;
   const weft::World* filmed_ = nullptr;
   weft::engine::Animation animation_;
 } recorder;

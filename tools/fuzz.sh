@@ -6,7 +6,8 @@ seconds=${1:?usage: tools/fuzz.sh SECONDS}
 cd "$(dirname "$0")/.."
 
 cmake --preset fuzz > /dev/null
-cmake --build --preset fuzz --target weft_scene_fuzzer weft_obj_fuzzer weft_glb_fuzzer weft_world_fuzzer -j "$(nproc)"
+cmake --build --preset fuzz -j "$(nproc)" \
+  --target weft_{scene,obj,ply,stl,glb,gltf,world}_fuzzer
 
 # fuzz NAME SEEDS…
 fuzz() {
@@ -18,5 +19,8 @@ fuzz() {
 }
 fuzz scene scenes tests/scene/broken
 fuzz obj scenes/garments tests/fuzz/obj_seeds
+fuzz ply tests/fuzz/ply_seeds
+fuzz stl tests/fuzz/stl_seeds
 fuzz glb tests/fuzz/glb_seeds
+fuzz gltf tests/fuzz/gltf_seeds
 fuzz world

@@ -13,10 +13,11 @@ packages=(
   nlohmann-json3-dev      # reports
   libcli11-dev            # the command line
   pkg-config libepoxy-dev libegl-dev          # pictures: for the build
-  libegl1 libgl1-mesa-dri                     # pictures: at run time, in software without a graphics card
+  libegl1 libgl1 libgl1-mesa-dri              # pictures: at run time, in software without a graphics card
   libstb-dev              # PNG
   libglfw3-dev libimgui-dev                   # the window
   ffmpeg                  # videos
+  python3-dev python3-venv                    # the Python package
   libgtest-dev            # tests
   xvfb xdotool            # tests of the window
 )

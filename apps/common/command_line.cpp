@@ -4,20 +4,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <system_error>
 #include <thread>
 
 #include "weft/error.h"
 
 namespace weft::engine::app {
-
-namespace fs = std::filesystem;
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError("cannot create folder " + folder.string() + ": " + error.message());
-}
 
 void say(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 

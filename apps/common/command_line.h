@@ -2,16 +2,12 @@
 /// Shared helpers of the commands.
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <string>
 
 #include "weft/render/camera.h"
 #include "weft/scene/scene_reader.h"
 
 namespace weft::engine::app {
-
-/// Creates the folder, or throws InputError.
-void make_folder(const std::filesystem::path& folder);
 
 /// Prints a line to standard error; a closed or full stream is not an error.
 void say(const std::string& line);

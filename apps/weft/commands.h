@@ -15,6 +15,7 @@ void add_scenes_command(CLI::App& app, int& exit_code);
 void add_fabrics_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);
+void add_convert_command(CLI::App& app, int& exit_code);
 
 /// `weft study` and `weft bench`, which the program weft-lab runs: run_laboratory() replaces this process by
 /// it, and returns only if it is missing. The subcommands here are for the help text only.

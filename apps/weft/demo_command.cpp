@@ -72,7 +72,8 @@ int run_demo(const fs::path& out) {
   Pictures pictures;
   for (const std::string& scene : kScenes) {
     FilmSink film;
-    const FinishedRun run = run_to_files({.scene = scene, .out = out / scene}, {&film});
+    const FinishedRun run =
+        run_to_files({.scene = scene, .options = {.threads = 0, .folder = (out / scene).string()}}, {&film});
     fmt::print("{}", table_line(run.report));
     std::fflush(stdout);
     for (const std::string& warning : run.report.warnings) fmt::print("  warning: {}\n", warning);

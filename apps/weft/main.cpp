@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_fabrics_command(app, exit_code);
   add_check_command(app, exit_code);
   add_verify_command(app, exit_code);
+  add_convert_command(app, exit_code);
   add_laboratory_commands(app);
   return run_program(app, argc, argv, exit_code);
 }

@@ -8,6 +8,7 @@
 #include "apps/common/progress.h"
 #include "commands.h"
 #include "run_command.h"
+#include "weft/core/make_folder.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/io/glb_reader.h"
@@ -64,7 +65,9 @@ class Source {
   /// At least up to the last requested frame, unless the simulation ends before.
   Footage get() const {
     if (!scene_) return {read_glb(file_), RunOutcome::done};
-    RunOptions options{.threads = choose_threads(request_.threads), .check_passages = false};
+    RunOptions options{.threads = choose_threads(request_.threads),
+                       .check_passages = false,
+                       .keep_going = [] { return !interrupted(); }};
     if (!request_.frames.empty())
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
     if (options.frames == 0) options.frames = 1;

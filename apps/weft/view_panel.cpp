@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "viewer.h"
+#include "weft/parameters.h"
 
 namespace weft::engine::app {
 namespace {
@@ -25,6 +26,16 @@ float scale() { return ImGui::GetIO().FontGlobalScale; }
 void note(Viewer& viewer, const std::string& name) {
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
   viewer.controls[name] = {a.x, a.y, b.x, b.y};
+}
+
+/// Description of the last control's parameter, while the pointer is on it.
+void explain(const char* key) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(kWidth * scale());
+  ImGui::TextUnformatted(find_parameter(key).description.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
 /// Dear ImGui's default font has no Greek.
@@ -70,6 +81,7 @@ void draw_integrator(Viewer& viewer, int s) {
     }
     ImGui::EndCombo();
   } else {
+    explain("solver.integrator");
     note(viewer, "integrator " + std::to_string(s));
   }
 }
@@ -98,6 +110,8 @@ void draw_model(Viewer& viewer) {
         viewer.set_model(model);
     }
     ImGui::EndCombo();
+  } else {
+    explain("cloth.model");
   }
 }
 
@@ -109,6 +123,7 @@ void draw_wind(Viewer& viewer) {
   for (int axis = 0; axis < 3; ++axis) {
     ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
     has_changed |= ImGui::SliderFloat(names[axis], &wind[axis], -kStrongestWind, kStrongestWind, "%.1f m/s");
+    explain("wind.velocity");
     note(viewer, names[axis]);
   }
   if (has_changed) viewer.set_wind(wind.cast<double>());

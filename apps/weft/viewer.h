@@ -12,7 +12,7 @@
 #include "view_quality.h"
 #include "view_side.h"
 #include "weft/render/renderer.h"
-#include "weft/render/window.h"
+#include "weft/window/window.h"
 
 namespace weft::engine::app {
 

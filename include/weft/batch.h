@@ -4,7 +4,9 @@
 /// Each world is one job on one thread; its result is the same as when stepped by itself. Worlds share no
 /// mutable state; a clone shares with its original the topology and material of cloth, which never change.
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "weft/export.h"
@@ -14,12 +16,21 @@
 
 namespace weft {
 
+/// Calls around the step of each world, on the thread that steps it: to move pins before, to copy positions
+/// after. Empty: none. Calls for different worlds run concurrently. The first exception leaves
+/// WorldBatch::step() when every world has had its turn.
+struct BatchCalls {
+  std::function<void(int index, World& world)> before = {};
+  std::function<void(int index, World& world, const StepReport& report)> after = {};
+};
+
 class WEFT_API WorldBatch {
  public:
   /// Throws InputError for a null job system.
   explicit WorldBatch(std::shared_ptr<JobSystem> jobs);
 
-  /// Takes ownership of a world, which from now on steps on one thread; returns its index.
+  /// Takes ownership of a world, which from now on steps on one thread; returns its index. Its present state
+  /// is the start for reset().
   int add(World world);
 
   int size() const { return static_cast<int>(worlds_.size()); }
@@ -27,11 +38,16 @@ class WEFT_API WorldBatch {
   const World& operator[](int index) const { return worlds_.at(static_cast<std::size_t>(index)); }
 
   /// Advances all worlds by dt > 0 [s]. Reports are indexed like the worlds.
-  std::vector<StepReport> step(double dt);
+  std::vector<StepReport> step(double dt, const BatchCalls& calls = {});
+
+  /// Returns worlds to their start, bit by bit. Throws InputError for an index without a world, and for a
+  /// world whose cloths or colliders have changed.
+  void reset(std::span<const int> worlds);
 
  private:
   std::shared_ptr<JobSystem> jobs_;
   std::vector<World> worlds_;
+  std::vector<Snapshot> starts_;  // (worlds)
 };
 
 }  // namespace weft

@@ -1,5 +1,6 @@
 #pragma once
-/// The library's only exception: bad input. Numerical failures are never thrown; StepReport reports them.
+/// The library's exceptions: bad input, and pictures without graphics. Numerical failures are never thrown;
+/// StepReport reports them.
 
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,12 @@ namespace weft {
 class WEFT_API InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
+};
+
+/// No graphics on this machine, for pictures in colour and windows. what() is the missing part, and a remedy.
+class WEFT_API GraphicsError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 }  // namespace weft

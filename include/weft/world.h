@@ -39,6 +39,16 @@ enum class ForceKind {
   contact,   // of the last step, each on the nearest particle; needs ContactSettings::tracks_points
 };
 
+/// Positions of particles as the engine stores them: floats relative to an origin, which follows the cloth.
+/// Component c of particle i is data[c · stride + i], and its position origin + that. The memory shows the
+/// newest state after every call on the world; after remove() and the world's end it keeps the last one.
+struct ClothOffsets {
+  std::shared_ptr<const float> data = {};  // (3 x stride) [m]
+  std::size_t num_particles = 0;
+  std::size_t stride = 0;  // from a particle's x to its y, and from y to z [floats]
+  Vec3 origin = {};        // now [m]
+};
+
 /// State of a world at a time; see World::snapshot().
 class WEFT_API Snapshot {
  public:
@@ -108,11 +118,19 @@ class WEFT_API World {
   void place_vertices(ColliderId collider, const std::vector<Vec3>& positions);
 
   void set_pins(ClothId cloth, const std::vector<Pin>& pins);  // replaces the previous pins
+  void add_pin(ClothId cloth, const Pin& pin);                 // the others keep their motions and targets
+  void unpin(ClothId cloth, const std::vector<int>& particles);
+
+  /// Pinned particles, in the order of the pins' lists.
+  std::vector<int> pinned_particles(ClothId cloth) const;
 
   /// Sets pinned particles' positions at the end of the next step, one for each, in the order of the pins'
   /// lists; during the step they move evenly. Without a further call they stay. Replaces the pins' key
   /// frames.
   void move_pins(ClothId cloth, const std::vector<Vec3>& at_end);
+
+  /// The same for some pinned particles [m]. The others keep targets given since the last step, or stay.
+  void move_pins(ClothId cloth, const std::vector<int>& particles, const std::vector<Vec3>& at_end);
 
   /// External forces, one for each particle; constant until the next call. Empty: none [N].
   void set_forces(ClothId cloth, const std::vector<Vec3>& forces);
@@ -140,6 +158,15 @@ class WEFT_API World {
   void set_division(const StepDivision& division);
   void set_contact(const ContactSettings& settings);
   void set_jobs(std::shared_ptr<JobSystem> jobs);  // threads; they do not change the result
+  Vec3 gravity() const;                            // [m/s²]
+  Wind wind() const;
+  IntegratorSettings integrator() const;
+  StepDivision division() const;
+  ContactSettings contact() const;
+
+  /// A body as it was added, with its name and its present fabric and friction.
+  const ClothDesc& description(ClothId cloth) const;
+  const ColliderDesc& description(ColliderId collider) const;
 
   // Time.
 
@@ -151,6 +178,8 @@ class WEFT_API World {
 
   int num_particles(ClothId cloth) const;
   const std::vector<Triangle>& triangles(ClothId cloth) const;  // of particles
+  std::vector<CornerUv> uv(ClothId cloth) const;                // (num_triangles), or empty
+  std::vector<Vec3> rest_positions(ClothId cloth) const;        // in the cloth's own coordinates [m]
   std::vector<Vec3> positions(ClothId cloth) const;             // [m]
   std::vector<Vec3> velocities(ClothId cloth) const;            // [m/s]
   std::vector<double> masses(ClothId cloth) const;              // [kg]
@@ -165,9 +194,13 @@ class WEFT_API World {
   /// their initial positions [m].
   std::vector<Vec3> vertex_positions(ClothId cloth) const;
 
+  /// Positions in the engine's memory, without a copy.
+  ClothOffsets offsets(ClothId cloth) const;
+
   // Measurements, in double precision, computed on demand.
 
   std::vector<Vec3> forces(ClothId cloth, ForceKind kind) const;  // on each particle [N]
+  std::vector<Vec3> forces(ClothId cloth) const;                  // of all kinds [N]
 
   /// Reaction force of each pin, in the order of the pins' lists: the particle's mass times its acceleration
   /// in the last step, less all other forces at its end. Zero before the first step. Contacts are included

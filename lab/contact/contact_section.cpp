@@ -16,7 +16,7 @@ namespace {
 
 Hypothesis nothing_crosses(const SectionOptions& options) {
   Hypothesis hypothesis{.title = "No frame has intersections", .source = "the paper, section 5, and Weft"};
-  const int most_frames = options.quick ? 8 : 90;
+  const int most_frames = options.quick ? 4 : 90;
   hypothesis.text = {fmt::format(
       "The first {} frames of every scene in `scenes/contact`, {} thread{}. The independent checker "
       "tests every frame for intersecting triangles and for the deepest point of cloth inside a "

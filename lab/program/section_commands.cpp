@@ -11,6 +11,7 @@
 #include "lab/comparisons/peers.h"
 #include "lab/program/commands.h"
 #include "lab/report/sections.h"
+#include "weft/core/make_folder.h"
 #include "weft/core/simd.h"
 #include "weft/core/staged_file.h"
 #include "weft/core/version.h"
@@ -202,8 +203,7 @@ void add_section_commands(CLI::App& studies) {
     command->callback([&section, options] { run_section(section, *options); });
   }
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* all =
-      studies.add_subcommand("all", "All sections, and their report; resumes an interrupted run");
+  CLI::App* all = studies.add_subcommand("all", "All sections, and their report; resumes an interrupted run");
   add_options(*all, options);
   options->out = "out/study";
   all->add_option("--out", options->out, "Folder of the report")->type_name("DIR")->capture_default_str();

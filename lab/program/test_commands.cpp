@@ -6,6 +6,7 @@
 #include "apps/common/command_line.h"
 #include "lab/program/commands.h"
 #include "lab/textile/laboratory_tests.h"
+#include "weft/core/make_folder.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"

@@ -21,6 +21,16 @@ TEST(MeshSequence, MovesInStraightLinesBetweenItsKeysAndStaysOutside) {
   EXPECT_EQ(at(100), Vec3(2, 4, 0));
 }
 
+TEST(MeshSequence, IsASourceOfVertices) {
+  const MeshSequence sequence(
+      {Key{1, {Vec3(0, 0, 0), Vec3(0, 0, 1)}}, Key{2, {Vec3(2, 0, 0), Vec3(0, 4, 1)}}});
+  const VertexSource& source = sequence;
+  EXPECT_EQ(source.num_vertices(), 2);
+  std::vector<Vec3> positions(7);
+  source.evaluate(1.25, positions);
+  EXPECT_EQ(positions, (std::vector<Vec3>{Vec3(0.5, 0, 0), Vec3(0, 1, 1)}));
+}
+
 TEST(MeshSequence, OfKeysThatDoNotFitIsRefused) {
   EXPECT_THROW(MeshSequence({}), InputError);
   EXPECT_THROW(MeshSequence({Key{0, {Vec3::Zero()}}, Key{0, {Vec3::Zero()}}}), InputError);

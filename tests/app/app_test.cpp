@@ -9,8 +9,13 @@
 
 #include "tests/app/background.h"
 #include "tests/app/program.h"
+#include "weft/error.h"
 #include "weft/io/animation.h"
 #include "weft/io/glb_writer.h"
+#include "weft/io/mdd.h"
+#include "weft/io/mesh_files.h"
+#include "weft/io/obj_reader.h"
+#include "weft/io/pc2.h"
 
 namespace weft::engine {
 namespace {
@@ -22,12 +27,18 @@ TEST_F(App, RunWritesAnimationAndReport) {
   const Finished done = shell("weft run paper/fig6_ball --frames 3 --out results");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.err, "") << "no bar where there is no terminal";
-  EXPECT_TRUE(contains(done.out, "results/animation.glb")) << done.out;
+  for (const char* file :
+       {"results/animation.glb", "results/cloth.pc2", "results/report.json", "results/run.json"})
+    EXPECT_TRUE(contains(done.out, file)) << done.out;
   EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
   const nlohmann::json report = read_json("results/report.json");
   EXPECT_EQ(report["scene"], "paper/fig6_ball");
   EXPECT_EQ(report["outcome"], "done");
   EXPECT_EQ(report["frames"], 3);
+  const nlohmann::json run = read_json("results/run.json");
+  EXPECT_EQ(run["frames"], 3);
+  EXPECT_EQ(run["cloths"][0]["positions"], "cloth.pc2");
+  EXPECT_EQ(read_pc2("results/cloth.pc2").frames.size(), 4u);
 }
 
 TEST_F(App, RunTakesAFileAndWritesIntoOutAndTheScenesName) {
@@ -35,20 +46,6 @@ TEST_F(App, RunTakesAFileAndWritesIntoOutAndTheScenesName) {
   EXPECT_EQ(shell("weft run mine.toml --frames 1").exit_code, 0);
   EXPECT_TRUE(fs::exists("out/mine/animation.glb"));
   EXPECT_TRUE(fs::exists("out/mine/report.json"));
-}
-
-TEST_F(App, StudyPrintsOneJsonObjectAndLeavesPictureAndData) {
-  const Finished done = shell("weft study shear --fabric silk --json --out lab");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  const nlohmann::json json = nlohmann::json::parse(done.out);
-  EXPECT_NEAR(json["g"].get<double>(), 14, 0.3);
-  EXPECT_EQ(json["units"]["g"], "N/m");
-  EXPECT_EQ(read_json("lab/study.json"), json);
-  EXPECT_EQ(read_text("lab/specimen.png").substr(1, 3), "PNG");
-  EXPECT_TRUE(contains(read_text("lab/specimen.obj"), "v "));
-  EXPECT_TRUE(contains(shell("weft study cantilever --fabric denim --direction bias").out, "bending_length"));
-  expect_bad_input("weft study drape --fabric slik", "did you mean \"silk\"?");
-  expect_bad_input("weft study drape", "--fabric");
 }
 
 TEST_F(App, RunReplacesTheFilesOfAnEarlierRun) {
@@ -103,6 +100,9 @@ TEST_F(App, ResultsThatCannotBeWrittenLeaveTheFilesOfAnEarlierRun) {
   EXPECT_EQ(done.err, "results/animation.glb cannot be written: File too large\n");
   EXPECT_EQ(read_text("results/animation.glb"), "written before");
   EXPECT_EQ(read_text("results/report.json"), "written before");
+  EXPECT_EQ(shell("ulimit -f 16; weft run paper/fig6_ball --frames 3 --out results --no-glb").err,
+            "results/cloth.pc2 cannot be written: File too large\n");
+  EXPECT_EQ(read_text("results/animation.glb"), "written before");
   EXPECT_EQ(std::distance(fs::directory_iterator("results"), {}), 2) << "nothing is left aside";
 }
 
@@ -179,15 +179,16 @@ TEST_F(App, BadInputExitsWithTwoAndTellsWhatWasExpected) {
   expect_bad_input("weft run paper/fig6_ball --fraims 3", "--fraims");
   expect_bad_input("weft run paper/fig6_ball --frames 0", "--frames");
   expect_bad_input("weft run paper/fig6_ball --frames many", "--frames");
+  expect_bad_input("weft run", "SCENE");
+  expect_bad_input("weft run --resume no/such/run", "no/such/run has no unfinished run to resume");
+  expect_bad_input("weft run --resume no/such/run --frames 3", "--frames requires SCENE");
+  expect_bad_input("weft run --resume no/such/run --set scene.fps=30", "--set requires SCENE");
   expect_bad_input("weft run paper/fig6_ball --threads 0", "--threads");
   expect_bad_input("weft run paper/fig6_ball --set solver", "expected path.to.key=value");
   expect_bad_input("weft run paper/fig6_ball --set solver.integratr=paper", "did you mean \"integrator\"?");
   expect_bad_input("weft", "--help");
   expect_bad_input("weft fly", "weft has no command \"fly\"; available: run, demo, ");
   expect_bad_input("weft rnu garment", "weft has no command \"rnu\"; did you mean \"run\"?");
-  expect_bad_input("weft study drpae", "weft study has no command \"drpae\"; did you mean \"drape\"?");
-  expect_bad_input("weft bench integrators --integrators magic", "magic");
-  expect_bad_input("weft bench integrators --sizes 0", "--sizes");
   expect_bad_input("WEFT_SCENES=no/such/folder weft scenes", "no/such/folder");
 }
 
@@ -198,17 +199,66 @@ TEST_F(App, UnwritablePlacesAreRefusedBeforeSimulating) {
   const std::string run = "timeout 60 '" WEFT_PROGRAM "' run paper/fig6_ball --frames 1000000 ";
   expect_bad_input(run + "--out file", "cannot create folder file: Not a directory");
   expect_bad_input(run + "--out file/results", "cannot create folder file/results: Not a directory");
-  expect_bad_input(run + "--out /proc", "/proc/animation.glb cannot be written: ");
+  expect_bad_input(run + "--out /proc", "cannot create folder /proc/unfinished: ");
   expect_bad_input(run + "--out results", "results/animation.glb cannot be written: Is a directory");
   expect_bad_input(run + "--report no/such/report.json",
                    "no/such/report.json cannot be written: No such file");
   EXPECT_EQ(read_text("file"), "not a folder");
 }
 
+TEST_F(App, ConvertsMeshesAndPointCaches) {
+  const std::string shirt = WEFT_SOURCE_DIR "/scenes/garments/tshirt.obj";
+  EXPECT_EQ(shell("weft convert '" + shirt + "' out/tshirt.ply").out, "out/tshirt.ply\n");
+  EXPECT_EQ(shell("weft convert out/tshirt.ply out/again.obj").exit_code, 0);
+  const MeshFromFile obj = read_obj(shirt), ply = read_mesh("out/tshirt.ply"),
+                     again = read_obj("out/again.obj");
+  for (const MeshFromFile* read : {&ply, &again}) {
+    EXPECT_EQ(read->mesh.positions, obj.mesh.positions);
+    EXPECT_EQ(read->mesh.triangles, obj.mesh.triangles);
+    EXPECT_EQ(read->uv, obj.uv);
+  }
+  EXPECT_TRUE(contains(shell("weft convert '" + shirt + "' big.obj --scale 1000").err, "m large; --scale"));
+
+  shell("weft run two_layers --frames 3 --out run");
+  EXPECT_EQ(shell("weft convert run out/two.mdd").out, "out/two_lower_sheet.mdd\nout/two_upper_sheet.mdd\n");
+  const MddCache mdd = read_mdd("out/two_upper_sheet.mdd");
+  const PointCache pc2 = read_pc2("run/upper_sheet.pc2");
+  EXPECT_EQ(mdd.frames, pc2.frames);
+  ASSERT_EQ(mdd.times.size(), 4u);
+  EXPECT_EQ(mdd.times[3], 3 / 60.0f);
+  EXPECT_EQ(shell("weft convert out/two_upper_sheet.mdd part.pc2 --frames 1:2 --up z").exit_code, 0);
+  const PointCache part = read_pc2("part.pc2");
+  ASSERT_EQ(part.frames.size(), 2u);
+  EXPECT_EQ(part.frames[0][1], pc2.frames[1][2]);
+  EXPECT_EQ(part.frames[0][2], -pc2.frames[1][1]);
+  const Finished guessed = shell("weft convert part.pc2 part.mdd");
+  EXPECT_TRUE(contains(guessed.err, "part.pc2 does not say its frames per second: 60 (--fps)"))
+      << guessed.err;
+
+  expect_bad_input("weft convert part.pc2 part.mdd --frames 1:2", "has the frames 0 to 1; it has not 1 to 2");
+  expect_bad_input("weft convert part.pc2 part.mdd --frames 1-2", "expected FIRST:LAST");
+  expect_bad_input("weft convert part.pc2 part.obj", "a point cache is written as .pc2 or .mdd");
+  expect_bad_input("weft convert '" + shirt + "' shirt.fbx", "a mesh is written as .obj or .ply");
+  expect_bad_input("weft convert out out.mdd", "out/run.json: not the list of a run's files");
+}
+
+/// Waits until a run in the background has made a frame of its first cloth.
+void wait_for_frame(const fs::path& folder) {
+  for (int attempt = 0; attempt < 10000; ++attempt) {
+    try {
+      if (read_pc2(folder / "unfinished/cloth.pc2").frames.size() > 1) return;
+    } catch (const InputError&) {  // not there yet
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ADD_FAILURE() << "no frame";
+}
+
 TEST_F(App, SignalsThatEndProgramsKeepWhatWasDone) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Background run({"run", "paper/fig6_ball", "--frames", "1000000", "--out", "results"});
     ASSERT_TRUE(run.catches(SIGTERM));
+    wait_for_frame("results");
     run.send(signal);
     EXPECT_EQ(run.wait(), 130) << signal;
     EXPECT_TRUE(contains(read_text("background.txt"), "interrupted: partial results kept"));
@@ -217,6 +267,7 @@ TEST_F(App, SignalsThatEndProgramsKeepWhatWasDone) {
     EXPECT_EQ(report["outcome"], "interrupted");
     EXPECT_GT(report["frames"], 0);
     EXPECT_EQ(report["lowest_y"].size(), report["frames"]);
+    EXPECT_EQ(read_json("results/run.json")["frames"], report["frames"]);
     fs::remove_all("results");
   }
 }
@@ -352,7 +403,7 @@ TEST_F(App, CheckTakesTheValuesThatARunIsGiven) {
 
 TEST_F(App, TellsItsVersionAndHowToUseIt) {
   EXPECT_EQ(shell("weft --version").out, WEFT_VERSION "\n");
-  for (const char* command : {"", "run", "demo", "scenes", "check", "verify", "bench", "bench integrators"}) {
+  for (const char* command : {"", "run", "demo", "scenes", "check", "verify"}) {
     const Finished done = shell(std::string("weft ") + command + " --help");
     EXPECT_EQ(done.exit_code, 0) << command;
     EXPECT_TRUE(contains(done.out, "Usage: weft")) << command << done.out;
@@ -422,49 +473,6 @@ TEST_F(App, VerifyRefusesWhatIsNoRun) {
   expect_bad_input("weft verify words.glb", "words.glb: is not a complete .glb file");
   for (const std::string tolerance : {"nan", "inf", "-1", "deep"})
     expect_bad_input("weft verify words.glb --tolerance=" + tolerance, tolerance + " is not a depth");
-}
-
-TEST_F(App, BenchMeasures) {
-  const Finished done =
-      shell("weft bench integrators --sizes 8 --threads 1 --seconds 0.01 --integrators paper");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "paper")) << done.out;
-}
-
-TEST_F(App, BenchFrontierWritesItsPointsAndKeepsItsReferences) {
-  const std::string command =
-      "weft bench frontier --sizes 8 --rings 3 --frames 12 --methods newton,xpbd --cache kept --out results";
-  const Finished done = shell(command);
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "sheet 8²: 64 particles")) << done.out;
-  EXPECT_TRUE(contains(done.out, "disc of 37, at an error of 0.045 m")) << done.out;
-  EXPECT_TRUE(contains(read_text("results/frontier.csv"), "sheet 8²,64,xpbd,\"50 substeps\",")) << done.out;
-  EXPECT_TRUE(contains(read_text("results/frontier.svg"), "<title>newton, default</title>"));
-  EXPECT_TRUE(contains(done.err, "computing the reference")) << done.err;
-  EXPECT_EQ(shell(command).err, "") << "the second time it reads what it has kept";
-  expect_bad_input("weft bench frontier --methods magic", "magic");
-}
-
-TEST_F(App, BenchScalingFitsAnExponent) {
-  const Finished done = shell("weft bench scaling --sizes 4,8 --threads 1 --steps 2");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "| 64 |")) << done.out;
-  EXPECT_TRUE(contains(done.out, "1 thread: time grows like n^")) << done.out;
-}
-
-TEST_F(App, BenchRandomCountsWhatWentWrong) {
-  const Finished done = shell("weft bench random --scenes 5 --first 86 --steps 20");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.out, "newton, 5 scenes of 20 steps: 0 became infinite")) << done.out;
-}
-
-TEST_F(App, BenchComparesWaysToFindPairs) {
-  const Finished done =
-      shell("weft bench collision --sizes 200,1000 --cells 4 --threads 1,2 --seconds 0.001");
-  EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
-  for (const char* word : {"rest", "folded", "heap", "sheets"})
-    EXPECT_TRUE(contains(done.out, word)) << done.out;
-  EXPECT_FALSE(contains(done.out, "ERROR")) << done.out;
 }
 
 }  // namespace

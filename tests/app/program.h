@@ -7,18 +7,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "tests/read_text.h"
 
 namespace weft::engine {
 
 namespace fs = std::filesystem;
-
-inline std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 inline nlohmann::json read_json(const fs::path& file) { return nlohmann::json::parse(read_text(file)); }
 

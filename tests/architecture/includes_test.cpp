@@ -1,4 +1,4 @@
-/// Rule of ARCHITECTURE.md: includes only point down.
+/// Rules of includes: they only point down, and a source begins with its own header.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"core", "geometry", "mesh", "fabric", "model", "forces", "solvers", "animation", "contact",
       "integrators", "world", "face", "verify", "io", "scene"}},
     {"render", {"core", "geometry", "mesh"}},
-    {"pictures", {"core", "geometry", "mesh", "model", "io", "render"}},
+    {"window", {"core", "geometry", "mesh", "render"}},
+    {"pictures",
+     {"core", "geometry", "mesh", "fabric", "model", "forces", "solvers", "animation", "contact",
+      "integrators", "world", "face", "verify", "io", "scene", "run", "render"}},
 };
 
 /// Folders of src/weft from which a file includes.
@@ -67,6 +70,26 @@ TEST(Includes, OnlyPointDown) {
       EXPECT_TRUE(target == folder || kMayInclude.at(folder).contains(target))
           << entry.path() << " includes from " << target << "/, which is not below " << folder << "/";
     }
+  }
+  EXPECT_GT(files, 40) << "the test must have looked at the sources";
+}
+
+/// So a header that needs something it does not include fails to compile there.
+TEST(Includes, BeginWithTheSourcesOwnHeader) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"](.*)[>"])");
+  const fs::path source_dir = fs::path(WEFT_SOURCE_DIR) / "src";
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(source_dir / "weft")) {
+    const fs::path header = fs::path(entry.path()).replace_extension(".h");
+    if (entry.path().extension() != ".cpp" || !fs::exists(header)) continue;
+    ++files;
+    std::ifstream in(entry.path());
+    std::smatch match;
+    std::string line;
+    while (std::getline(in, line) && !std::regex_search(line, match, kInclude)) {
+    }
+    ASSERT_FALSE(match.empty()) << entry.path();
+    EXPECT_EQ(match[1], fs::relative(header, source_dir).string()) << entry.path();
   }
   EXPECT_GT(files, 40) << "the test must have looked at the sources";
 }

@@ -25,5 +25,17 @@ TEST(SinCosDeg, AgreesWithTheCLibraryToRounding) {
   }
 }
 
+TEST(FindAngleDeg, AgreesWithTheCLibraryToRounding) {
+  for (double angle = 0; angle <= 90; angle += 0.037) {
+    const double radians = angle * 3.14159265358979323846 / 180;
+    const double y = 2 * std::sin(radians), x = 2 * std::cos(radians);
+    const double expected = std::atan2(y, x) * 180 / 3.14159265358979323846;
+    EXPECT_NEAR(find_angle_deg(y, x), expected, 1e-15 * expected) << angle;  // some five roundings of 1.1e-16
+  }
+  EXPECT_EQ(find_angle_deg(0, 3), 0);
+  EXPECT_NEAR(find_angle_deg(3, 0), 90, 3e-14);
+  EXPECT_NEAR(find_angle_deg(1e-9, 1), 1e-9 * 180 / 3.14159265358979323846, 1e-22);
+}
+
 }  // namespace
 }  // namespace weft::engine

@@ -52,6 +52,58 @@ TEST(WorldBatch, RefusesWhatCannotBe) {
   EXPECT_TRUE(batch.step(kStep).empty());
 }
 
+TEST(WorldBatch, CallsAroundAStepSeeTheirWorld) {
+  for (const int threads : {1, 3}) {
+    WorldBatch batch(make_jobs(threads));
+    for (int n = 0; n < 5; ++n) batch.add(make_world(n));
+    std::vector<double> before(5, -1), after(5, -1);
+    const BatchCalls calls{
+        .before = [&](int n, World& world) { before[n] = world.time(); },
+        .after = [&](int n, World& world,
+                     const StepReport& report) { after[n] = report.ok ? world.time() : 0; }};
+    batch.step(kStep, calls);
+    EXPECT_EQ(before, std::vector<double>(5, 0));
+    EXPECT_EQ(after, std::vector<double>(5, kStep));
+
+    // The first error leaves when all worlds have had their turn.
+    const BatchCalls failing{.before = [](int n, World&) {
+      if (n == 1 || n == 3) throw InputError("world " + std::to_string(n));
+    }};
+    try {
+      batch.step(kStep, failing);
+      ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), "world 1");
+    }
+    for (const int n : {0, 2, 4}) EXPECT_EQ(batch[n].time(), 2 * kStep);
+    for (const int n : {1, 3}) EXPECT_EQ(batch[n].time(), kStep);
+  }
+}
+
+TEST(WorldBatch, ResetReturnsWorldsToTheirStartBitByBit) {
+  WorldBatch batch(make_jobs(2));
+  std::vector<std::uint64_t> start, end;
+  for (int n = 0; n < 4; ++n) batch.add(make_world(n));
+  for (int n = 0; n < 4; ++n) start.push_back(batch[n].state_hash());
+  for (int s = 0; s < 15; ++s) batch.step(kStep);
+  for (int n = 0; n < 4; ++n) end.push_back(batch[n].state_hash());
+  const std::vector<int> some = {3, 1, 3};
+  batch.reset(some);
+  EXPECT_EQ(batch[1].state_hash(), start[1]);
+  EXPECT_EQ(batch[3].state_hash(), start[3]);
+  EXPECT_EQ(batch[0].state_hash(), end[0]);
+  for (int s = 0; s < 15; ++s) batch.step(kStep);
+  EXPECT_EQ(batch[1].state_hash(), end[1]);
+  EXPECT_EQ(batch[3].state_hash(), end[3]);
+  EXPECT_NE(batch[0].state_hash(), end[0]);
+
+  const std::vector<int> wrong = {0, 4};
+  EXPECT_THROW(batch.reset(wrong), InputError);
+  batch[2].remove(batch[2].collider(0));
+  const std::vector<int> changed = {2};
+  EXPECT_THROW(batch.reset(changed), InputError);
+}
+
 /// The thread rules of world.h: different worlds concurrently, and const calls on one.
 TEST(SameBitsThreads, WorldsRunBesideEachOther) {
   World original = make_world(1);

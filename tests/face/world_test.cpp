@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <type_traits>
 
 #include "weft/weft.h"
@@ -154,6 +155,179 @@ TEST(Face, PinnedParticlesGoWhereTheyAreMoved) {
   EXPECT_LT(distance(world.positions(sheet)[0], there), 1e-6) << "they stay";
   EXPECT_LT(length(world.velocities(sheet)[0]), 1e-6);
   EXPECT_THROW(world.move_pins(sheet, {{0, 0, 0}}), InputError);
+}
+
+/// Positions as World::offsets() gives them.
+std::vector<Vec3> read(const ClothOffsets& offsets) {
+  const float* x = offsets.data.get();
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < offsets.num_particles; ++i)
+    result.push_back(offsets.origin + Vec3{x[i], x[offsets.stride + i], x[2 * offsets.stride + i]});
+  return result;
+}
+
+TEST(Face, OffsetsShowTheNewestStateInOnePlace) {
+  World world;
+  const ClothId sheet = hang_sheet(world);
+  const ClothOffsets first = world.offsets(sheet);
+  const auto expect_shown = [&](const char* after) {
+    const ClothOffsets now = world.offsets(sheet);
+    EXPECT_EQ(now.data.get(), first.data.get()) << after;
+    EXPECT_EQ(now.stride, first.stride) << after;
+    const std::vector<Vec3> shown = read({first.data, first.num_particles, first.stride, now.origin});
+    EXPECT_EQ(shown, world.positions(sheet)) << after;
+  };
+  expect_shown("add_cloth");
+  const Snapshot start = world.snapshot();
+  step(world, 3);
+  expect_shown("step");
+  world.set_division({.enabled = true, .shortest = 1e-3});
+  world.add_collider({.shape = Sphere{.radius = 0.1}, .pose = {{-0.2, -0.1, 0}, {}}});
+  step(world, 30);
+  expect_shown("steps in contact");
+  world.set_positions(sheet, std::vector<Vec3>(first.num_particles, {0.25, 0.5, 1}));
+  expect_shown("set_positions");
+  world.remove(world.collider(0));
+  world.restore(start);
+  expect_shown("restore");
+  world.teleport(sheet, {{100, 0, 3}, {}});
+  expect_shown("teleport");
+  world.set_fabric(sheet, kSoft);
+  expect_shown("set_fabric");
+  EXPECT_FALSE(world.step(1e30).ok);
+  expect_shown("a step that failed");
+}
+
+TEST(Face, OffsetsOutliveTheirClothAndTheirWorld) {
+  std::optional<World> world(std::in_place);
+  const ClothId sheet = hang_sheet(*world);
+  step(*world, 3);
+  const ClothOffsets offsets = world->offsets(sheet);
+  const std::vector<Vec3> expected = world->positions(sheet);
+  world->remove(sheet);
+  hang_sheet(*world);
+  step(*world, 3);
+  EXPECT_EQ(read(offsets), expected);
+  world.reset();
+  EXPECT_EQ(read(offsets), expected);
+}
+
+TEST(Face, PinsAreAddedAndReleasedOneByOne) {
+  World together, apart;
+  const ClothId a = hang_sheet(together), b = hang_sheet(apart);
+  apart.set_pins(b, {});
+  apart.add_pin(b, {.particles = {156}});
+  apart.add_pin(b, {.particles = {80}, .stiffness = 50});
+  apart.add_pin(b, {.particles = {0, 12}});
+  EXPECT_EQ(apart.pinned_particles(b), (std::vector{156, 80, 0, 12}));
+  apart.unpin(b, {12, 80});
+  EXPECT_EQ(apart.pinned_particles(b), (std::vector{156, 0}));
+  EXPECT_EQ(together.pinned_particles(a), (std::vector{0, 156}));
+  step(together, 8);
+  step(apart, 8);
+  EXPECT_EQ(apart.state_hash(), together.state_hash()) << "as if pinned at once";
+
+  expect_contains(error_of([&] { apart.add_pin(b, {.particles = {3, 0}}); }), "particle 0 is pinned twice");
+  expect_contains(error_of([&] { apart.add_pin(b, {.particles = {169}}); }),
+                  "there is no particle 169 to pin");
+  expect_contains(error_of([&] { apart.unpin(b, {0, 7}); }), "particle 7 is not pinned");
+  EXPECT_EQ(apart.pinned_particles(b), (std::vector{156, 0})) << "an error changes nothing";
+  apart.unpin(b, {0, 156});
+  const double height = apart.center_of_mass(b).y;
+  step(apart, 32);
+  EXPECT_LT(apart.center_of_mass(b).y, height - 0.5) << "it falls";
+}
+
+TEST(Face, APinThatIsAddedLeavesTheMotionOfTheOthers) {
+  World world;
+  const ClothId sheet = hang_sheet(world);
+  const std::vector<Vec3> start = world.positions(sheet);
+  world.set_pins(sheet,
+                 {{.particles = {0}, .motion = {{.time = 0}, {.time = 1, .translation = {0.2, 0, 0}}}}});
+  world.add_pin(sheet, {.particles = {156}});
+  world.add_pin(sheet, {.particles = {12}, .stiffness = 1000});
+  step(world, 32);
+  const std::vector<Vec3> now = world.positions(sheet);
+  EXPECT_LT(distance(now[0], start[0] + Vec3{0.1, 0, 0}), 1e-6);
+  EXPECT_LT(distance(now[156], start[156]), 1e-6);
+  world.move_pins(sheet, {156}, {start[156]});  // replaces the key frames
+  expect_contains(error_of([&] {
+                    world.add_pin(sheet, {.particles = {5}, .motion = {{.time = 0}, {.time = 1}}});
+                  }),
+                  "which a pin with motion cannot join");
+}
+
+TEST(Face, SomePinsAreMovedAndTheOthersStay) {
+  World world;
+  const ClothId sheet = hang_sheet(world);
+  const std::vector<Vec3> start = world.positions(sheet);
+  const Vec3 way{0.05, 0, 0}, other_way{0, 0.02, 0};
+  world.move_pins(sheet, {156}, {start[156] + way});
+  world.move_pins(sheet, {0}, {start[0] + other_way});  // before the same step
+  step(world, 1);
+  EXPECT_LT(distance(world.positions(sheet)[156], start[156] + way), 1e-6);
+  EXPECT_LT(distance(world.positions(sheet)[0], start[0] + other_way), 1e-6);
+  world.move_pins(sheet, {0}, {start[0]});
+  step(world, 1);
+  EXPECT_LT(distance(world.positions(sheet)[156], start[156] + way), 1e-6) << "stays";
+  EXPECT_LT(distance(world.positions(sheet)[0], start[0]), 1e-6);
+  expect_contains(error_of([&] { world.move_pins(sheet, {3}, {start[3]}); }), "particle 3 is not pinned");
+  expect_contains(error_of([&] { world.move_pins(sheet, {0, 156}, {start[0]}); }), "a target for each of 2");
+}
+
+TEST(Face, SettingsAreReadAsTheyWereSet) {
+  World world;
+  const ClothId sheet = world.add_cloth({.name = "sheet",
+                                         .shape = square(4, 0.5),
+                                         .fabric = find_fabric("denim"),
+                                         .pose = {{1, 2, 3}, rotation_about({0, 1, 0}, 30)}});
+  world.set_gravity({0, 0, -1.62});
+  world.set_wind({.velocity = {3, 0, 1}, .air = Air{.density = 1.1}});
+  world.set_integrator({.integrator = "implicit_euler"});
+  world.set_division({.enabled = false, .shortest = 0.001});
+  world.set_contact({.enabled = true, .tracks_points = true});
+  EXPECT_EQ(world.gravity(), (Vec3{0, 0, -1.62}));
+  EXPECT_EQ(world.wind().velocity, (Vec3{3, 0, 1}));
+  EXPECT_EQ(world.wind().air.density, 1.1);
+  EXPECT_EQ(world.integrator().integrator, "implicit_euler");
+  EXPECT_EQ(world.division().shortest, 0.001);
+  EXPECT_TRUE(world.contact().tracks_points);
+  EXPECT_EQ(world.description(sheet).name, "sheet");
+  world.set_fabric(sheet, find_fabric("silk"));
+  EXPECT_EQ(std::get<Fabric>(world.description(sheet).fabric).density, find_fabric("silk").density);
+  const World loaded = World::load(world.save());
+  EXPECT_EQ(loaded.gravity(), world.gravity());
+  EXPECT_EQ(loaded.integrator().integrator, "implicit_euler");
+  EXPECT_EQ(loaded.wind().air.density, 1.1);
+
+  const std::vector<Vec3> rest = world.rest_positions(sheet);
+  ASSERT_EQ(rest.size(), 25u);
+  EXPECT_LT(distance(rest[24], {0.5, 0, 0.5}), 1e-7) << "in the cloth's own coordinates";
+}
+
+TEST(Face, TextureCoordinatesAreThoseThatWereGiven) {
+  World world;
+  TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}},
+                    .triangles = {{0, 2, 1}, {1, 2, 3}}};
+  mesh.uv = {{{{0, 0}, {0, 1}, {1, 0}}}, {{{1, 0}, {0, 1}, {1, 1}}}};
+  const ClothId sheet = world.add_cloth({.shape = mesh, .fabric = find_fabric("denim")});
+  ASSERT_EQ(world.uv(sheet).size(), 2u);
+  EXPECT_EQ(world.uv(sheet), mesh.uv);
+}
+
+TEST(Face, ForcesOfAllKindsAreTheirSum) {
+  World world;
+  const ClothId sheet = hang_sheet(world);
+  world.set_wind({.velocity = {2, 0, 1}, .drag = 0.3});
+  world.set_forces(sheet, std::vector<Vec3>(169, {0, 1e-3, 0}));
+  step(world, 8);
+  std::vector<Vec3> sum(169);
+  for (const ForceKind kind : {ForceKind::gravity, ForceKind::elastic, ForceKind::damping, ForceKind::wind,
+                               ForceKind::external, ForceKind::contact}) {
+    const std::vector<Vec3> force = world.forces(sheet, kind);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + force[i];
+  }
+  EXPECT_EQ(world.forces(sheet), sum);
 }
 
 TEST(Face, SoftPinsStretchByTheirForceOverTheirStiffness) {
@@ -380,6 +554,44 @@ TEST(Face, SnapshotsHoldTargetsAndKnowTheirWorld) {
   EXPECT_THROW(other.restore(Snapshot()), InputError);
 }
 
+TEST(Face, PositionsThatAreSetToThemselvesKeepTheHash) {
+  World world;
+  world.set_integrator({.integrator = "implicit_euler"});  // without a history, which a jump ends
+  const ClothId sheet = world.add_cloth({.shape = square(11, 1), .pose = {{-0.5, 0.51, -0.5}, {}}});
+  step(world, 1);  // its middle moves from 0 to a small negative number: the origin would be −0
+  const std::uint64_t expected = world.state_hash();
+  world.set_positions(sheet, world.positions(sheet));
+  EXPECT_EQ(world.state_hash(), expected);
+}
+
+TEST(Face, SnapshotsFromBeforeAColliderAreRefused) {
+  World world;
+  hang_sheet(world);
+  const Snapshot before = world.snapshot();
+  world.add_collider({.shape = Plane{}, .pose = {{0, -2, 0}, {}}});
+  expect_contains(error_of([&] { world.restore(before); }), "different numbers of colliders");
+}
+
+TEST(Face, MessagesHaveTheOwnerAndTheNumbersThatWereGiven) {
+  World world;
+  const double kInf = std::numeric_limits<double>::infinity();
+  const Pose turned{{1, 2, 3}, rotation_about({0, 0, 1}, 30)};
+  expect_contains(error_of([&] {
+                    world.add_collider({.shape = Sphere{.center = {kInf, 1, 0}}, .pose = turned});
+                  }),
+                  "collider \"collider\": its centre must be finite, not (inf, 1, 0)");
+  expect_contains(
+      error_of([&] {
+        world.add_collider({.name = "ball", .shape = Sphere{}, .motion = {{1, {}, {}}, {0, {}, {}}}});
+      }),
+      "collider \"ball\": key frame 1 is not later");
+  const ClothId sheet = hang_sheet(world);
+  expect_contains(error_of([&] {
+                    world.add_pin(sheet, {.particles = {5}, .motion = {{1, {}, {}}, {0, {}, {}}}});
+                  }),
+                  "cloth \"cloth\": key frame 1 is not later");
+}
+
 TEST(Face, IdsThatAreOfNothingAreNamed) {
   World world, other;
   const ClothId sheet = hang_sheet(world);
@@ -397,6 +609,8 @@ TEST(Face, WhatCannotBeIsRefusedAndChangesNothing) {
   const ClothId sheet = hang_sheet(world, 4);
   const ColliderId ball = world.add_collider({.name = "ball", .shape = Sphere{}, .pose = {{-3, 0, 0}, {}}});
   const TriangleMesh beyond{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {{0, 1, 3}}};
+  const ClothId triangles = world.add_cloth({.shape = square(4, 0.5), .pose = {{5, 0, 0}, {}}});
+  const Mat3 twice{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, mirror{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   const std::vector<std::byte> before = world.save();
   const std::vector<std::function<void()>> calls = {
       [&] { world.add_cloth({.shape = TriangleMesh{}}); },
@@ -452,9 +666,53 @@ TEST(Face, WhatCannotBeIsRefusedAndChangesNothing) {
       [&] {
         world.stiffen(sheet, {0, 1}, -2);
       },
+      [&] {
+        world.stiffen(triangles, {0, 1}, 2);
+      },
+      // Numbers that floats cannot hold.
+      [&] {
+        std::vector<Vec3> positions = world.positions(sheet);
+        positions[0].x = 1e300;
+        world.set_positions(sheet, positions);
+      },
+      [&] {
+        world.set_velocities(sheet, std::vector<Vec3>(25, {0, 1e300, 0}));
+      },
+      [&] {
+        world.teleport(sheet, {{0, 1e300, 0}, {}});
+      },
+      [&] {
+        world.move_pins(sheet, {{1e300, 0, 0}, {0, 0, 0}});
+      },
+      // Rotations that stretch or mirror.
+      [&] {
+        world.add_cloth({.pose = {{}, twice}});
+      },
+      [&] {
+        world.add_cloth({.pose = {{}, mirror}});
+      },
+      [&] {
+        world.add_collider({.shape = Sphere{}, .pose = {{}, twice}});
+      },
+      [&] {
+        world.add_collider({.shape = Plane{}, .pose = {{}, mirror}});
+      },
+      // Settings out of their range.
+      [&] { world.add_cloth({.weld = -1}); },
+      [&] { world.add_cloth({.sew = -1}); },
+      [&] {
+        world.add_cloth({.warp = Vec3{0, 0, 0}});
+      },
+      [&] { world.set_integrator({.newton = {.iterations = -5}}); },
+      [&] { world.set_integrator({.explicit_euler = {.substeps = -1}}); },
+      [&] { world.set_integrator({.xpbd = {.substeps = 0}}); },
+      [&] { world.set_integrator({.implicit_euler = {.iterations = 0}}); },
+      [&] { world.set_integrator({.implicit_euler = {.tolerance = kNan}}); },
+      [&] { world.set_wind({.gusts = {.strength = -1}}); },
+      [&] { world.set_wind({.gusts = {.strength = kNan}}); },
       [&] { world.step(0); },
       [&] { world.step(kNan); },
-      [&] { world.cloth(1); },
+      [&] { world.cloth(2); },
       [&] { world.cast_ray({}, {}); },
       [&] {
         world.closest_point({kNan, 0, 0});

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
     weft::engine::parse_scene(text, "fuzz.toml", find_overrides(text));
-  } catch (const weft::engine::SceneError&) {
+  } catch (const weft::SceneError&) {
   }
   return 0;
 }

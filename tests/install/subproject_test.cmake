@@ -23,5 +23,6 @@ endfunction()
 
 set(tools GTest CLI11 fmt)
 check_subproject(whole "weft_all weft_core weft_io weft_scene" "${tools}")
+check_subproject(pictures "weft_all weft_core weft_io weft_pictures weft_render weft_scene" "${tools};glfw3" -DWEFT_BUILD_RENDER=ON)
 check_subproject(engine "weft_core" "${tools};TinyGLTF;tomlplusplus;nlohmann_json" -DWEFT_BUILD_SCENE=OFF)
 check_subproject(serial "weft_core" "${tools};TBB" -DWEFT_BUILD_SCENE=OFF -DWEFT_WITH_TBB=OFF)

@@ -156,7 +156,7 @@ std::uint64_t hash_after(const std::shared_ptr<const ClothTopology>& topology, i
   Hung sheet(topology, cells, {.damping = 1e-3});
   const auto jobs = make_jobs(threads);
   const auto integrator = newton();
-  for (int s = 0; s < 5; ++s)
+  for (int s = 0; s < 3; ++s)
     integrator->advance(*sheet.model, sheet.environment, 1.0 / 60, *jobs, sheet.state);
   Hash hash;
   add_to_hash(sheet.state, hash);
@@ -175,6 +175,9 @@ TEST(Newton, HasTheSameBitsForAnyNumberOfThreadsAndEveryVectorWidth) {
       limit_simd_level(best_simd_level());
     }
   }
+}
+
+TEST(Newton, HasTheSameBitsOnMeshesToo) {
   const auto mesh = test::mesh_of(square(101));
   const std::uint64_t hash = hash_after(mesh, 101, 1);
   EXPECT_EQ(hash, hash_after(mesh, 101, 3));

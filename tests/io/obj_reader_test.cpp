@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <random>
+#include <set>
 #include <string>
 
 #include "weft/core/angle.h"
@@ -93,18 +95,20 @@ TEST(ObjReader, TakesAnyLayoutOfLines) {
 }
 
 TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
-  const ObjMesh known = parse_obj("mtllib a.mtl\no a\ng b\ns off\nusemtl c\nusemap d\nvn 0 0 1\nvt 0 0\n" +
-                                      kFourVertices + "f 1 2 3\nl 1 2\np 1\n",
-                                  "x.obj");
+  const MeshFromFile known =
+      parse_obj("mtllib a.mtl\no a\ng b\ns off\nusemtl c\nusemap d\nvn 0 0 1\nvt 0 0\n" + kFourVertices +
+                    "f 1 2 3\nl 1 2\np 1\n",
+                "x.obj");
   EXPECT_TRUE(known.warnings.empty());
 
   // As in the garment files of Berkeley: `t` is not a face, `vv` not a vertex.
-  const ObjMesh garment = parse_obj("v 0 0 0\nvv 0 0 0\nv 1 0 0\nvv 1 0 0\nv 0 1 0\nf 1 2 3\nt 0\n", "x.obj");
+  const MeshFromFile garment =
+      parse_obj("v 0 0 0\nvv 0 0 0\nv 1 0 0\nvv 1 0 0\nv 0 1 0\nf 1 2 3\nt 0\n", "x.obj");
   EXPECT_TRUE(garment.warnings.empty());
   EXPECT_EQ(garment.mesh.num_vertices(), 3);
   EXPECT_EQ(garment.mesh.num_triangles(), 1);
 
-  const ObjMesh other = parse_obj("v 0 0 0\nw 0\nv 1 0 0\nw 0\nv 0 1 0\nf 1 2 3\ncurv 0\n", "x.obj");
+  const MeshFromFile other = parse_obj("v 0 0 0\nw 0\nv 1 0 0\nw 0\nv 0 1 0\nf 1 2 3\ncurv 0\n", "x.obj");
   ASSERT_EQ(other.warnings.size(), 2u);
   EXPECT_EQ(other.warnings[0], "x.obj:7: unknown keyword 'curv' was ignored; it begins 1 lines");
   EXPECT_EQ(other.warnings[1], "x.obj:2: unknown keyword 'w' was ignored; it begins 2 lines");
@@ -162,6 +166,26 @@ TEST(ObjReader, CutsPolygonsWithStraightCornersIntoTrianglesWithArea) {
   for (int t = 0; t < mesh.num_triangles(); ++t) EXPECT_GT(triangle_area(mesh, t), 0.1);
 }
 
+TEST(ObjReader, KeepsBothTextureCoordinatesOfAVertexThatAPolygonVisitsTwice) {
+  // A square with a square hole, cut open between vertices 1 and 5; u is the number of the corner.
+  std::string text =
+      "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\n"
+      "f 1/1 2/2 3/3 4/4 1/5 5/6 8/7 7/8 6/9 5/10\n";
+  for (int k = 0; k < 10; ++k) text += "vt " + std::to_string(k) + " 0\n";
+  const MeshFromFile read = parse_obj(text, "x.obj");
+  EXPECT_DOUBLE_EQ(total_area(read.mesh), 8);
+  const std::array<int, 10> vertices = {0, 1, 2, 3, 0, 4, 7, 6, 5, 4};
+  std::set<int> corners;
+  for (std::size_t t = 0; t < read.uv.size(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      const int corner = static_cast<int>(read.uv[t][c].x());
+      EXPECT_EQ(read.mesh.triangles[t][c], vertices[corner]);
+      corners.insert(corner);
+    }
+  }
+  EXPECT_EQ(corners.size(), 10u);
+}
+
 TEST(ObjReader, SurvivesPolygonsThatAreNone) {
   EXPECT_EQ(parse(kFourVertices + "f 1 1 1 1 1\n").num_triangles(), 3);    // one point
   EXPECT_EQ(parse(kFourVertices + "f 1 2 1 2 1 2\n").num_triangles(), 4);  // one edge
@@ -184,6 +208,7 @@ TEST(ObjReader, NamesTheLineOfWhatItRefuses) {
       {kFourVertices + "f 1 2 \\\n\n", "x.obj:5: a face with 2 vertices"},
       {kFourVertices + "f 1 2 5\n", "x.obj:5: vertex 5 does not exist; expected at most 4"},
       {kFourVertices + "f 1 2 -5\n", "x.obj:5: vertex -5 does not exist; 4 vertices come before this face"},
+      {"v 0 0 \x80.\x01\n", "x.obj:1: '?.?' is not a coordinate"},
       {kFourVertices + "f 0 1 2\n", "x.obj:5: '0' is not a vertex of a face"},
       {kFourVertices + "f 1 2 x\n", "x.obj:5: 'x' is not a vertex of a face"},
       {kFourVertices + "f 1 2 /3\n", "x.obj:5: '/3' is not a vertex of a face"},
@@ -231,7 +256,7 @@ TEST(ObjWriter, WritesWhatReadsBackToTheLastBit) {
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
   const std::string file = testing::TempDir() + "weft_round_trip.obj";
   write_obj(file, mesh);
-  const ObjMesh read = read_obj(file);
+  const MeshFromFile read = read_obj(file);
   EXPECT_EQ(read.mesh.positions, mesh.positions);
   EXPECT_EQ(read.mesh.triangles, mesh.triangles);
   EXPECT_TRUE(read.warnings.empty());

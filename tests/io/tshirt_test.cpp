@@ -10,7 +10,7 @@
 namespace weft::engine {
 namespace {
 
-ObjMesh read_tshirt() { return read_obj(WEFT_SOURCE_DIR "/scenes/garments/tshirt.obj"); }
+MeshFromFile read_tshirt() { return read_obj(WEFT_SOURCE_DIR "/scenes/garments/tshirt.obj"); }
 
 TriangleMesh sew_tshirt() { return clean_mesh(read_tshirt().mesh, {.weld_distance = 1e-6}).mesh; }
 
@@ -29,7 +29,7 @@ int count_components(int num_vertices, const std::vector<std::pair<int, int>>& e
 }
 
 TEST(TShirt, ReadsWithoutWarningsAsTwoPanels) {
-  const ObjMesh shirt = read_tshirt();
+  const MeshFromFile shirt = read_tshirt();
   EXPECT_TRUE(shirt.warnings.empty());
   std::vector<std::pair<int, int>> edges;
   for (const Edge& edge : build_edges(shirt.mesh)) edges.push_back({edge.a, edge.b});

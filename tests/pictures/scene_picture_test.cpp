@@ -43,6 +43,24 @@ TEST(ScenePictures, DrawALevelPlaneAsGroundAtItsHeight) {
   EXPECT_EQ(picture.meshes.size(), animation.cloths.size() + animation.bodies.size() - 1);
 }
 
+TEST(ScenePictures, SayWhatTheirMeshesShow) {
+  Animation animation = simulate("contact/rotating_ball", 1);
+  const ScenePictures pictures(animation);
+  const std::vector<int> shown = pictures.shown();
+  const std::vector<DrawnMesh> meshes = pictures.at(0, {}).meshes;
+  ASSERT_EQ(shown.size(), meshes.size() + 1) << "the ground comes last";
+  const int num_cloths = static_cast<int>(animation.cloths.size());
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    EXPECT_EQ(meshes[m].triangles, shown[m] < num_cloths
+                                       ? animation.cloths[shown[m]].triangles
+                                       : animation.bodies[shown[m] - num_cloths].mesh.triangles);
+  }
+  const AnimatedBody& floor = animation.bodies[shown.back() - num_cloths];
+  EXPECT_TRUE(floor.shape && std::holds_alternative<Plane>(*floor.shape));
+  animation.bodies.clear();
+  EXPECT_EQ(ScenePictures(animation).shown().back(), -1) << "a ground below all frames is no body";
+}
+
 TEST(ScenePictures, DrawEverySpringAsAskedFor) {
   const Animation animation = simulate("paper/fig3_horizontal", 1);
   const auto topology =

@@ -8,6 +8,7 @@
 
 #include "weft/core/angle.h"
 #include "weft/error.h"
+#include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
@@ -177,6 +178,34 @@ file = "body.obj"
   const std::filesystem::path folder_ =
       std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
 };
+
+TEST_F(MeshCollider, AndClothAreReadFromPlyAndStlToo) {
+  const TriangleMesh cloth = build_grid_mesh({.cells_x = 2, .cells_z = 2}, GridDiagonals::alternating);
+  write_mesh(folder_ / "cloth.obj", cloth);
+  write_mesh(folder_ / "cloth.PLY", cloth);
+  write_mesh(folder_ / "body.obj", box());
+  std::ofstream stl(folder_ / "body.stl");
+  stl << "solid box\n";
+  for (const Triangle& t : box().triangles) {
+    stl << "facet normal 0 0 0\nouter loop\n";
+    for (const int v : t) stl << "vertex " << box().positions[v].transpose() << '\n';
+    stl << "endloop\nendfacet\n";
+  }
+  stl << "endsolid box\n";
+  stl.close();
+  const auto build_from = [&](const std::string& cloth_file, const std::string& body_file) {
+    return build_world(parse_scene("[scene]\nformat = 1\n[[cloth]]\nmesh = \"" + cloth_file +
+                                       "\"\nposition = [0, 5, 0]\n[[collider]]\nshape = \"mesh\"\nfile = \"" +
+                                       body_file + "\"\n",
+                                   folder_ / "scene.toml"),
+                       make_serial_jobs());
+  };
+  const SceneWorld obj = build_from("cloth.obj", "body.obj"), others = build_from("cloth.PLY", "body.stl");
+  EXPECT_EQ(positions_of(others.world.state(others.world.cloth(0))),
+            positions_of(obj.world.state(obj.world.cloth(0))));
+  EXPECT_EQ(shape(others).mesh->num_vertices(), 8);
+  EXPECT_NEAR(compute_signed_volume(*shape(others).mesh), compute_signed_volume(*shape(obj).mesh), 1e-15);
+}
 
 bool warns(const SceneWorld& built, const std::string& words) {
   return std::any_of(built.warnings.begin(), built.warnings.end(),

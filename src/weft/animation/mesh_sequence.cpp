@@ -19,6 +19,12 @@ MeshSequence::MeshSequence(std::vector<Key> keys) : keys_(std::move(keys)) {
   }
 }
 
+void MeshSequence::evaluate(double time, std::vector<Vec3>& positions) const {
+  const Blend blend = at(time);
+  positions.resize(keys_[0].positions.size());
+  for (int v = 0; v < num_vertices(); ++v) positions[v] = position(blend, v);
+}
+
 MeshSequence::Blend MeshSequence::at(double time) const {
   const auto next = std::upper_bound(keys_.begin(), keys_.end(), time,
                                      [](double t, const Key& key) { return t < key.time; });

@@ -3,12 +3,13 @@
 
 #include <vector>
 
+#include "weft/animation/vertex_source.h"
 #include "weft/core/vec.h"
 
 namespace weft::engine {
 
 /// Vertices move linearly between keys and are fixed before the first and after the last.
-class MeshSequence {
+class MeshSequence final : public VertexSource {
  public:
   struct Key {
     double time = 0;              // [s]
@@ -25,7 +26,8 @@ class MeshSequence {
   /// number of vertices.
   explicit MeshSequence(std::vector<Key> keys);
 
-  int num_vertices() const { return static_cast<int>(keys_[0].positions.size()); }
+  int num_vertices() const override { return static_cast<int>(keys_[0].positions.size()); }
+  void evaluate(double time, std::vector<Vec3>& positions) const override;
   const std::vector<Key>& keys() const { return keys_; }
 
   Blend at(double time) const;

@@ -256,7 +256,7 @@ bool ClothClearance::is_flat(Cloth& cloth, int level, Place a, Place b) {
                           8 * cloth.rounding * std::max(scale_x, scale_z) + kRoundingOfGradient;
   const float least_stretch = find_least_stretch(scale_x * (all.across_min + all.across_max),
                                                  scale_z * (all.along_min + all.along_max));
-  return (least_stretch - deviation) * (cell_x * cell_z / std::hypot(cell_x, cell_z)) > cloth.gap;
+  return (least_stretch - deviation) * (cell_x * cell_z / std::sqrt(cell_x * cell_x + cell_z * cell_z)) > cloth.gap;
 }
 
 /// Returns false if there are too many pairs.

@@ -164,7 +164,7 @@ void Patches::add_grid(const Surface& surface, const Grid& grid, int first_verte
   num_cloth_ = size();
   const int columns = (grid.cells_x + kCellsPerPatch - 1) / kCellsPerPatch,
             rows = (grid.cells_z + kCellsPerPatch - 1) / kCellsPerPatch;
-  const auto least = static_cast<float>(x * z / std::hypot(x, z));
+  const auto least = static_cast<float>(x * z / std::sqrt(x * x + z * z));
   const Window window{true, least, 1, least, 1};
   for (int j = 0; j < std::max(1, rows - 1); ++j) {
     for (int i = 0; i < std::max(1, columns - 1); ++i) {

@@ -6,6 +6,7 @@ namespace weft::engine {
 namespace {
 
 constexpr double kRadiansPerDegree = 0.017453292519943295;
+constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // Taylor series; |x| <= pi/4 makes the first dropped term smaller than 1e-18.
 double sin_series(double x) {
@@ -39,6 +40,17 @@ SinCos sin_cos_deg(double angle_deg) {
     default:
       return {-c, s};
   }
+}
+
+/// The half-angle formula tan(a/2) = tan(a) / (1 + √(1 + tan² a)) reduces the angle to a sixteenth. Its
+/// tangent below 0.1 makes the first dropped term of the Taylor series smaller than 1e-20.
+double find_angle_deg(double y, double x) {
+  double tangent = y / (std::sqrt(x * x + y * y) + x);
+  for (int halving = 0; halving < 3; ++halving) tangent /= 1 + std::sqrt(1 + tangent * tangent);
+  const double t2 = tangent * tangent;
+  double sum = 0;
+  for (int n = 19; n >= 3; n -= 2) sum = -t2 * (1.0 / n + sum);
+  return 16 * kDegreesPerRadian * (tangent * (1 + sum));
 }
 
 }  // namespace weft::engine

@@ -1,8 +1,10 @@
 #pragma once
 /// FNV-1a over bytes: small, permanently fixed, sufficient to distinguish two states.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace weft::engine {
 
@@ -25,5 +27,21 @@ class Hash {
  private:
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
+
+/// The hash of a range of plain numbers.
+template <class T>
+std::uint64_t hash_of(std::span<const T> values) {
+  Hash hash;
+  hash.add(values);
+  return hash.value();
+}
+
+/// Sixteen hexadecimal digits.
+inline std::string to_hex(std::uint64_t value) {
+  std::string digits(16, '0');
+  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, value /= 16)
+    *digit = "0123456789abcdef"[value % 16];
+  return digits;
+}
 
 }  // namespace weft::engine

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "weft/error.h"
+#include "weft/fabric/fabric_ranges.h"
 #include "weft/fabric/membrane_law.h"
 
 namespace weft {
@@ -21,6 +22,10 @@ class FabricChecker {
  public:
   void require(bool is_right, const char* field, double value, const std::string& rule) {
     if (!is_right || !std::isfinite(value)) refuse(field, "must be " + rule + ", is " + text(value));
+  }
+
+  void require_range(const engine::FabricRange& range, const char* field, double value) {
+    require(range.contains(value), field, value, std::string(range.words));
   }
 
   void refuse(const std::string& field, const std::string& reason) {
@@ -44,13 +49,10 @@ void check_ranges(const Fabric& f, FabricChecker& checker) {
   checker.require(f.bend_warp >= 0, "bend_warp", f.bend_warp, "0 N·m or above");
   checker.require(f.bend_weft >= 0, "bend_weft", f.bend_weft, "0 N·m or above");
   checker.require(f.bend_bias >= 0, "bend_bias", f.bend_bias, "0 N·m or above");
-  checker.require(f.damping >= 0 && f.damping <= 10, "damping", f.damping,
-                  "from 0 to 10 s (a time constant, not N·s/m)");
-  checker.require(f.thickness >= 1e-6 && f.thickness <= 0.05, "thickness", f.thickness,
-                  "from 1e-6 to 0.05 m");
-  checker.require(f.friction >= 0 && f.friction <= 10, "friction", f.friction, "from 0 to 10");
-  checker.require(f.strain_limit >= 0 && f.strain_limit <= 10, "strain_limit", f.strain_limit,
-                  "from 0 (none) to 10");
+  checker.require_range(engine::kDampingRange, "damping", f.damping);
+  checker.require_range(engine::kThicknessRange, "thickness", f.thickness);
+  checker.require_range(engine::kFrictionRange, "friction", f.friction);
+  checker.require_range(engine::kStrainLimitRange, "strain_limit", f.strain_limit);
 }
 
 /// Relations between the numbers.

@@ -166,6 +166,13 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
 RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes) {
   const std::string mesh_who =
       desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
+  const auto at_least_zero = [&](double value, const char* name) {
+    if (!std::isfinite(value) || value < 0) throw InputError(who + name + " must be 0 m or more");
+  };
+  at_least_zero(desc.weld.value_or(0), "weld");
+  at_least_zero(desc.sew, "sew");
+  if (desc.warp && !(std::isfinite(length(*desc.warp)) && length(*desc.warp) > 0))
+    throw InputError(who + "warp must be a direction, finite and not zero");
   try {
     if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return build_from_grid(desc, *grid, notes);
     RestShape rest = build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);

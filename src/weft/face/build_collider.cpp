@@ -1,9 +1,12 @@
 #include "weft/face/build_collider.h"
 
+#include <optional>
+
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/mesh/clean.h"
 #include "weft/mesh/solid.h"
+#include "weft/world/world_input.h"
 
 namespace weft::engine {
 namespace {
@@ -42,17 +45,17 @@ struct ShapeBuilder {
   const ColliderDesc& desc;
   const std::string& who;
   BuiltCollider& built;
-  Pose pose = to_engine(desc.pose);
+  std::optional<Pose> pose;  // none: in its own coordinates, whose numbers stay as they are
 
-  Vec3 place(const weft::Vec3& p) const { return pose.rotation * to_engine(p) + pose.translation; }
+  Vec3 turn(const weft::Vec3& v) const { return pose ? Vec3(pose->rotation * to_engine(v)) : to_engine(v); }
+  Vec3 place(const weft::Vec3& p) const { return pose ? Vec3(turn(p) + pose->translation) : to_engine(p); }
 
   ColliderShape operator()(const weft::Sphere& s) const { return Sphere{place(s.center), s.radius}; }
-  ColliderShape operator()(const weft::Plane& p) const {
-    return Plane{place(p.point), pose.rotation * to_engine(p.normal)};
-  }
+  ColliderShape operator()(const weft::Plane& p) const { return Plane{place(p.point), turn(p.normal)}; }
   ColliderShape operator()(const weft::Capsule& c) const { return Capsule{place(c.a), place(c.b), c.radius}; }
   ColliderShape operator()(const weft::OrientedBox& b) const {
-    return OrientedBox{place(b.center), to_engine(b.half_size), pose.rotation * to_engine(b.rotation)};
+    const Mat3 own = to_engine(b.rotation);
+    return OrientedBox{place(b.center), to_engine(b.half_size), pose ? Mat3(pose->rotation * own) : own};
   }
 
   ColliderShape operator()(const weft::TriangleMesh& given) const {
@@ -61,8 +64,8 @@ struct ShapeBuilder {
     built.vertex_of_source = std::move(clean.vertex_of_source);
     check_as_solid(clean.mesh, built.warnings);
     MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
-                    .rotation = pose.rotation,
-                    .translation = pose.translation};
+                    .rotation = pose->rotation,
+                    .translation = pose->translation};
     if (!desc.frames.empty()) shape.sequence = make_sequence(shape.mesh->num_vertices());
     return shape;
   }
@@ -93,12 +96,17 @@ struct ShapeBuilder {
 
 BuiltCollider build_collider(const ColliderDesc& desc, const std::string& who) {
   BuiltCollider built;
+  require_valid(to_engine(desc.pose), who);
+  if (!std::holds_alternative<weft::TriangleMesh>(desc.shape)) {
+    const ColliderShape as_given = std::visit(ShapeBuilder{desc, who, built, {}}, desc.shape);
+    require_valid(Collider{.name = desc.name, .shape = as_given});
+  }
   const std::string mesh_who =
       desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
   if (!desc.frames.empty() && !std::holds_alternative<weft::TriangleMesh>(desc.shape))
     throw InputError(who + "only a mesh can have frames");
   try {
-    built.collider.shape = std::visit(ShapeBuilder{desc, who, built}, desc.shape);
+    built.collider.shape = std::visit(ShapeBuilder{desc, who, built, to_engine(desc.pose)}, desc.shape);
   } catch (const InputError& error) {
     throw InputError(mesh_who + error.what());
   }
@@ -106,7 +114,7 @@ BuiltCollider build_collider(const ColliderDesc& desc, const std::string& who) {
   built.collider.name = desc.name;
   built.collider.friction = desc.friction;
   built.collider.static_friction = desc.static_friction;
-  built.collider.motion = RigidMotion(to_engine(desc.motion));
+  built.collider.motion = to_engine(desc.motion, who);
   return built;
 }
 

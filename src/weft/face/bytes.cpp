@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "weft/core/archive.h"
 #include "weft/core/hash.h"
-#include "weft/face/archive.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
 
@@ -231,14 +231,10 @@ void describe(Archive& archive, SavedWorld& w) {
   engine::describe(archive, w.state);
 }
 
-std::uint64_t checksum(std::span<const std::byte> bytes) {
-  engine::Hash hash;
-  hash.add(bytes);
-  return hash.value();
-}
+constexpr std::string_view kWhat = "a saved world";
 
 void require(bool condition) {
-  if (!condition) Reader::fail();
+  if (!condition) Reader({}, kWhat).fail();
 }
 
 bool are_finite(const std::vector<engine::Vec3>& points) {
@@ -370,13 +366,13 @@ std::vector<std::byte> World::save() const {
   writer.plain(kMagic);
   writer.plain(kVersion);
   describe(writer, saved);
-  writer.plain(checksum(writer.bytes));
+  writer.plain(engine::hash_of<std::byte>(writer.bytes));
   return std::move(writer.bytes);
 }
 
 World World::load(std::span<const std::byte> bytes) {
   require(bytes.size() > 2 * sizeof(std::uint32_t) + kChecksum);
-  Reader head(bytes);
+  Reader head(bytes, kWhat);
   std::uint32_t magic = 0, version = 0;
   head.plain(magic);
   head.plain(version);
@@ -385,10 +381,10 @@ World World::load(std::span<const std::byte> bytes) {
     throw InputError("the saved world has format version " + std::to_string(version) +
                      "; this library reads version " + std::to_string(kVersion));
   std::uint64_t sum = 0;
-  Reader(bytes.last(kChecksum)).plain(sum);
-  require(sum == checksum(bytes.first(bytes.size() - kChecksum)));
+  Reader(bytes.last(kChecksum), kWhat).plain(sum);
+  require(sum == engine::hash_of<std::byte>(bytes.first(bytes.size() - kChecksum)));
   Reader reader(
-      bytes.subspan(2 * sizeof(std::uint32_t), bytes.size() - 2 * sizeof(std::uint32_t) - kChecksum));
+      bytes.subspan(2 * sizeof(std::uint32_t), bytes.size() - 2 * sizeof(std::uint32_t) - kChecksum), kWhat);
   SavedWorld saved;
   describe(reader, saved);
   require(reader.left() == 0);

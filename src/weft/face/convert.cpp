@@ -1,12 +1,20 @@
 #include "weft/face/convert.h"
 
+#include <utility>
+
+#include "weft/error.h"
+
 namespace weft::engine {
 
-std::vector<KeyFrame> to_engine(const std::vector<weft::KeyFrame>& keys) {
+RigidMotion to_engine(const std::vector<weft::KeyFrame>& keys, const std::string& who) {
   std::vector<KeyFrame> result;
   for (const weft::KeyFrame& k : keys)
     result.push_back({k.time, to_engine(k.translation), to_engine(k.angles_deg)});
-  return result;
+  try {
+    return RigidMotion(std::move(result));
+  } catch (const InputError& error) {
+    throw InputError(who + error.what());
+  }
 }
 
 std::vector<weft::KeyFrame> from_engine(const std::vector<KeyFrame>& keys) {
@@ -28,13 +36,18 @@ std::vector<CornerUv> to_engine(const std::vector<weft::CornerUv>& uv) {
   return result;
 }
 
-weft::TriangleMesh from_engine(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
-  weft::TriangleMesh result{from_engine(mesh.positions), mesh.triangles, {}};
+std::vector<weft::CornerUv> from_engine(const std::vector<CornerUv>& uv) {
+  std::vector<weft::CornerUv> result;
+  result.reserve(uv.size());
   for (const CornerUv& corners : uv) {
-    weft::CornerUv& to = result.uv.emplace_back();
+    weft::CornerUv& to = result.emplace_back();
     for (int c = 0; c < 3; ++c) to[c] = {corners[c].x(), corners[c].y()};
   }
   return result;
+}
+
+weft::TriangleMesh from_engine(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
+  return {from_engine(mesh.positions), mesh.triangles, from_engine(uv)};
 }
 
 std::vector<WindKey> to_engine(const std::vector<weft::WindKey>& keys) {

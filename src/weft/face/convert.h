@@ -1,6 +1,7 @@
 #pragma once
 /// Private to face/: conversions between public plain types and the engine's.
 
+#include <string>
 #include <vector>
 
 #include "weft/animation/rigid_motion.h"
@@ -40,10 +41,12 @@ inline std::vector<weft::Vec3> from_engine(const std::vector<Vec3>& points) {
   return result;
 }
 
-std::vector<KeyFrame> to_engine(const std::vector<weft::KeyFrame>& keys);
+RigidMotion to_engine(const std::vector<weft::KeyFrame>& keys,
+                      const std::string& who);  // `who` begins errors
 std::vector<weft::KeyFrame> from_engine(const std::vector<KeyFrame>& keys);
 TriangleMesh to_engine(const weft::TriangleMesh& mesh);  // without texture coordinates
 std::vector<CornerUv> to_engine(const std::vector<weft::CornerUv>& uv);
+std::vector<weft::CornerUv> from_engine(const std::vector<CornerUv>& uv);
 
 /// The public mesh, with texture coordinates if any (num_triangles or none).
 weft::TriangleMesh from_engine(const TriangleMesh& mesh, const std::vector<CornerUv>& uv);

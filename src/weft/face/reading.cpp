@@ -64,6 +64,12 @@ const std::vector<Triangle>& World::triangles(ClothId cloth) const {
   return impl_->world.model(cloth).topology->mesh.triangles;
 }
 
+std::vector<CornerUv> World::uv(ClothId cloth) const { return from_engine(impl_->at(cloth).rest.uv); }
+
+std::vector<Vec3> World::rest_positions(ClothId cloth) const {
+  return from_engine(impl_->world.model(cloth).topology->mesh.positions);
+}
+
 std::vector<Vec3> World::positions(ClothId cloth) const {
   const engine::ClothState& state = impl_->world.state(cloth);
   std::vector<Vec3> result;
@@ -79,6 +85,11 @@ std::vector<Vec3> World::velocities(ClothId cloth) const {
 }
 
 std::vector<double> World::masses(ClothId cloth) const { return impl_->world.model(cloth).mass; }
+
+ClothOffsets World::offsets(ClothId cloth) const {
+  const engine::ClothState& state = impl_->world.state(cloth);
+  return {state.x.share(), state.x.size(), state.x.stride(), from_engine(state.origin)};
+}
 
 void World::copy_positions(ClothId cloth, float* out, std::size_t stride) const {
   const engine::ClothState& state = impl_->world.state(cloth);
@@ -159,6 +170,16 @@ std::vector<Vec3> World::forces(ClothId cloth, ForceKind kind) const {
     }
   }
   return from_engine(force);
+}
+
+std::vector<Vec3> World::forces(ClothId cloth) const {
+  std::vector<Vec3> sum(static_cast<std::size_t>(num_particles(cloth)));
+  for (const ForceKind kind : {ForceKind::gravity, ForceKind::elastic, ForceKind::damping, ForceKind::wind,
+                               ForceKind::external, ForceKind::contact}) {
+    const std::vector<Vec3> force = forces(cloth, kind);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + force[i];
+  }
+  return sum;
 }
 
 std::vector<Vec3> World::pin_forces(ClothId cloth) const {

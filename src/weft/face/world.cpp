@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "weft/face/convert.h"
+#include "weft/face/pins.h"
 #include "weft/face/world_impl.h"
+#include "weft/world/world_input.h"
 
 namespace weft {
 namespace {
@@ -12,35 +14,7 @@ namespace {
 using engine::from_engine;
 using engine::to_engine;
 
-std::string who(const std::string& kind, const std::string& name) { return kind + " \"" + name + "\": "; }
-
-/// Soft pin: a separate spring per particle; see Pin.
-engine::Attachment make_soft_pin(const Pin& pin, int particle, const engine::Vec3& position) {
-  return {.particles = {particle},
-          .shares = {1.0},
-          .offsets = {engine::Vec3::Zero()},
-          .stiffness = *pin.stiffness,
-          .damping = pin.damping,
-          .target = position};
-}
-
-void check_pin(const Pin& pin, const std::string& owner) {
-  if (!pin.stiffness) return;
-  if (!pin.motion.empty())
-    throw InputError(owner + "a pin with stiffness does not support motion; use move_pins()");
-  for (const double number : {*pin.stiffness, pin.damping}) {
-    if (!std::isfinite(number) || number < 0)
-      throw InputError(owner + "a pin's stiffness and damping must be 0 or more");
-  }
-}
-
-/// Sets the springs' targets to the particles' positions.
-void hold_soft_pins(engine::World& world, ClothId cloth) {
-  const int count = static_cast<int>(world.attachments(cloth).size());
-  for (int g = 0; g < count; ++g)
-    world.set_attachment_target(cloth, g,
-                                world.state(cloth).position(world.attachments(cloth)[g].particles[0]));
-}
+using engine::who;
 
 }  // namespace
 
@@ -76,6 +50,7 @@ ClothId World::Impl::add(ClothDesc desc) {
   const engine::ClothSubstance made =
       engine::build_substance(cloth.desc, cloth.rest, owner, cloth.notes.warnings);
   const engine::Pose pose = to_engine(cloth.desc.pose);
+  engine::require_valid(pose, owner);
   std::vector<engine::Vec3> positions;
   for (const engine::Vec3& p : cloth.rest.topology->mesh.positions)
     positions.push_back(pose.rotation * p + pose.translation);
@@ -155,53 +130,13 @@ void World::place_vertices(ColliderId collider, const std::vector<Vec3>& positio
   impl_->world.place_vertices(collider, engine::select_vertices(positions, impl_->at(collider).built));
 }
 
-void World::set_pins(ClothId cloth, const std::vector<Pin>& pins) {
-  Impl::Cloth& own = impl_->at(cloth);
-  const engine::ClothState& state = impl_->world.state(cloth);
-  std::vector<engine::Pin> held;
-  std::vector<engine::Attachment> soft;
-  std::vector<char> is_soft;
-  for (const Pin& pin : pins) {
-    check_pin(pin, who("cloth", own.desc.name));
-    is_soft.insert(is_soft.end(), pin.particles.size(), pin.stiffness.has_value());
-    if (!pin.stiffness) {
-      held.push_back({pin.particles, engine::RigidMotion(to_engine(pin.motion)), to_engine(pin.pivot)});
-      continue;
-    }
-    for (const int i : pin.particles) {
-      if (i < 0 || static_cast<std::size_t>(i) >= state.x.size())
-        throw InputError(who("cloth", own.desc.name) + "there is no particle " + std::to_string(i) +
-                         " to pin");
-      soft.push_back(make_soft_pin(pin, i, state.position(i)));
-    }
-  }
-  impl_->world.set_pins(cloth, std::move(held));
-  impl_->world.set_attachments(cloth, std::move(soft));
-  own.is_soft = std::move(is_soft);
-}
-
-void World::move_pins(ClothId cloth, const std::vector<Vec3>& at_end) {
-  const std::vector<char>& is_soft = impl_->at(cloth).is_soft;
-  if (at_end.size() != is_soft.size())
-    throw InputError(who("cloth", name(cloth)) + "expected targets for " + std::to_string(is_soft.size()) +
-                     " pinned particles, got " + std::to_string(at_end.size()));
-  std::vector<engine::Vec3> held, soft;
-  for (std::size_t p = 0; p < at_end.size(); ++p) (is_soft[p] ? soft : held).push_back(to_engine(at_end[p]));
-  for (const auto* targets : {&held, &soft}) {
-    if (!std::ranges::all_of(*targets, [](const engine::Vec3& p) { return p.allFinite(); }))
-      throw InputError(who("cloth", name(cloth)) + "targets of pins must be finite");
-  }
-  if (!held.empty()) impl_->world.move_pins(cloth, held);
-  if (!soft.empty()) impl_->world.move_attachments(cloth, soft);
-}
-
 void World::set_forces(ClothId cloth, const std::vector<Vec3>& forces) {
   impl_->world.set_forces(cloth, to_engine(forces));
 }
 
 void World::set_positions(ClothId cloth, const std::vector<Vec3>& positions) {
   impl_->world.set_positions(cloth, to_engine(positions));
-  hold_soft_pins(impl_->world, cloth);
+  engine::hold_soft_pins(impl_->world, cloth);
 }
 
 void World::set_velocities(ClothId cloth, const std::vector<Vec3>& velocities) {
@@ -210,7 +145,7 @@ void World::set_velocities(ClothId cloth, const std::vector<Vec3>& velocities) {
 
 void World::teleport(ClothId cloth, const Pose& displacement, bool keeps_velocity) {
   impl_->world.teleport(cloth, to_engine(displacement));
-  hold_soft_pins(impl_->world, cloth);
+  engine::hold_soft_pins(impl_->world, cloth);
   if (!keeps_velocity) set_velocities(cloth, std::vector<Vec3>(impl_->world.state(cloth).x.size()));
 }
 
@@ -232,6 +167,11 @@ void World::stiffen(ClothId cloth, const std::vector<int>& particles, double fac
     if (i < 0 || i >= own.rest.topology->num_particles())
       throw InputError(who("cloth", own.desc.name) + "there is no particle " + std::to_string(i));
   }
+  if (!std::isfinite(factor) || factor < 0)
+    throw InputError(who("cloth", own.desc.name) + "the factor must be 0 or more");
+  if (std::holds_alternative<Fabric>(own.desc.fabric) && own.desc.membrane != Membrane::springs)
+    throw InputError(who("cloth", own.desc.name) +
+                     "its membrane has no springs to stiffen; add it with springs, or change its fabric");
   engine::ClothMaterial material = impl_->world.model(cloth).material;
   engine::multiply_spring_factors(*own.rest.topology, particles, factor, material.spring_factors);
   impl_->world.set_material(cloth, material);
@@ -276,6 +216,16 @@ void World::set_contact(const ContactSettings& settings) {
 }
 
 void World::set_jobs(std::shared_ptr<JobSystem> jobs) { impl_->world.set_jobs(std::move(jobs)); }
+
+Vec3 World::gravity() const { return from_engine(impl_->world.gravity()); }
+Wind World::wind() const { return impl_->wind; }
+IntegratorSettings World::integrator() const { return impl_->world.integrator(); }
+StepDivision World::division() const { return impl_->world.division(); }
+ContactSettings World::contact() const {
+  return {impl_->world.has_contact(), impl_->world.tracks_contacts()};
+}
+const ClothDesc& World::description(ClothId cloth) const { return impl_->at(cloth).desc; }
+const ColliderDesc& World::description(ColliderId collider) const { return impl_->at(collider).desc; }
 
 StepReport World::step(double dt) {
   if (!impl_->wind_keys.empty()) {

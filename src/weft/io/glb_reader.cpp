@@ -3,14 +3,11 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "weft/error.h"
+#include "weft/io/input_file.h"
 
 namespace weft::engine {
 namespace {
@@ -31,16 +28,6 @@ const T& at(const std::vector<T>& items, int index, const char* what) {
 }
 
 // ---- The file ----
-
-std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) {
-    fail(file.string() +
-         ": cannot be read: " + (errno != 0 ? std::generic_category().message(errno) : "it is a folder"));
-  }
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// Whether the nesting of brackets in the file's text is safe for the recursion of tinygltf.
 bool is_flat_enough(std::span<const unsigned char> bytes) {
@@ -376,6 +363,9 @@ Animation parse_glb(std::span<const unsigned char> bytes, const std::string& nam
   }
 }
 
-Animation read_glb(const std::filesystem::path& file) { return parse_glb(read_bytes(file), file.string()); }
+Animation read_glb(const std::filesystem::path& file) {
+  const std::string bytes = read_bytes(file, "a .glb file");
+  return parse_glb({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, file.string());
+}
 
 }  // namespace weft::engine

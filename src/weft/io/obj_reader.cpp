@@ -6,19 +6,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
+#include "weft/io/input_file.h"
+#include "weft/io/words.h"
 
 namespace weft::engine {
 namespace {
@@ -50,7 +49,8 @@ class LineReader {
   /// Appends the words of one line of the text; true if the next line continues it.
   bool take_line() {
     const size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    append_words(rest_.substr(0, length));
+    const std::string_view line = rest_.substr(0, length);
+    append_words(line.substr(0, line.find('#')), words_);
     rest_.remove_prefix(length);
     rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : rest_.empty() ? 0 : 1);
     ++lines_taken_;
@@ -60,29 +60,11 @@ class LineReader {
     return !rest_.empty();
   }
 
-  void append_words(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    constexpr std::string_view kBlanks = " \t\v\f";
-    for (size_t begin = 0; (begin = line.find_first_not_of(kBlanks, begin)) != line.npos;) {
-      const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-      words_.push_back(line.substr(begin, end - begin));
-      begin = end;
-    }
-  }
-
   std::string_view rest_;
   std::vector<std::string_view> words_;
   int line_ = 0;
   int lines_taken_ = 0;
 };
-
-std::optional<double> parse_coordinate(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.begin(), word.end(), value);
-  if (error != std::errc() || end != word.end() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 /// The vertex index of a, a/b, a//c or a/b/c.
 std::optional<long long> parse_index(std::string_view word) {
@@ -101,76 +83,13 @@ long long parse_uv_index(std::string_view word) {
   return parse_index(word).value_or(0);
 }
 
-std::string in_quotes(std::string_view word) {
-  constexpr size_t kLongest = 40;
-  const bool is_long = word.size() > kLongest;
-  return "'" + std::string(word.substr(0, kLongest)) + (is_long ? "…'" : "'");
-}
-
-// ---- Polygons ----
-
-/// Newell's normal: perpendicular to the best-fitting plane, with length twice the area.
-Vec3 polygon_normal(const std::vector<int>& polygon, const std::vector<Vec3>& x) {
-  Vec3 normal = Vec3::Zero();
-  for (size_t k = 1; k + 1 < polygon.size(); ++k) {
-    normal += (x[polygon[k]] - x[polygon[0]]).cross(x[polygon[k + 1]] - x[polygon[0]]);
-  }
-  return normal;
-}
-
-Triangle corner(const std::vector<int>& polygon, size_t tip) {
-  const size_t n = polygon.size();
-  return {polygon[(tip + n - 1) % n], polygon[tip], polygon[(tip + 1) % n]};
-}
-
-/// An ear is a convex corner whose triangle contains none of the other vertices; only an ear can be clipped.
-bool is_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal, size_t tip) {
-  const auto [a, b, c] = corner(polygon, tip);
-  const double tolerance = 1e-12 * normal.squaredNorm();  // round-off: a vertex on the cut counts as inside
-  const auto side = [&](int from, int to, int v) {
-    return normal.dot((x[to] - x[from]).cross(x[v] - x[from]));
-  };
-  if (!(side(a, b, c) > tolerance)) return false;
-  for (const int v : polygon) {
-    if (x[v] == x[a] || x[v] == x[b] || x[v] == x[c]) continue;
-    if (std::min({side(a, b, v), side(b, c, v), side(c, a, v)}) >= -tolerance) return false;
-  }
-  return true;
-}
-
-/// The ear with the shortest cut; the second corner of a polygon without ears (self-intersecting, no area).
-size_t find_best_ear(const std::vector<int>& polygon, const std::vector<Vec3>& x, const Vec3& normal) {
-  size_t best = 1;
-  double shortest_sq = std::numeric_limits<double>::infinity();
-  for (size_t tip = 0; tip < polygon.size(); ++tip) {
-    const Triangle ear = corner(polygon, tip);
-    const double cut_sq = (x[ear[0]] - x[ear[2]]).squaredNorm();
-    if (cut_sq < shortest_sq && is_ear(polygon, x, normal, tip)) {
-      best = tip;
-      shortest_sq = cut_sq;
-    }
-  }
-  return best;
-}
-
-/// Triangulates a polygon of n vertices into n - 2 triangles by ear clipping.
-void append_triangles(std::vector<int> polygon, TriangleMesh& mesh) {
-  const Vec3 normal = polygon_normal(polygon, mesh.positions);
-  while (polygon.size() > 3) {
-    const size_t tip = find_best_ear(polygon, mesh.positions, normal);
-    mesh.triangles.push_back(corner(polygon, tip));
-    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(tip));
-  }
-  mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]});
-}
-
 // ---- The file ----
 
 class ObjParser {
  public:
   ObjParser(std::string_view text, const std::string& name) : name_(name), lines_(text) {}
 
-  ObjMesh parse() {
+  MeshFromFile parse() {
     while (lines_.next()) {
       if (!lines_.words().empty()) read_line(lines_.words()[0]);
     }
@@ -225,7 +144,7 @@ class ObjParser {
     Vec3 position;
     for (int k = 0; k < 3; ++k) {
       const std::string_view word = words[k + 1];
-      const auto coordinate = parse_coordinate(word);
+      const auto coordinate = parse_finite(word);
       if (!coordinate)
         fail(lines_.line(), in_quotes(word) + " is not a coordinate; expected a finite number");
       position[k] = *coordinate;
@@ -237,7 +156,7 @@ class ObjParser {
   void read_uv() {
     const auto& words = lines_.words();
     const auto number = [&](std::size_t k) {
-      return words.size() > k ? parse_coordinate(words[k]).value_or(kNotGiven) : kNotGiven;
+      return words.size() > k ? parse_finite(words[k]).value_or(kNotGiven) : kNotGiven;
     };
     uv_.emplace_back(number(1), number(2));
   }
@@ -280,16 +199,9 @@ class ObjParser {
       }
       polygon.push_back(static_cast<int>(v));
     }
-    const std::size_t first = result_.mesh.triangles.size();
-    append_triangles(polygon, result_.mesh);
-    for (std::size_t t = first; t < result_.mesh.triangles.size(); ++t) {
-      CornerUv corners;
-      for (int c = 0; c < 3; ++c) {
-        const auto at = std::find(polygon.begin(), polygon.end(), result_.mesh.triangles[t][c]);
-        corners[c] = uv_at(face.uv[static_cast<std::size_t>(at - polygon.begin())]);
-      }
-      result_.uv.push_back(corners);
-    }
+    std::vector<Eigen::Vector2d> uv;
+    for (const long long index : face.uv) uv.push_back(uv_at(index));
+    append_polygon(polygon, uv, result_);
   }
 
   Eigen::Vector2d uv_at(long long index) {
@@ -321,25 +233,8 @@ class ObjParser {
   bool has_uv_ = false;  // of any triangle
   std::vector<Face> faces_;
   std::map<std::string, Unknown> unknown_;
-  ObjMesh result_;
+  MeshFromFile result_;
 };
-
-std::string system_reason() { return std::generic_category().message(errno); }
-
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code no_error;
-  if (std::filesystem::is_directory(file, no_error)) {
-    throw InputError(file.string() + ": this is a folder; expected an OBJ file");
-  }
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in.is_open() || in.bad() || text.bad()) {
-    throw InputError(file.string() + ": cannot be read: " + system_reason());
-  }
-  return std::move(text).str();
-}
 
 // ---- Out ----
 
@@ -377,14 +272,22 @@ void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex,
 
 }  // namespace
 
-ObjMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_text(file), file.string()); }
+MeshFromFile read_obj(const std::filesystem::path& file) {
+  return parse_obj(read_bytes(file, "an OBJ file"), file.string());
+}
 
-ObjMesh parse_obj(const std::string& text, const std::string& name) { return ObjParser(text, name).parse(); }
+MeshFromFile parse_obj(const std::string& text, const std::string& name) {
+  return ObjParser(text, name).parse();
+}
 
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
+  write_file(file, obj_text(mesh, uv));
+}
+
+std::string obj_text(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
   std::string text;
   append_mesh(text, mesh, 0, uv);
-  write_file(file, text);
+  return text;
 }
 
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects) {

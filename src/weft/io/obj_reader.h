@@ -5,16 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/io/mesh_from_file.h"
 
 namespace weft::engine {
-
-struct ObjMesh {
-  TriangleMesh mesh;         // all objects and groups of the file together; vertices as in the file
-  std::vector<CornerUv> uv;  // (num_triangles) of the triangles' corners, NaN where the file has none; empty
-                             // if it has none at all
-  std::vector<std::string> warnings;  // ignored unknown keywords, one message each, with counts
-};
 
 /// Reads the vertices and faces of an OBJ file. Quads and polygons, concave ones too, are triangulated.
 /// Vertices keep the file's order and are never split or merged, because texture coordinates are stored by
@@ -24,20 +17,23 @@ struct ObjMesh {
 /// - a file that cannot be read, or has no vertices or no faces,
 /// - a coordinate that is not a finite number,
 /// - a face with fewer than three vertices or with an index that does not exist.
-ObjMesh read_obj(const std::filesystem::path& file);
+MeshFromFile read_obj(const std::filesystem::path& file);
 
 /// The same from text; `name` is the file name in messages.
-ObjMesh parse_obj(const std::string& text, const std::string& name);
+MeshFromFile parse_obj(const std::string& text, const std::string& name);
 
 struct ObjObject {
   std::string name;  // one word
   TriangleMesh mesh;
 };
 
-/// Writes vertices and triangles, with enough digits to read the same doubles back. `uv` as in ObjMesh.
+/// Writes vertices and triangles, with enough digits to read the same doubles back. `uv` as in MeshFromFile.
 /// Throws InputError if the file cannot be written.
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
                const std::vector<CornerUv>& uv = {});
+
+/// What write_obj() writes.
+std::string obj_text(const TriangleMesh& mesh, const std::vector<CornerUv>& uv = {});
 
 /// The same for several meshes, each as a separate object.
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects);

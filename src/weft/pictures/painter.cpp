@@ -22,23 +22,22 @@ void require_picture(const fs::path& file) {
 
 Painter::Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device)
     : animation_(animation),
-      size_(settings.size),
-      view_(settings.view),
-      zoom_(settings.zoom),
-      renderer_(std::move(device)),
+      settings_(settings),
+      renderer_(std::move(device), settings.render),
       pictures_(animation, settings.style),
       last_(num_frames(animation) - 1) {
   if (last_ < 0) throw InputError("there is no cloth to draw");
 }
 
 Camera Painter::frame(const std::vector<int>& frames) const {
-  Camera camera = frame_scene(animation_, frames, view_, size_.aspect());
-  camera.zoom(1 / zoom_);
+  if (settings_.camera) return *settings_.camera;
+  Camera camera = frame_scene(animation_, frames, settings_.view, settings_.size.aspect());
+  camera.zoom(1 / settings_.zoom);
   return camera;
 }
 
 Image Painter::draw(int frame, const Camera& camera) {
-  return renderer_.draw(pictures_.at(frame, camera), size_);
+  return renderer_.draw(pictures_.at(frame, camera), settings_.size);
 }
 
 void Painter::write_pictures(const fs::path& file, const std::vector<int>& frames, int columns) {
@@ -55,7 +54,7 @@ void Painter::write_pictures(const fs::path& file, const std::vector<int>& frame
 }
 
 void Painter::write_video(const fs::path& file, int every, const std::function<bool()>& is_stopped) {
-  VideoWriter video(file, size_.width, size_.height, animation_.frames_per_second / every);
+  VideoWriter video(file, settings_.size.width, settings_.size.height, animation_.frames_per_second / every);
   std::vector<int> frames;
   for (int frame = 0; frame <= last_; frame += every) frames.push_back(frame);
   const Camera camera = this->frame(frames);

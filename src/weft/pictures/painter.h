@@ -16,9 +16,11 @@ void require_picture(const std::filesystem::path& file);
 
 struct PaintSettings {
   PictureSize size;
-  Camera view;      // orientation only; the position follows from the scene
-  double zoom = 1;  // > 1: closer [1]
+  Camera view;                   // orientation only; the position follows from the scene
+  double zoom = 1;               // > 1: closer [1]
+  std::optional<Camera> camera;  // in place of view and zoom
   SceneStyle style;
+  RenderSettings render;
 };
 
 /// Draws frames of an animation, which must outlive this. All frames of one file share a camera, which shows
@@ -43,9 +45,7 @@ class Painter {
   Image draw(int frame, const Camera& camera);
 
   const Animation& animation_;
-  PictureSize size_;
-  Camera view_;
-  double zoom_;
+  PaintSettings settings_;
   Renderer renderer_;
   ScenePictures pictures_;
   int last_;

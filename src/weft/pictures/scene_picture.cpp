@@ -63,12 +63,12 @@ DrawnMesh draw_body(const AnimatedBody& body, int frame) {
   return mesh;
 }
 
-/// Height of a level plane, else `otherwise`, else below the lowest point of the animation.
-std::optional<double> find_ground(const Animation& animation, std::optional<double> otherwise) {
+/// Height of a level plane, else the style's ground, by default below the lowest point of the animation.
+std::optional<double> find_ground(const Animation& animation, const SceneStyle& style) {
   for (const AnimatedBody& body : animation.bodies) {
     if (is_level_plane(body)) return body.poses[0].translation.y();
   }
-  if (otherwise) return otherwise;
+  if (style.ground || !style.has_ground) return style.ground;
   Eigen::AlignedBox3d box;
   std::vector<Vec3> points;
   for (int frame = 0; frame < num_frames(animation); ++frame) {
@@ -122,7 +122,7 @@ int num_frames(const Animation& animation) {
 
 ScenePictures::ScenePictures(const Animation& animation, SceneStyle style)
     : animation_(animation), style_(std::move(style)) {
-  style_.ground = find_ground(animation, style_.ground);
+  style_.ground = find_ground(animation, style_);
 }
 
 Picture ScenePictures::at(int frame, const Camera& camera) const {
@@ -132,17 +132,40 @@ Picture ScenePictures::at(int frame, const Camera& camera) const {
   picture.ground = style_.ground;
   for (int c = 0; c < static_cast<int>(animation_.cloths.size()); ++c) {
     DrawnMesh cloth = draw_cloth(animation_.cloths[c], frame);
-    const auto springs = std::find_if(style_.springs.begin(), style_.springs.end(),
-                                      [&](const SpringsToDraw& s) { return s.cloth == c; });
-    if (springs == style_.springs.end())
-      picture.meshes.push_back(std::move(cloth));
-    else
+    if (static_cast<std::size_t>(c) < style_.cloth_colors.size()) cloth.look.color = style_.cloth_colors[c];
+    if (const SpringsToDraw* springs = find_springs(c))
       draw_springs(cloth, *springs->topology, picture);
+    else
+      picture.meshes.push_back(std::move(cloth));
   }
   for (const AnimatedBody& body : animation_.bodies) {
     if (!is_level_plane(body)) picture.meshes.push_back(draw_body(body, frame));
   }
   return picture;
+}
+
+std::vector<int> ScenePictures::shown() const {
+  std::vector<int> shown;
+  int ground = -1;
+  const int num_cloths = static_cast<int>(animation_.cloths.size());
+  for (int c = 0; c < num_cloths; ++c) {
+    if (!find_springs(c)) shown.push_back(c);
+  }
+  for (int b = 0; b < static_cast<int>(animation_.bodies.size()); ++b) {
+    if (!is_level_plane(animation_.bodies[b]))
+      shown.push_back(num_cloths + b);
+    else if (ground < 0)
+      ground = num_cloths + b;
+  }
+  shown.push_back(ground);
+  return shown;
+}
+
+/// The springs to draw instead of a cloth, or null.
+const SpringsToDraw* ScenePictures::find_springs(int cloth) const {
+  const auto found = std::find_if(style_.springs.begin(), style_.springs.end(),
+                                  [&](const SpringsToDraw& s) { return s.cloth == cloth; });
+  return found == style_.springs.end() ? nullptr : &*found;
 }
 
 Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,

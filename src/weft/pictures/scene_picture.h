@@ -17,7 +17,9 @@ struct SpringsToDraw {
 
 struct SceneStyle {
   bool transparent = false;            // no background behind cloth and colliders
+  bool has_ground = true;              // false: only if the scene has a level plane
   std::optional<double> ground;        // height if the scene has no level plane; empty: below all frames [m]
+  std::vector<Color> cloth_colors;     // of the first cloths, in place of the animation's
   std::vector<SpringsToDraw> springs;  // of cloths that are drawn as springs
 };
 
@@ -30,12 +32,19 @@ class ScenePictures {
   /// Frame 0 is the start.
   Picture at(int frame, const Camera& camera) const;
 
+  /// What each mesh of at() shows, then the ground. A cloth is its index, a body its index plus the number of
+  /// cloths; -1: the ground is no body.
+  std::vector<int> shown() const;
+
  private:
+  const SpringsToDraw* find_springs(int cloth) const;
+
   const Animation& animation_;
   SceneStyle style_;
 };
 
-/// The camera with the orientation of `like`, at a distance that shows everything in these frames.
+/// The camera with the orientation of `like`, at a distance that shows everything but planes in these frames;
+/// `like` itself if there is nothing.
 Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
                    double aspect);
 

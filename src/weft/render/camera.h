@@ -28,7 +28,7 @@ struct Camera {
   Vec3 target = Vec3::Zero();  // [m]
   double distance = 3;         // from eye to target, > 0 [m]
   double azimuth_deg = 30;     // 0: the eye is on the +z side of the target; grows towards +x
-  double elevation_deg = 20;   // in (−90, 90)
+  double elevation_deg = 20;   // in [−90, 90]
   double fov_deg = 32;         // vertical field of view, in (0, 180)
 
   Vec3 eye() const;

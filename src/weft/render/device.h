@@ -4,23 +4,17 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "weft/error.h"
 #include "weft/render/camera.h"
 #include "weft/render/image.h"
 #include "weft/render/picture.h"
 
 namespace weft::engine {
-
-/// No graphics on this machine: the missing part, and a remedy.
-class GraphicsError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// GPU programs; their sources are in shaders.h.
 enum class Program { depth, occlusion, blur, sky, fabric, solid, ground, line, dot };

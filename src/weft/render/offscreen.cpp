@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 
 #include "weft/render/device.h"
@@ -6,12 +7,21 @@ namespace weft::engine {
 namespace {
 
 constexpr const char* kAdvice =
-    "; pictures require EGL and OpenGL 3.3 (on Debian and Ubuntu: apt-get install libegl1 libgl1-mesa-dri)";
+    "; pictures require EGL and OpenGL 3.3 (on Debian and Ubuntu: apt-get install libegl1 libgl1 "
+    "libgl1-mesa-dri)";
+
+/// epoxy ends the process if it cannot load a library.
+void require_libraries() {
+  const auto loads = [](const char* library) { return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; };
+  if (!loads("libEGL.so.1") || !(loads("libOpenGL.so.0") || loads("libGL.so.1")))
+    throw GraphicsError(std::string("the libraries of EGL and OpenGL are not installed") + kAdvice);
+}
 
 /// An EGL display and context without a surface.
 class EglContext {
  public:
   EglContext() {
+    require_libraries();
     display_ = find_display();
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr))
       throw GraphicsError(std::string("there is no EGL display") + kAdvice);

@@ -110,7 +110,7 @@ struct Renderer::Stage {
       : device(device_), settings(settings_), picture(picture_), size(size_), extent(find_extent(picture_)) {
     const Camera& camera = picture.camera;
     const double depth_of_center = (extent.center - camera.eye()).dot(camera.forward());
-    near = std::max(depth_of_center - 1.5 * extent.radius, 0.02 * std::max(camera.distance, extent.radius));
+    near = std::max(depth_of_center - 1.5 * extent.radius, 0.02 * extent.radius);
     far = std::max(depth_of_center + 1.5 * extent.radius, 2 * near) + kGroundSide;
     projection = Camera::projection(camera.fov_deg, size.aspect(), near, far).cast<float>();
     to_clip = (Camera::projection(camera.fov_deg, size.aspect(), near, far) * camera.view()).cast<float>();

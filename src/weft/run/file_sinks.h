@@ -2,30 +2,79 @@
 /// Frame sinks that write files during the run.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "weft/core/staged_file.h"
-#include "weft/io/glb_writer.h"
+#include "weft/io/pc2.h"
+#include "weft/run/frame_log.h"
 #include "weft/run/frame_sink.h"
 
 namespace weft::engine {
 
-/// Writes a .glb, up to StagedFile::finish(); replace() is left to the caller. A run that is too long for one
-/// (io/glb_writer.h) gets a warning at its start; the file then has its first frames.
+/// Keeps the frames for animation.glb, which is made of them at the end. The frames are on disk: memory does
+/// not grow with their number. A run that is too long for one .glb (io/glb_writer.h) gets a warning at its
+/// start; the file then has its first frames.
 class GlbSink : public FrameSink {
  public:
-  explicit GlbSink(StagedFile& file) : file_(file) {}
+  /// Frames go to `frames`, the finished animation to `file`.
+  GlbSink(std::filesystem::path file, std::filesystem::path frames)
+      : file_(std::move(file)), frames_file_(std::move(frames)) {}
 
   void begin(SceneRun& run, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
   void finish(const SceneRun& run, RunReport& report) override;
+  void sync() override { frames_->sync(); }
+  void resume(SceneRun& run, RunReport& report, Reader& saved) override;
+
+  /// StagedFile::replace() of the animation, after finish().
+  void replace() { glb_->replace(); }
 
  private:
-  StagedFile& file_;
-  std::optional<GlbWriter> writer_;
-  std::size_t room_ = 0;  // frames that fit, with the start
+  std::size_t find_room(const AnimationFrame& frame) const;
+
+  std::filesystem::path file_, frames_file_;
+  Animation meshes_;
+  std::optional<FrameLog> frames_;
+  std::optional<StagedFile> glb_;
+};
+
+/// Writes a PC2 point cache per cloth: `FOLDER/sheet.pc2` of cloth "sheet". Frame 0 is the start. Points are the
+/// vertices of the cloth's mesh as it was given, in their order (World::vertex_positions), in world
+/// coordinates [m].
+class Pc2Sink : public FrameSink {
+ public:
+  /// The files are in `part` during the run; replace() moves them into `folder`. Both must exist.
+  Pc2Sink(std::filesystem::path folder, std::filesystem::path part)
+      : folder_(std::move(folder)), part_(std::move(part)) {}
+
+  void begin(SceneRun& run, RunReport& report) override;
+  void add_frame(const SceneRun& run, RunReport& report) override;
+  void finish(const SceneRun& run, RunReport& report) override;
+  void sync() override;
+  void resume(SceneRun& run, RunReport& report, Reader& saved) override;
+
+  /// StagedFile::replace() of every file, after finish().
+  void replace();
+
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  struct File {
+    File(const std::filesystem::path& path, const std::filesystem::path& part, int num_points, int num_frames)
+        : staged(path, part, num_frames > 0 ? Pc2Writer::size_of(num_points, num_frames) : 0),
+          writer(staged, num_points, num_frames) {}
+    StagedFile staged;
+    Pc2Writer writer;
+  };
+
+  void open(const SceneRun& run, int num_frames);
+
+  std::filesystem::path folder_, part_;
+  std::vector<std::string> names_;            // (cloths) of files
+  std::vector<std::unique_ptr<File>> files_;  // (cloths)
 };
 
 /// Writes a sequence of OBJ files, one per cloth and frame: `FOLDER/sheet_0000.obj` is the start of cloth
@@ -37,6 +86,7 @@ class ObjSink : public FrameSink {
 
   void begin(SceneRun& run, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
+  void resume(SceneRun& run, RunReport& report, Reader& saved) override;
 
  private:
   void write(const SceneRun& run) const;

@@ -75,22 +75,26 @@ std::vector<float> positions(const ClothState& state) {
 
 }  // namespace
 
-Animation make_animation(const SceneDesc& scene, const World& world) {
-  Animation animation{.title = scene.name,
-                      .frames_per_second = scene.fps,
-                      .cloths = {},
-                      .bodies = {},
-                      .passing = world.non_colliding_pairs()};
+Animation make_animation(const World& world) {
+  Animation animation{.title = {}, .cloths = {}, .bodies = {}, .passing = world.non_colliding_pairs()};
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothTopology& topology = *world.model(world.cloth(c)).topology;
     AnimatedCloth mesh;
     mesh.name = world.name(world.cloth(c));
     mesh.triangles = topology.mesh.triangles;
-    mesh.color = scene.cloths[c].color;
+    mesh.color = ClothSceneDesc().color;
     mesh.fabric_coordinates = make_fabric_coordinates(topology);
     animation.cloths.push_back(std::move(mesh));
   }
   for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
+  return animation;
+}
+
+Animation make_animation(const SceneDesc& scene, const World& world) {
+  Animation animation = make_animation(world);
+  animation.title = scene.name;
+  animation.frames_per_second = scene.fps;
+  for (std::size_t c = 0; c < animation.cloths.size(); ++c) animation.cloths[c].color = scene.cloths[c].color;
   return animation;
 }
 

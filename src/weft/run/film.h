@@ -8,7 +8,10 @@
 
 namespace weft::engine {
 
-/// The meshes of a world that was built from a scene, without frames.
+/// The meshes of a world, without frames; cloth in the default colour of scenes.
+Animation make_animation(const World& world);
+
+/// The same of a world that was built from a scene, with the scene's name, frame rate and colours.
 Animation make_animation(const SceneDesc& scene, const World& world);
 
 /// The current state of the world.

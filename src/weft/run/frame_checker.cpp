@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "weft/error.h"
+#include "weft/run/run_archive.h"
 #include "weft/run/scene_run.h"
 #include "weft/run/start_check.h"
 
@@ -24,10 +25,14 @@ void check_start(const SceneDesc& scene, const World& world, RunReport& report) 
 
 void FrameChecker::begin(SceneRun& run, RunReport& report) {
   check_start(run.scene(), run.world(), report);
+  if (has_passages_) report.passages = 0;
+  watch(run, report);
+}
+
+void FrameChecker::watch(SceneRun& run, RunReport& report) {
   frames_.emplace(run.world());
   if (!has_passages_) return;
   watch_.emplace(frames_->now().frame);
-  report.passages = 0;
   run.observe([this, &report, frame = &run](double time) {
     const FrameToCheck moment = frames_->at(time);
     const std::vector<verify::FeaturePair> passages = watch_->advance(moment.frame);
@@ -45,6 +50,20 @@ void FrameChecker::add_frame(const SceneRun&, RunReport& report) {
   report.intersections = std::max(report.intersections.value_or(0), check.intersections);
   if (!check.deepest) return;
   report.penetration_max = std::max(report.penetration_max.value_or(0), check.penetration());
+}
+
+void FrameChecker::save(Writer& out) {
+  if (!watch_) return;
+  verify::PassageWatch::Pending pending = watch_->pending();
+  describe(out, pending);
+}
+
+void FrameChecker::resume(SceneRun& run, RunReport& report, Reader& saved) {
+  watch(run, report);
+  if (!watch_) return;
+  verify::PassageWatch::Pending pending;
+  describe(saved, pending);
+  watch_->set_pending(std::move(pending));
 }
 
 void FrameChecker::finish(const SceneRun&, RunReport& report) {

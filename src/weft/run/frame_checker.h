@@ -20,8 +20,12 @@ class FrameChecker : public FrameSink {
   void begin(SceneRun& run, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
   void finish(const SceneRun& run, RunReport& report) override;
+  void save(Writer& out) override;
+  void resume(SceneRun& run, RunReport& report, Reader& saved) override;
 
  private:
+  void watch(SceneRun& run, RunReport& report);
+
   bool has_passages_;
   std::optional<WorldFrames> frames_;
   std::optional<verify::PassageWatch> watch_;

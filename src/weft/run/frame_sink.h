@@ -1,6 +1,7 @@
 #pragma once
 /// Receivers of a run's frames.
 
+#include "weft/core/archive.h"
 #include "weft/report.h"
 #include "weft/run/report.h"
 
@@ -26,6 +27,20 @@ class FrameSink {
 
   /// End of the run, complete or not.
   virtual void finish(const SceneRun&, RunReport&) {}
+
+  /// Passes what it has received to the disk, for SceneRun::save().
+  virtual void sync() {}
+
+  /// Appends its state after a frame.
+  virtual void save(Writer&) {}
+
+  /// Instead of begin(): continues from the state that another sink of its kind has saved. Throws InputError if
+  /// it cannot; by default always.
+  virtual void resume(SceneRun& run, RunReport& report, Reader& saved);
 };
+
+inline void FrameSink::resume(SceneRun&, RunReport&, Reader&) {
+  throw InputError("a receiver of this run's frames cannot continue it");
+}
 
 }  // namespace weft::engine

@@ -29,23 +29,23 @@ void ProblemFinder::record_warning(const StepWarning& warning) {
   const auto is_same = [&](const Record& s) {
     return s.worst.code == warning.code && s.worst.cloth == warning.cloth && s.worst.fault == warning.fault;
   };
-  auto record = std::find_if(others_.begin(), others_.end(), is_same);
-  if (record == others_.end()) record = others_.insert(others_.end(), Record{warning});
+  auto record = std::find_if(found_.others.begin(), found_.others.end(), is_same);
+  if (record == found_.others.end()) record = found_.others.insert(found_.others.end(), Record{warning});
   if (warning.value > record->worst.value) record->worst = warning;
   ++record->frames;
 }
 
 void ProblemFinder::add_step(const StepReport& step) {
   for (const StepWarning& warning : step.warnings) record_warning(warning);
-  for (const InfeasiblePair& pair : step.infeasible) add_once(pair, infeasible_);
+  for (const InfeasiblePair& pair : step.infeasible) add_once(pair, found_.infeasible);
 }
 
 void ProblemFinder::add_frame(double energy) {
-  strained_.resize(world_.num_cloths());
-  flat_.resize(world_.num_cloths());
+  found_.strained.resize(world_.num_cloths());
+  found_.flat.resize(world_.num_cloths());
   for (int c = 0; c < world_.num_cloths(); ++c) check_cloth(c);
   check_energy(energy);
-  ++num_frames_;
+  ++found_.num_frames;
 }
 
 void ProblemFinder::check_cloth(int c) {
@@ -55,8 +55,9 @@ void ProblemFinder::check_cloth(int c) {
   const AreaShare area = compute_least_area(model, state);
   const StepWarning strained{WarningCode::yarn_strain, c, strain.particle, strain.max},
       flat{WarningCode::flat_triangle, c, area.particle, area.min};
-  update(strained_[c], strained, strain.max > strain_limit(model), strain.max > strained_[c].worst.value);
-  update(flat_[c], flat, area.min < kMinArea, area.min < flat_[c].worst.value);
+  update(found_.strained[c], strained, strain.max > strain_limit(model),
+         strain.max > found_.strained[c].worst.value);
+  update(found_.flat[c], flat, area.min < kMinArea, area.min < found_.flat[c].worst.value);
 }
 
 void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse) {
@@ -69,19 +70,19 @@ void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_w
 }
 
 void ProblemFinder::check_energy(double energy) {
-  if (num_frames_ == 0) max_energy_ = min_energy_ = energy;
-  const double rise = num_frames_ == 0 ? 0 : energy - energy_;
+  if (found_.num_frames == 0) found_.max_energy = found_.min_energy = energy;
+  const double rise = found_.num_frames == 0 ? 0 : energy - found_.energy;
   double lift = 0;  // energy to lift all cloth by its thickness [J]
   for (int c = 0; c < world_.num_cloths(); ++c) {
     const ClothModel& model = world_.model(world_.cloth(c));
     lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *
             model.material.thickness;
   }
-  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (max_energy_ - min_energy_))
+  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (found_.max_energy - found_.min_energy))
     record_warning({.code = WarningCode::energy_rise, .value = rise});
-  max_energy_ = std::max(max_energy_, energy);
-  min_energy_ = std::min(min_energy_, energy);
-  energy_ = energy;
+  found_.max_energy = std::max(found_.max_energy, energy);
+  found_.min_energy = std::min(found_.min_energy, energy);
+  found_.energy = energy;
 }
 
 std::vector<RunProblem> ProblemFinder::problems() const {
@@ -89,18 +90,18 @@ std::vector<RunProblem> ProblemFinder::problems() const {
   const auto add = [&](const StepWarning& w, int frames) {
     result.push_back({w.code, frames, w.value, describe(world_, w)});
   };
-  for (const std::vector<Record>* all : {&strained_, &flat_}) {
+  for (const std::vector<Record>* all : {&found_.strained, &found_.flat}) {
     for (const Record& record : *all) {
       if (record.is_reported) add(record.worst, record.frames);
     }
   }
-  for (const Record& record : others_) add(record.worst, record.frames);
+  for (const Record& record : found_.others) add(record.worst, record.frames);
   const auto add_count = [&](WarningCode code, std::size_t count) {
     if (count > 0) add({.code = code, .value = static_cast<double>(count)}, 1);
   };
-  add_count(WarningCode::crossings, crossings_);
-  add_count(WarningCode::passages, passages_);
-  add_count(WarningCode::infeasible, infeasible_.size());
+  add_count(WarningCode::crossings, found_.crossings);
+  add_count(WarningCode::passages, found_.passages);
+  add_count(WarningCode::infeasible, found_.infeasible.size());
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.code < b.code; });
   return result;

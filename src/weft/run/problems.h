@@ -2,6 +2,7 @@
 /// Problems of a run, found in its frames and steps: reasons not to trust a result that is complete.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "weft/run/warnings.h"
@@ -27,7 +28,27 @@ struct RunProblem {
 ///     passages       in all frames
 class ProblemFinder {
  public:
+  struct Record {
+    StepWarning worst;
+    int frames = 0, consecutive = 0;
+    bool is_reported = false;
+  };
+
+  /// What was found so far.
+  struct Found {
+    std::vector<Record> strained, flat;  // (cloths)
+    std::vector<Record> others;
+    std::vector<InfeasiblePair> infeasible;
+    int num_frames = 0, crossings = 0, passages = 0;
+    double energy = 0, max_energy = 0, min_energy = 0;  // in the last frame, and in all [J]
+  };
+
   explicit ProblemFinder(const World& world) : world_(world) {}
+
+  /// Of a run that is continued.
+  ProblemFinder(const World& world, Found found) : world_(world), found_(std::move(found)) {}
+
+  const Found& found() const { return found_; }
 
   void add_step(const StepReport& step);
 
@@ -35,32 +56,22 @@ class ProblemFinder {
   void add_frame(double energy);
 
   /// Pairs of triangles that cross in the last frame.
-  void set_crossings(int count) { crossings_ = count; }
+  void set_crossings(int count) { found_.crossings = count; }
 
   /// `count` more pairs of features that passed through each other.
-  void add_passages(int count) { passages_ += count; }
+  void add_passages(int count) { found_.passages += count; }
 
   /// The worst of each code and cloth, in the order of codes.
   std::vector<RunProblem> problems() const;
 
  private:
-  struct Record {
-    StepWarning worst;
-    int frames = 0, consecutive = 0;
-    bool is_reported = false;
-  };
-
   void record_warning(const StepWarning& warning);
   void check_cloth(int cloth);
   void check_energy(double energy);
   static void update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse);
 
   const World& world_;
-  std::vector<Record> strained_, flat_;  // (cloths)
-  std::vector<Record> others_;
-  std::vector<InfeasiblePair> infeasible_;
-  int num_frames_ = 0, crossings_ = 0, passages_ = 0;
-  double energy_ = 0, max_energy_ = 0, min_energy_ = 0;  // in the last frame, and in all [J]
+  Found found_;
 };
 
 }  // namespace weft::engine

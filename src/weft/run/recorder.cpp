@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "weft/run/run_archive.h"
 #include "weft/run/scene_run.h"
 #include "weft/world/measures.h"
 
@@ -76,6 +77,17 @@ void Recorder::add_frame(const SceneRun& run, RunReport& report) {
   problems_->add_frame(report.kinetic_energy.back() + report.potential_energy.back());
   if (has_audit_) add_audit(frame_, report.energy);
   frame_ = {};
+}
+
+void Recorder::save(Writer& out) {
+  ProblemFinder::Found found = problems_->found();
+  describe(out, found);
+}
+
+void Recorder::resume(SceneRun& run, RunReport&, Reader& saved) {
+  ProblemFinder::Found found;
+  describe(saved, found);
+  problems_.emplace(run.world(), std::move(found));
 }
 
 void Recorder::finish(const SceneRun&, RunReport& report) {

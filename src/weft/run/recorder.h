@@ -21,6 +21,8 @@ class Recorder : public FrameSink {
   void end_step(const SceneRun& run, const StepReport& step, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
   void finish(const SceneRun& run, RunReport& report) override;
+  void save(Writer& out) override;
+  void resume(SceneRun& run, RunReport& report, Reader& saved) override;
 
  private:
   bool has_audit_;

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "weft/core/work_times.h"
+#include "weft/run.h"
 #include "weft/run/problems.h"
 
 namespace weft::engine {
-
-enum class RunOutcome { done, interrupted, failed };
 
 /// Energies of all cloths at the end of each frame, and the energy audit of the frame (frames) [J].
 struct EnergySeries {

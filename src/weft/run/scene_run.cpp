@@ -1,11 +1,14 @@
 #include "weft/run/scene_run.h"
 
 #include <cstdio>
+#include <utility>
 
+#include "weft/core/hash.h"
 #include "weft/core/version.h"
 #include "weft/face/world_impl.h"
 #include "weft/run/frame_checker.h"
 #include "weft/run/recorder.h"
+#include "weft/run/run_archive.h"
 #include "weft/run/warnings.h"
 #include "weft/world/measures.h"
 
@@ -13,12 +16,6 @@ namespace weft::engine {
 namespace {
 
 constexpr std::size_t kMaxInfeasible = 100;  // listed in a report
-
-std::string hex(std::uint64_t value) {
-  char digits[17];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value));
-  return digits;
-}
 
 RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const World& world) {
   RunReport report{.scene = scene.name, .integrator = scene.solver.integrator, .version = kVersion};
@@ -49,15 +46,40 @@ SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector
   for (FrameSink* sink : sinks_) sink->begin(*this, report_);
 }
 
+SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
+                   int num_frames, std::span<const std::byte> saved)
+    : scene_(std::move(scene)), num_frames_(num_frames), sinks_(std::move(sinks)) {
+  Reader in(saved, "a saved run");
+  std::vector<std::byte> world_bytes;
+  double cpu_seconds = 0;
+  members(in, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
+  stopwatch_ = Stopwatch(cpu_seconds);
+  built_.world = weft::World::load(world_bytes);
+  world().set_jobs(jobs);
+  report_.threads = jobs->num_threads();
+  for (FrameSink* sink : sinks_) sink->resume(*this, report_, in);
+  if (in.left() > 0) in.fail();
+}
+
+std::vector<std::byte> SceneRun::save() {
+  for (FrameSink* sink : sinks_) sink->sync();
+  Writer out;
+  std::vector<std::byte> world_bytes = built_.world.save();
+  double cpu_seconds = stopwatch_.cpu_total();
+  members(out, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
+  for (FrameSink* sink : sinks_) sink->save(out);
+  return std::move(out.bytes);
+}
+
 World& SceneRun::world() { return WorldAccess::engine(built_.world); }
 const World& SceneRun::world() const { return WorldAccess::engine(built_.world); }
 
 StepReport SceneRun::step() { return built_.world.step(scene_.step_length()); }
 
-bool SceneRun::next_frame() {
+bool SceneRun::next_frame(const std::function<bool()>& keep_going) {
   if (report_.outcome != RunOutcome::done || frame() == num_frames_) return false;
   seconds_in_frame_ = 0;
-  if (!simulate_frame()) return false;
+  if (!simulate_frame(keep_going)) return false;
   spent_ += seconds_in_frame_;
   frame_ms_.push_back(1000 * seconds_in_frame_);
   ++report_.frames;
@@ -65,9 +87,13 @@ bool SceneRun::next_frame() {
   return true;
 }
 
-/// False if a step failed.
-bool SceneRun::simulate_frame() {
+/// False if a step failed, or if the frame was interrupted.
+bool SceneRun::simulate_frame(const std::function<bool()>& keep_going) {
   for (int s = 0; s < scene_.steps_per_frame; ++s) {
+    if (s > 0 && keep_going && !keep_going()) {
+      interrupt();
+      return false;
+    }
     for (FrameSink* sink : sinks_) sink->begin_step(*this);
     stopwatch_.start();
     const StepReport done = step();
@@ -115,14 +141,32 @@ void SceneRun::observe(std::function<void(double)> observer) {
   });
 }
 
+/// Leaves out the work of an unfinished frame.
+void SceneRun::end_series() {
+  for (std::vector<int>* series : {&report_.divisions, &report_.newton_steps, &report_.cg_iterations}) {
+    if (std::cmp_greater(series->size(), frame())) series->resize(frame());
+  }
+}
+
 const RunReport& SceneRun::finish() {
+  end_series();
   report_.seconds_simulated = world().time();
   report_.ms_per_frame_median = quantile(frame_ms_, 0.5);
   report_.ms_per_frame_p95 = quantile(frame_ms_, 0.95);
   if (report_.frames > 0) report_.cpu_ms_per_frame = 1000 * stopwatch_.cpu_total() / report_.frames;
-  report_.state_hash = hex(world().state_hash());
+  report_.state_hash = to_hex(world().state_hash());
   for (FrameSink* sink : sinks_) sink->finish(*this, report_);
   return report_;
+}
+
+const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame) {
+  while (run.next_frame(options.keep_going)) {
+    const double spent = run.seconds_spent();
+    const int left = run.num_frames() - run.frame();
+    if (on_frame && !on_frame({run.frame(), run.num_frames(), spent, spent / run.frame() * left}) && left > 0)
+      run.interrupt();
+  }
+  return run.finish();
 }
 
 RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std::vector<FrameSink*>& sinks,
@@ -132,13 +176,7 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std
   std::vector<FrameSink*> all = {&recorder, &checker};
   all.insert(all.end(), sinks.begin(), sinks.end());
   SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames);
-  while (run.next_frame()) {
-    const double spent = run.seconds_spent();
-    const int left = run.num_frames() - run.frame();
-    if (on_frame && !on_frame({run.frame(), run.num_frames(), spent, spent / run.frame() * left}) && left > 0)
-      run.interrupt();
-  }
-  return run.finish();
+  return play(run, options, on_frame);
 }
 
 std::vector<std::string> check_paper(const IntegratorSettings& solver, double step, const World& world) {

@@ -1,7 +1,7 @@
 #pragma once
 /// Runs a scene frame by frame.
 ///
-///     GlbSink glb(file);
+///     GlbSink glb("flag.glb", "flag.frames");
 ///     SceneRun run(read_scene("flag.toml"), make_jobs(2), {&glb});
 ///     while (run.next_frame()) print(run.report().kinetic_energy.back());
 ///     run.finish();
@@ -9,9 +9,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "weft/core/job_system.h"
+#include "weft/run.h"
 #include "weft/run/frame_sink.h"
 #include "weft/run/stopwatch.h"
 #include "weft/scene/scene_world.h"
@@ -25,11 +27,17 @@ class SceneRun {
   SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks = {},
            std::optional<int> num_frames = {});
 
+  /// Continues a run of the same scene, number of frames and kinds of sinks from what its save() returned: it
+  /// ends with the same bits. Throws InputError for other bytes.
+  SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks, int num_frames,
+           std::span<const std::byte> saved);
+
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
 
   /// Simulates a frame. False if no frame is left, or if it failed: then report() has the outcome.
-  bool next_frame();
+  /// `keep_going` is asked between its steps; false interrupts the run within the frame.
+  bool next_frame(const std::function<bool()>& keep_going = {});
 
   /// One step, for programs that change or show the world between the steps of a frame. Wind and gusts are
   /// the scene's. Sinks and report do not include it.
@@ -37,6 +45,9 @@ class SceneRun {
 
   /// Sets the outcome of a run that ends early.
   void interrupt() { report_.outcome = RunOutcome::interrupted; }
+
+  /// State of world, report and sinks after a frame. Calls sync() of the sinks first.
+  std::vector<std::byte> save();
 
   /// Ends the run, complete or not: adds the last entries of the report and finishes the sinks.
   const RunReport& finish();
@@ -48,6 +59,7 @@ class SceneRun {
   World& world();
   const World& world() const;
   weft::World& public_world() { return built_.world; }
+  const weft::World& public_world() const { return built_.world; }
   const SceneNotes& notes() const { return built_; }
   const RunReport& report() const { return report_; }  // so far
 
@@ -56,9 +68,10 @@ class SceneRun {
   double seconds_spent() const { return spent_; }  // on simulation, wall time [s]
 
  private:
-  bool simulate_frame();
+  bool simulate_frame(const std::function<bool()>& keep_going);
   void add_work(const StepReport& done);
   void add_contact(const StepReport& done);
+  void end_series();
 
   SceneDesc scene_;
   int num_frames_;
@@ -71,26 +84,13 @@ class SceneRun {
   std::vector<double> frame_ms_;
 };
 
-struct RunOptions {
-  std::optional<int> frames;   // instead of the scene's duration · fps [1]
-  int threads = 1;             // >= 1; the result does not depend on it
-  bool audit = false;          // see Recorder
-  bool check_passages = true;  // see FrameChecker
-};
-
-/// Progress of a run.
-struct Progress {
-  int frame = 0;             // done
-  int num_frames = 0;        // of
-  double seconds_spent = 0;  // on simulation so far, wall time [s]
-  double seconds_left = 0;   // at the present pace [s]
-};
-
-/// Called after every frame; false ends the run and keeps the results so far.
-using OnFrame = std::function<bool(const Progress&)>;
+/// Simulates frame by frame until the end, a failure, or an interruption by the caller (RunOptions::keep_going,
+/// `on_frame`), and finishes the run.
+const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame = {});
 
 /// Runs a scene to its end, with a Recorder and a FrameChecker before the other sinks. Throws InputError for
-/// bad input. A failed step ends the run, with `outcome` and `failure` in the report.
+/// bad input. A failed step ends the run, with `outcome` and `failure` in the report. The options of files are
+/// run_to_folder's (run_folder.h).
 RunReport run_scene(const SceneDesc& scene, const RunOptions& options,
                     const std::vector<FrameSink*>& sinks = {}, const OnFrame& on_frame = {});
 

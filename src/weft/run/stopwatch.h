@@ -8,6 +8,9 @@ namespace weft::engine {
 
 class Stopwatch {
  public:
+  /// `cpu_total`: of earlier processes [s].
+  explicit Stopwatch(double cpu_total = 0) : cpu_total_(cpu_total) {}
+
   void start() {
     wall_ = std::chrono::steady_clock::now();
     cpu_ = cpu_seconds();
@@ -33,7 +36,7 @@ class Stopwatch {
   }
 
   std::chrono::steady_clock::time_point wall_;
-  double cpu_ = 0, cpu_total_ = 0;
+  double cpu_ = 0, cpu_total_;
 };
 
 }  // namespace weft::engine

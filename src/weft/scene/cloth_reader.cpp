@@ -32,12 +32,16 @@ std::optional<Shape> read_grid(TomlTable table) {
 }
 
 void read_weld(TomlTable& cloth, MeshSource& mesh) {
-  const TomlValue weld = cloth.get("weld");
+  constexpr NumberRule kDistance = not_negative("m");
+  Parameter note = make_note(kDistance);
+  note.choices = {"true", "false"};
+  note.default_value = "false";
+  const TomlValue weld = cloth.get("weld", std::move(note));
   if (!weld) return;
   if (weld.is_boolean()) {
     weld.read(mesh.weld);
   } else if (weld.node().is_number()) {
-    mesh.weld = weld.read(mesh.weld_distance, not_negative("m"));
+    mesh.weld = weld.read(mesh.weld_distance, kDistance);
   } else {
     weld.expected("true, false or a distance in m");
   }
@@ -56,8 +60,10 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
   const TomlValue grid = cloth.get("grid"), mesh = cloth.get("mesh");
   if (mesh && !grid) {
     cloth.refuse("model", "only a grid has it; the springs of a mesh are its edges");
+    cloth.set_form("mesh");
     return read_mesh(cloth, folder);
   }
+  cloth.set_form("grid");
   read_model(cloth, model);
   const bool is_grid = grid && !mesh;
   for (const char* key : {"up", "scale", "weld", "sew"}) {
@@ -111,13 +117,16 @@ std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
     return read_named_fabric(name, folder);
   TomlTable table = cloth.table("fabric");
   const TomlValue base = table.get("base");
-  if (!base && !has_any(table, kSiKeys)) {
+  const bool has_springs = !base && !has_any(table, kSiKeys);
+  table.set_form(has_springs ? "springs" : "fabric");
+  if (has_springs) {
     material = read_springs(table);
     return {};
   }
   for (const char* key : kSpringKeys)
     table.refuse(key, "a fabric has either spring stiffnesses or SI values (c11 to bend_bias)");
   FabricDesc fabric{.name = "fabric", .numbers = {}};
+  table.note("base", {.kind = ParameterKind::text});
   if (base) fabric = read_named_fabric(base, folder).value_or(fabric);
   table.read("name", fabric.name);
   fabric.numbers = read_fabric_numbers(table, false, fabric.numbers);
@@ -125,9 +134,10 @@ std::optional<FabricDesc> read_fabric(TomlTable& cloth, ClothMaterial& material,
 }
 
 void read_warp(TomlTable& cloth, FabricDesc& fabric) {
-  const TomlValue warp = cloth.get("warp");
+  constexpr NumberRule kRule = any_number();
+  const TomlValue warp = cloth.get("warp", make_note(kRule, 3));
   Vec3 direction;
-  if (!warp || !warp.read(direction, any_number(), "[1, 0, 0]")) return;
+  if (!warp || !warp.read(direction, kRule, "[1, 0, 0]")) return;
   if (direction.norm() < 1e-6) warp.expected("a direction");
   fabric.warp = direction;
 }
@@ -161,7 +171,7 @@ std::filesystem::path read_file_name(TomlTable& owner, std::string_view key,
                                      const std::filesystem::path& folder) {
   std::string name;
   std::error_code unreadable;
-  const TomlValue value = owner.get(key);
+  const TomlValue value = owner.get(key, {.kind = ParameterKind::file});
   if (!value || !value.read(name)) return {};
   const std::filesystem::path file = folder / name;
   const bool exists = std::filesystem::is_regular_file(file, unreadable);
@@ -182,6 +192,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   cloth.name = number == 1 ? "cloth" : "cloth " + std::to_string(number);
   table.read("name", cloth.name);
   const std::optional<Shape> shape = read_shape(table, cloth.model, folder);
+  table.set_form("");
   if (shape) cloth.shape = *shape;
   cloth.fabric = read_fabric(table, cloth.material, folder);
   const TomlValue fabric = table.get("fabric");

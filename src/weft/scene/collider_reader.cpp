@@ -68,7 +68,7 @@ PlacedBox read_box(TomlTable& collider) {
 void read_frames(TomlTable& collider, const std::filesystem::path& folder, PlacedMesh& mesh) {
   std::string name;
   collider.read("frame_rate", mesh.frame_rate, above_zero("frames per second"));
-  const TomlValue frames = collider.get("frames");
+  const TomlValue frames = collider.get("frames", {.kind = ParameterKind::file});
   if (!frames.read(name)) return;
   const std::filesystem::path pattern = folder / name;
   if (std::count(name.begin(), name.end(), '*') != 1 ||
@@ -105,8 +105,9 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
 Shape read_shape(TomlTable& collider, const std::filesystem::path& folder) {
   const std::vector<std::string> names = {"sphere", "plane", "capsule", "box", "mesh"};
   collider.require({"shape"}, "\"sphere\", \"plane\", \"capsule\", \"box\" or \"mesh\"");
-  const TomlValue shape = collider.get("shape");
-  switch (shape ? shape.find_choice(names) : -1) {
+  const int index = collider.find_choice("shape", names);
+  if (index >= 0) collider.set_form(names[index]);
+  switch (index) {
     case 0:
       return read_sphere(collider);
     case 1:
@@ -155,14 +156,17 @@ std::vector<KeyFrame> read_motion(TomlTable& owner) {
 }
 
 void read_static_friction(TomlTable& table, double friction, double& static_friction) {
-  if (table.read("static_friction", static_friction, not_negative()) && static_friction < friction)
-    table.get("static_friction").mistake("must not be below friction, " + std::to_string(friction));
+  constexpr NumberRule kRule = not_negative();
+  const TomlValue value = table.get("static_friction", make_note(kRule));
+  if (value && value.read(static_friction, kRule) && static_friction < friction)
+    value.mistake("must not be below friction, " + std::to_string(friction));
 }
 
 ColliderSceneDesc read_collider(TomlTable table, int number, const std::filesystem::path& folder) {
   ColliderSceneDesc collider;
   collider.name = number == 1 ? "collider" : "collider " + std::to_string(number);
   collider.shape = read_shape(table, folder);
+  table.set_form("");
   table.read("name", collider.name);
   table.read("friction", collider.friction, not_negative());
   read_static_friction(table, collider.friction, collider.static_friction);

@@ -1,6 +1,8 @@
-#include "weft/scene/diagnostic.h"
+/// Public types: mistakes in scenes.
 
-namespace weft::engine {
+#include "weft/scene.h"
+
+namespace weft {
 namespace {
 
 std::string list(const std::vector<Diagnostic>& diagnostics) {
@@ -20,4 +22,4 @@ std::string Diagnostic::to_string() const {
 SceneError::SceneError(std::vector<Diagnostic> diagnostics)
     : InputError(list(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
-}  // namespace weft::engine
+}  // namespace weft

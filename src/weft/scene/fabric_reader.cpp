@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "weft/error.h"
+#include "weft/fabric/fabric_ranges.h"
 #include "weft/scene/scene_sections.h"
 
 namespace weft::engine {
@@ -33,11 +34,14 @@ FabricSources make_sources(const TomlTable& table, const fs::path& file) {
 /// Points of a stretch curve.
 void read_curve(TomlTable& table, const char* key, std::vector<StretchPoint>& curve) {
   constexpr std::string_view kForm = "points of strain and tension in N/m, as in [[0.01, 20], [0.02, 60]]";
-  const TomlValue value = table.get(key);
+  constexpr NumberRule kRule = above_zero();
+  Parameter note = make_note(kRule);
+  note.kind = ParameterKind::pairs;
+  const TomlValue value = table.get(key, std::move(note));
   if (!value) return;
   for (const TomlValue& point : value.elements(kForm)) {
     std::array<double, 2> numbers = {};
-    if (point.read(std::span<double>(numbers), above_zero(), "[0.01, 20]"))
+    if (point.read(std::span<double>(numbers), kRule, "[0.01, 20]"))
       curve.push_back({numbers[0], numbers[1]});
   }
 }
@@ -72,10 +76,19 @@ Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base)
   read("bend_warp", f.bend_warp, not_negative("N·m"));
   read("bend_weft", f.bend_weft, not_negative("N·m"));
   read("bend_bias", f.bend_bias, not_negative("N·m"));
-  table.read("damping", f.damping, not_negative("s"));
-  table.read("thickness", f.thickness, above_zero("m"));
-  table.read("friction", f.friction, not_negative());
-  table.read("strain_limit", f.strain_limit, not_negative());
+  // check_fabric() refuses numbers out of the range, with its own message.
+  const auto read_within = [&](const char* key, double& target, const NumberRule& rule,
+                               const FabricRange& range) {
+    Parameter note = make_note(target, rule);
+    note.min = range.min;
+    note.max = range.max;
+    note.excludes_min = false;
+    if (const TomlValue value = table.get(key, std::move(note))) value.read(target, rule);
+  };
+  read_within("damping", f.damping, not_negative("s"), kDampingRange);
+  read_within("thickness", f.thickness, above_zero("m"), kThicknessRange);
+  read_within("friction", f.friction, not_negative(), kFrictionRange);
+  read_within("strain_limit", f.strain_limit, not_negative(), kStrainLimitRange);
   read_curve(table, "stretch_warp", f.stretch_warp);
   read_curve(table, "stretch_weft", f.stretch_weft);
   check_fabric(table, f);

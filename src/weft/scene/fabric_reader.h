@@ -21,7 +21,7 @@
 #include <string_view>
 
 #include "weft/fabric.h"
-#include "weft/scene/diagnostic.h"
+#include "weft/scene.h"
 
 namespace weft::engine {
 

@@ -7,7 +7,7 @@
 namespace weft {
 
 MeshFromFile read_obj(const std::string& file) {
-  engine::ObjMesh obj = engine::read_obj(file);
+  engine::MeshFromFile obj = engine::read_obj(file);
   return {engine::from_engine(obj.mesh, obj.uv), std::move(obj.warnings)};
 }
 

@@ -103,7 +103,8 @@ std::optional<ParticleSelection> read_indices(const TomlValue& value, const Pinn
 
 std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pinnable) {
   table.require({"index", "box", "sphere"}, "one of them");
-  const TomlValue index = table.get("index"), box = table.get("box"), sphere = table.get("sphere");
+  const TomlValue index = table.get("index", make_note(IntegerRule{.least = 0}, 0)), box = table.get("box"),
+                  sphere = table.get("sphere");
   if (index) return read_indices(index, pinnable);
   if (box) return read_box(table.table("box"));
   if (sphere) return read_ball(table.table("sphere"));
@@ -114,7 +115,7 @@ std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pin
   constexpr std::string_view kForms =
       "\"corner:0,0\", \"index:12\", { index = [1, 2] }, { box = … } or { sphere = … }";
   pin.require({"select"}, kForms);
-  const TomlValue select = pin.get("select");
+  const TomlValue select = pin.get("select", {.kind = ParameterKind::table});
   if (!select) return {};
   if (select.is_table()) return read_region(pin.table("select"), pinnable);
   if (select.is_string()) return read_name(select, pinnable);
@@ -127,7 +128,7 @@ std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pin
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<PinDesc> pins;
-  if (const TomlValue names = cloth.get("pins")) {
+  if (const TomlValue names = cloth.get("pins", {.kind = ParameterKind::texts})) {
     constexpr std::string_view kForm = "an array of strings, as in [\"corner:0,0\", \"index:12\"]";
     for (const TomlValue& name : names.elements(kForm)) {
       const auto selection = read_name(name, pinnable);

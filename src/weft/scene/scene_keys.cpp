@@ -1,124 +1,112 @@
-/// The reference of scene files, from the reader's queries.
+/// The reference of scene files as Markdown, from the table of parameters.
 
 #include <algorithm>
-#include <map>
+#include <cstdio>
 
+#include "weft/parameters.h"
 #include "weft/scene/scene_reader.h"
-#include "weft/scene/scene_sections.h"
 
 namespace weft::engine {
 namespace {
 
-/// Files that together make the reader query every key; they need not be valid scenes.
-constexpr std::string_view kKeySamples[] = {
-    R"([scene]
-[[cloth]]
-grid = {}
-[cloth.fabric]
-spring_structural = 1
-[[cloth.pin]]
-select = { box = {} }
-motion = [{}]
-[[cloth.stiffen]]
-[[collider]]
-shape = "sphere"
-motion = [{}]
-[[collider]]
-shape = "plane"
-[[collider]]
-shape = "capsule"
-[[collider]]
-shape = "box"
-[[collider]]
-shape = "mesh"
-[[contact]]
-[wind]
-keys = [{}]
-)",
-    R"([scene]
-[[cloth]]
-mesh = "file.obj"
-[cloth.fabric]
-c11 = 1
-[[cloth.pin]]
-select = { sphere = {} }
-)"};
+std::string write_limit(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
 
-/// Keys of all tables by path, both in query order.
-class KeyTable {
- public:
-  void add(const TomlSection& section) {
-    for (const std::string& key : section.keys) note_of(section.path, key);
-    for (const KeyNote& note : section.notes) {
-      KeyNote& known = note_of(section.path, note.key);
-      if (known.holds.empty()) known = note;
-    }
-    for (const TomlSection::Requirement& r : section.required) {
-      for (const std::string& key : r.one_of) required_[section.path + "." + key] = words_for(r.one_of);
-    }
+std::string join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// The table that contains the parameter: "cloth" of "cloth.fabric".
+std::string table_of(const Parameter& p) {
+  const std::size_t dot = p.key.rfind('.');
+  return dot == std::string::npos ? "" : p.key.substr(0, dot);
+}
+
+std::string own_key_of(const Parameter& p) { return p.key.substr(p.key.rfind('.') + 1); }
+
+bool has_keys(const Parameter& table) {
+  const auto& all = parameters();
+  return std::any_of(all.begin(), all.end(), [&](const Parameter& p) { return table_of(p) == table.key; });
+}
+
+/// " ≥ 0 ≤ 1"
+std::string limits_of(const Parameter& p) {
+  std::string limits;
+  if (p.min) limits += (p.excludes_min ? " > " : " ≥ ") + write_limit(*p.min);
+  if (p.max) limits += " ≤ " + write_limit(*p.max);
+  return limits;
+}
+
+/// "3 numbers", "numbers"
+std::string counted(int length, const std::string& noun) {
+  return (length > 0 ? std::to_string(length) + " " : "") + noun;
+}
+
+std::string value_of(const Parameter& p) {
+  const std::string or_else = p.choices.empty() ? "" : join(p.choices) + " or ";
+  switch (p.kind) {
+    case ParameterKind::flag:
+      return "true or false";
+    case ParameterKind::number:
+      return or_else + "number" + limits_of(p);
+    case ParameterKind::whole_number:
+      return or_else + "whole number" + limits_of(p);
+    case ParameterKind::text:
+      return "text";
+    case ParameterKind::file:
+      return "file name";
+    case ParameterKind::choice:
+      return join(p.choices);
+    case ParameterKind::numbers:
+      return counted(p.length, "numbers") + limits_of(p);
+    case ParameterKind::whole_numbers:
+      return counted(p.length, "whole numbers") + limits_of(p);
+    case ParameterKind::texts:
+      return counted(p.length, "texts");
+    case ParameterKind::pairs:
+      return "pairs of numbers" + limits_of(p);
+    case ParameterKind::table:
+      return has_keys(p) ? "see `" + p.key + "` below" : "table";
+    case ParameterKind::tables:
+      return has_keys(p) ? "see `" + p.key + "` below" : "tables";
   }
+  return "";
+}
 
-  std::string to_markdown() const {
-    std::string text;
-    for (const auto& [path, notes] : tables_) {
-      text += "## " + (path.empty() ? "Top level" : "`" + path + "`") +
-              "\n\n| key | value | unit | default |\n|---|---|---|---|\n";
-      for (const KeyNote& n : notes) {
-        text += "| `" + n.key + "` | " + words_about(path, n) + " | " + n.unit + " | " + default_of(path, n) +
-                " |\n";
-      }
-      text += "\n";
-    }
-    return text;
-  }
+std::string default_of(const Parameter& p) {
+  if (!p.required) return p.default_value;
+  std::string words = "required";
+  for (const std::string& other : p.alternatives) words += ", or `" + other + "`";
+  return words;
+}
 
- private:
-  static std::string words_for(const std::vector<std::string>& one_of) {
-    if (one_of.size() == 1) return "required";
-    std::string words;
-    for (const std::string& key : one_of) words += (words.empty() ? "one of `" : ", `") + key + "`";
-    return words;
-  }
-
-  std::string words_about(const std::string& path, const KeyNote& note) const {
-    if (!note.holds.empty()) return note.holds;
-    const std::string own = path.empty() ? note.key : path + "." + note.key;
-    const bool has_table =
-        std::any_of(tables_.begin(), tables_.end(), [&](const auto& t) { return t.first == own; });
-    return has_table ? "see `" + own + "` below" : "see [Scene files](../manual/scenes.md)";
-  }
-
-  std::string default_of(const std::string& path, const KeyNote& note) const {
-    const auto required = required_.find(path + "." + note.key);
-    return required == required_.end() ? note.usual : required->second;
-  }
-
-  KeyNote& note_of(const std::string& path, const std::string& key) {
-    const auto table =
-        std::find_if(tables_.begin(), tables_.end(), [&](const auto& t) { return t.first == path; });
-    auto& notes =
-        table == tables_.end() ? tables_.emplace_back(path, std::vector<KeyNote>{}).second : table->second;
-    const auto note =
-        std::find_if(notes.begin(), notes.end(), [&](const KeyNote& n) { return n.key == key; });
-    return note == notes.end() ? notes.emplace_back(KeyNote{.key = key}) : *note;
-  }
-
-  std::vector<std::pair<std::string, std::vector<KeyNote>>> tables_;
-  std::map<std::string, std::string> required_;  // path of a required key → its wording
-};
+std::string heading_of(const Parameter& p) {
+  const std::string table = table_of(p);
+  return "## " + (table.empty() ? "Top level" : "`" + table + "`") +
+         (p.form.empty() ? "" : " (" + p.form + ")");
+}
 
 }  // namespace
 
 std::string describe_scene_keys() {
-  KeyTable table;
-  for (const std::string_view sample : kKeySamples) {
-    TomlDocument document(sample, "sample");
-    read_document(document, "sample");
-    for (const TomlSection& section : document.sections()) table.add(section);
+  std::string text =
+      "# Scene keys\n\nGenerated by `weft check --keys` from the table of parameters (`weft/parameters.h`). "
+      "[Scene files](../manual/scenes.md) has an example and the rules for keys together.\n";
+  std::string heading;
+  for (const Parameter& p : parameters()) {
+    if (const std::string own = heading_of(p); own != heading) {
+      heading = own;
+      text += "\n" + heading + "\n\n| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
+    }
+    text += "| `" + own_key_of(p) + "` | " + value_of(p) + " | " + p.unit + " | " + default_of(p) + " | " +
+            p.description + " |\n";
   }
-  return "# Scene keys\n\nGenerated by `weft check --keys` from the keys that the reader accepts. "
-         "[Scene files](../manual/scenes.md) explains them.\n\n" +
-         table.to_markdown();
+  return text;
 }
 
 }  // namespace weft::engine

@@ -4,15 +4,15 @@
 
 #include "weft/error.h"
 #include "weft/face/convert.h"
-#include "weft/io/obj_reader.h"
+#include "weft/io/mesh_files.h"
 #include "weft/mesh/solid.h"
 
 namespace weft::engine {
 namespace {
 
-ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
+MeshFromFile read(const std::filesystem::path& file, const std::string& owner) {
   try {
-    return read_obj(file);
+    return engine::read_mesh(file);
   } catch (const InputError& error) {  // names the file and the line
     throw InputError(owner + ": " + error.what());
   }
@@ -20,12 +20,12 @@ ObjMesh read(const std::filesystem::path& file, const std::string& owner) {
 
 /// In metres, y up.
 Vec3 to_world(const Vec3& p, const MeshSource& source) {
-  return source.scale * (source.up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+  return engine::to_world(p, source.up_is_z, source.scale);
 }
 
-ObjMesh read_in_metres(const std::filesystem::path& file, const MeshSource& source,
-                       const std::string& owner) {
-  ObjMesh obj = read(file, owner);
+MeshFromFile read_in_metres(const std::filesystem::path& file, const MeshSource& source,
+                            const std::string& owner) {
+  MeshFromFile obj = read(file, owner);
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   return obj;
 }
@@ -37,7 +37,7 @@ weft::TriangleMesh read_mesh(const MeshSource& source, const std::string& owner,
     for (weft::Vec3& p : mesh.positions) p = from_engine(to_world(to_engine(p), source));
     return mesh;
   }
-  const ObjMesh obj = read_in_metres(source.file, source, owner);
+  const MeshFromFile obj = read_in_metres(source.file, source, owner);
   for (const std::string& warning : obj.warnings)
     warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
   return from_engine(obj.mesh, obj.uv);

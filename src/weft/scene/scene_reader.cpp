@@ -31,7 +31,7 @@ std::string make_name(const std::filesystem::path& file) {
 
 void read_format(TomlTable& table) {
   table.require({"format"}, "format = 1");
-  const TomlValue format = table.get("format");
+  const TomlValue format = table.get("format", {.kind = ParameterKind::choice, .choices = {"1"}});
   const bool is_known = format && format.node().value_exact<std::int64_t>() == 1;
   if (format && !is_known) format.expected("1, the only format that this version reads");
 }
@@ -85,7 +85,7 @@ void read_gusts(TomlTable& wind, WindDesc& desc) {
 
 WindDesc read_wind(TomlTable table) {
   WindDesc wind;
-  if (!table.has("air")) table.require({"drag"}, "a number not below 0 in N·s/m³");
+  table.require_any({"drag", "air"}, "drag = 0.25 in N·s/m³, or air = {}");
   if (table.has("air")) read_air(table, wind);
   if (table.has("gusts") && !table.has("air")) table.get("gusts").mistake("requires air: add air = {}");
   if (table.has("gusts")) read_gusts(table, wind);
@@ -115,11 +115,11 @@ ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
   ContactDesc contact;
   table.require({"between"}, kForm);
   table.read("collide", contact.collide);
-  const TomlValue friction = table.get("friction");
+  const TomlValue friction = table.get("friction", make_note(not_negative()));
   if (double number = 0; friction && friction.read(number, not_negative())) contact.friction = number;
   read_static_friction(table, contact.friction.value_or(0), contact.static_friction);
   if (contact.static_friction > 0 && !friction) table.get("static_friction").mistake("requires friction");
-  const TomlValue between = table.get("between");
+  const TomlValue between = table.get("between", {.kind = ParameterKind::texts, .length = 2});
   if (!between) return contact;
   const std::vector<TomlValue> names = between.elements(kForm);
   if (names.size() != 2) {
@@ -138,8 +138,7 @@ ContactDesc read_contact(TomlTable& table, const SceneDesc& scene) {
 
 void read_integrator(TomlTable& solver, std::string& integrator) {
   const std::vector<std::string> names(integrator_names().begin(), integrator_names().end());
-  const TomlValue value = solver.get("integrator");
-  const int choice = value ? value.find_choice(names) : -1;
+  const int choice = solver.find_choice("integrator", names, integrator);
   if (choice >= 0) integrator = names[choice];
 }
 
@@ -160,18 +159,22 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
 
 /// A number applies to the integrator in use; "auto" leaves the choice to it.
 void read_iterations(TomlTable& solver, IntegratorSettings& settings) {
-  const TomlValue value = solver.get("iterations");
+  constexpr IntegerRule kRule{1, INT_MAX};
+  Parameter note = make_note(kRule);
+  note.choices = {quote("auto")};
+  note.default_value = note.choices[0];
+  const TomlValue value = solver.get("iterations", std::move(note));
   if (!value) return;
   int iterations = 0;
   if (value.is_string()) {
     if (value.node().value_exact<std::string_view>() != "auto") value.expected("a whole number or \"auto\"");
-  } else if (value.read(iterations, IntegerRule{1, INT_MAX})) {
+  } else if (value.read(iterations, kRule)) {
     settings.implicit_euler.iterations = settings.newton.iterations = iterations;
   }
 }
 
 void read_adaptive(TomlTable& solver, SceneDesc& scene) {
-  const TomlValue value = solver.get("adaptive");
+  const TomlValue value = solver.get("adaptive", {.kind = ParameterKind::flag});
   bool is_adaptive = false;
   if (!value || !value.read(is_adaptive)) return;
   scene.adaptive = is_adaptive;
@@ -209,7 +212,9 @@ void read_solver(TomlTable table, SceneDesc& scene) {
   throw SceneError({{file.generic_string(), 0, 0, message}});
 }
 
-std::string read_text(const std::filesystem::path& file) {
+}  // namespace
+
+std::string read_scene_text(const std::filesystem::path& file) {
   std::error_code not_there;
   if (std::filesystem::is_directory(file, not_there)) fail(file, "expected a scene file, found a folder");
   std::ifstream stream(file, std::ios::binary);
@@ -218,8 +223,6 @@ std::string read_text(const std::filesystem::path& file) {
   if (stream.bad()) fail(file, "cannot be read");
   return text;
 }
-
-}  // namespace
 
 SceneDesc read_document(TomlDocument& document, const std::filesystem::path& file) {
   SceneDesc scene;
@@ -246,7 +249,7 @@ SceneDesc read_document(TomlDocument& document, const std::filesystem::path& fil
 }
 
 SceneDesc read_scene(const std::filesystem::path& file, const Overrides& overrides) {
-  return parse_scene(read_text(file), file, overrides);
+  return parse_scene(read_scene_text(file), file, overrides);
 }
 
 SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file, const Overrides& overrides) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "weft/scene/diagnostic.h"
+#include "weft/scene.h"
 #include "weft/scene/scene_desc.h"
 
 namespace weft::engine {
@@ -22,8 +22,10 @@ SceneDesc read_scene(const std::filesystem::path& file, const Overrides& overrid
 SceneDesc parse_scene(std::string_view text, const std::filesystem::path& file,
                       const Overrides& overrides = {});
 
-/// Reference of all keys that read_scene() reads, as Markdown: type, unit and default. Recorded from the
-/// reader's own queries.
+/// Contents of a scene file. Throws SceneError if it cannot be read.
+std::string read_scene_text(const std::filesystem::path& file);
+
+/// Reference of all keys that read_scene() reads, as Markdown: the table of weft/parameters.h.
 std::string describe_scene_keys();
 
 }  // namespace weft::engine

@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <map>
 #include <random>
+#include <span>
 #include <sstream>
 
 #include "weft/core/file_name.h"
+#include "weft/core/hash.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
+#include "weft/io/input_file.h"
 #include "weft/io/obj_reader.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_sections.h"
@@ -100,19 +103,59 @@ std::string toml_array(const std::vector<Table>& tables) {
 
 // ---- Meshes ----
 
-/// Names of mesh files relative to the scene file's folder; meshes in memory are written there first.
-class MeshFiles {
+/// The names of mesh files in a scene's text.
+class MeshNames {
+ public:
+  virtual ~MeshNames() = default;
+  virtual std::string relative(const fs::path& file) const = 0;
+  virtual std::string name_of(const MeshSource& source, const std::string& owner) = 0;
+  virtual std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) = 0;
+};
+
+/// Hashes of contents instead of names; a mesh in memory has that of the file that MeshFiles writes.
+class MeshHashes : public MeshNames {
+ public:
+  std::string relative(const fs::path& file) const override { return hash(read(file)); }
+
+  std::string name_of(const MeshSource& source, const std::string&) override {
+    if (!source.mesh) return relative(source.file);
+    return hash(obj_text(to_engine(*source.mesh), to_engine(source.mesh->uv)));
+  }
+
+  std::string name_of_frames(const PlacedMesh& mesh, const std::string&) override {
+    std::string all;
+    for (const fs::path& file : mesh.frames) all += hash(read(file));
+    if (!mesh.frame_positions.empty()) {
+      TriangleMesh moved = to_engine(*mesh.source.mesh);
+      for (const std::vector<Vec3>& positions : mesh.frame_positions) {
+        moved.positions = positions;
+        all += hash(obj_text(moved, to_engine(mesh.source.mesh->uv)));
+      }
+    }
+    return hash(all);
+  }
+
+ private:
+  static std::string read(const fs::path& file) { return read_bytes(file, "a mesh file"); }
+
+  static std::string hash(const std::string& content) {
+    return "hash " + to_hex(hash_of(std::span<const char>(content)));
+  }
+};
+
+/// Names relative to the scene file's folder; meshes in memory are written there first.
+class MeshFiles : public MeshNames {
  public:
   explicit MeshFiles(const fs::path& scene_file)
       : folder_(scene_file.parent_path()), stem_(scene_file.stem().string()) {}
 
-  std::string relative(const fs::path& file) const {
+  std::string relative(const fs::path& file) const override {
     const fs::path name =
         fs::absolute(file).lexically_relative(fs::absolute(folder_.empty() ? "." : folder_));
     return (name.empty() ? fs::absolute(file) : name).generic_string();
   }
 
-  std::string name_of(const MeshSource& source, const std::string& owner) {
+  std::string name_of(const MeshSource& source, const std::string& owner) override {
     if (!source.mesh) return relative(source.file);
     const std::string name = names_.add(stem_ + "_" + owner) + ".obj";
     write_obj(folder_ / name, to_engine(*source.mesh), to_engine(source.mesh->uv));
@@ -120,7 +163,7 @@ class MeshFiles {
   }
 
   /// A name with a star.
-  std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) {
+  std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) override {
     if (mesh.frame_positions.empty()) return relative(pattern_of(mesh.frames, owner));
     const std::string begin = names_.add(stem_ + "_" + owner) + "_";
     TriangleMesh moved = to_engine(*mesh.source.mesh);
@@ -235,7 +278,7 @@ std::string springs_text(const ClothSceneDesc& cloth) {
   return table.in_line();
 }
 
-std::string shape_lines(const ClothSceneDesc& cloth, MeshFiles& files) {
+std::string shape_lines(const ClothSceneDesc& cloth, MeshNames& files) {
   Table table;
   if (const Grid* grid = std::get_if<Grid>(&cloth.shape)) {
     const Table inner = Table()
@@ -252,7 +295,7 @@ std::string shape_lines(const ClothSceneDesc& cloth, MeshFiles& files) {
   return table.lines();
 }
 
-std::string cloth_text(const ClothSceneDesc& cloth, MeshFiles& files) {
+std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
   Table table;
   table.add_text("fabric", cloth.fabric ? fabric_text(*cloth.fabric) : springs_text(cloth));
   if (cloth.fabric && cloth.fabric->membrane == Membrane::springs)
@@ -278,7 +321,7 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshFiles& files) {
 
 /// Shape and keys of a collider.
 struct ShapeKeys {
-  MeshFiles& files;
+  MeshNames& files;
   const std::string& owner;
   Table& table;
 
@@ -310,7 +353,7 @@ struct ShapeKeys {
   }
 };
 
-std::string collider_text(const ColliderSceneDesc& collider, MeshFiles& files) {
+std::string collider_text(const ColliderSceneDesc& collider, MeshNames& files) {
   if (collider.motion.passage())
     throw InputError("collider \"" + collider.name + "\": a scene file has motions by key frames only");
   Table table;
@@ -381,7 +424,7 @@ std::string solver_text(const SceneDesc& scene) {
   return "\n[solver]\n" + table.lines();
 }
 
-std::string scene_text(const SceneDesc& scene, MeshFiles& files) {
+std::string scene_text(const SceneDesc& scene, MeshNames& files) {
   Table head;
   head.add("format", 1)
       .add("description", scene.description, std::string())
@@ -442,6 +485,11 @@ class TemporaryFolder {
 void write_scene(const fs::path& file, const SceneDesc& scene) {
   MeshFiles files(file);
   write_file(file, scene_text(scene, files));
+}
+
+std::string scene_text_with_hashes(const SceneDesc& scene) {
+  MeshHashes hashes;
+  return scene_text(scene, hashes);
 }
 
 std::vector<std::string> check_scene(const SceneDesc& scene) {

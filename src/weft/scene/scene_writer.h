@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "weft/scene/diagnostic.h"
+#include "weft/scene.h"
 #include "weft/scene/scene_desc.h"
 
 namespace weft::engine {
@@ -14,6 +14,10 @@ namespace weft::engine {
 /// folder; meshes in memory are written beside it as OBJ. Throws InputError for a file that cannot be
 /// written, and for a motion or a sequence that a scene file cannot express.
 void write_scene(const std::filesystem::path& file, const SceneDesc& scene);
+
+/// The text of a scene file, for comparisons: with a hash of the contents in place of the name of each mesh
+/// file, and of each mesh in memory. Throws InputError for a file that cannot be read, and like write_scene().
+std::string scene_text_with_hashes(const SceneDesc& scene);
 
 /// Validates a scene that a program built. The messages are the reader's for the same scene in a file. Each
 /// begins with section and key, as in "cloth[0].scale: expected …". Empty: the scene is valid.

@@ -6,18 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "weft/scene/diagnostic.h"
+#include "weft/parameters.h"
+#include "weft/scene.h"
 #include "weft/scene/toml_plus_plus.h"
 
 namespace weft::engine {
-
-/// Documentation of a key, for the reference of scene files.
-struct KeyNote {
-  std::string key;
-  std::string holds;  // "number > 0"
-  std::string unit;   // "m"; empty: none
-  std::string usual;  // the default in TOML; empty: none
-};
 
 /// Keys that a reader queries in one table. Keys that were never queried are mistakes, found in finish().
 struct TomlSection {
@@ -31,8 +24,9 @@ struct TomlSection {
   std::vector<std::string> keys;       // known ones, in the order of queries
   std::vector<std::string> refused;    // keys that have already been reported
   std::vector<Requirement> required;
-  bool any_keys = false;       // unknown keys are allowed
-  std::vector<KeyNote> notes;  // of keys that were read with a type
+  bool any_keys = false;         // unknown keys are allowed
+  std::string form;              // Parameter::form of the keys that are read next
+  std::vector<Parameter> notes;  // documentation of the keys; their `key` is without the path
 };
 
 class TomlDocument {

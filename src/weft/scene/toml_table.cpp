@@ -1,6 +1,7 @@
 #include "weft/scene/toml_table.h"
 
 #include <algorithm>
+#include <climits>
 #include <cstdio>
 
 namespace weft::engine {
@@ -14,50 +15,80 @@ std::string write_number(double value) {
   return text;
 }
 
-std::string limits_of(const NumberRule& rule) {
-  std::string limits;
-  if (rule.low == NumberRule::Low::zero) limits = " ≥ 0";
-  if (rule.low == NumberRule::Low::above_zero) limits = " > 0";
-  if (rule.most < kLargestNumber) limits += " ≤ " + write_number(rule.most);
-  return limits;
+bool allows(double number, const NumberRule& rule) {
+  return rule.low == NumberRule::Low::none || number > 0 ||
+         (rule.low == NumberRule::Low::zero && number == 0);
 }
 
-std::string limits_of(const IntegerRule& rule) {
-  return " ≥ " + std::to_string(rule.least) + (rule.most < INT_MAX ? " ≤ " + std::to_string(rule.most) : "");
-}
+bool allows(int number, const IntegerRule& rule) { return number >= rule.least && number <= rule.most; }
 
 }  // namespace
 
-KeyNote make_note(std::string_view key, const bool& usual) {
-  return {std::string(key), "true or false", "", usual ? "true" : "false"};
+Parameter make_note(const NumberRule& rule) {
+  Parameter note{.kind = ParameterKind::number, .unit = std::string(rule.unit)};
+  if (rule.low != NumberRule::Low::none) note.min = 0;
+  note.excludes_min = rule.low == NumberRule::Low::above_zero;
+  if (rule.most < kLargestNumber) note.max = rule.most;
+  return note;
 }
 
-KeyNote make_note(std::string_view key, const std::string& usual) {
-  return {std::string(key), "text", "", usual.empty() ? "" : quote(usual)};
+Parameter make_note(const IntegerRule& rule) {
+  Parameter note{.kind = ParameterKind::whole_number, .min = rule.least};
+  if (rule.most < INT_MAX) note.max = rule.most;
+  return note;
 }
 
-KeyNote make_note(std::string_view key, const int& usual, const IntegerRule& rule) {
-  return {std::string(key), "whole number" + limits_of(rule), "", std::to_string(usual)};
+Parameter make_note(const NumberRule& each, int length) {
+  Parameter note = make_note(each);
+  note.kind = ParameterKind::numbers;
+  note.length = length;
+  return note;
 }
 
-KeyNote make_note(std::string_view key, const double& usual, const NumberRule& rule) {
-  return {std::string(key), "number" + limits_of(rule), std::string(rule.unit), write_number(usual)};
+Parameter make_note(const IntegerRule& each, int length) {
+  Parameter note = make_note(each);
+  note.kind = ParameterKind::whole_numbers;
+  note.length = length;
+  return note;
 }
 
-KeyNote make_note(std::string_view key, std::span<const double> usual, const NumberRule& each,
-                  std::string_view) {
+Parameter make_note(const bool& usual) {
+  return {.kind = ParameterKind::flag, .default_value = usual ? "true" : "false"};
+}
+
+Parameter make_note(const std::string& usual) {
+  return {.kind = ParameterKind::text, .default_value = usual.empty() ? "" : quote(usual)};
+}
+
+Parameter make_note(const int& usual, const IntegerRule& rule) {
+  Parameter note = make_note(rule);
+  if (allows(usual, rule)) note.default_value = std::to_string(usual);
+  return note;
+}
+
+Parameter make_note(const double& usual, const NumberRule& rule) {
+  Parameter note = make_note(rule);
+  if (allows(usual, rule)) note.default_value = write_number(usual);
+  return note;
+}
+
+Parameter make_note(std::span<const double> usual, const NumberRule& each, std::string_view) {
+  Parameter note = make_note(each, static_cast<int>(usual.size()));
   std::string list;
-  for (const double value : usual) list += (list.empty() ? "[" : ", ") + write_number(value);
-  return {std::string(key), std::to_string(usual.size()) + " numbers" + limits_of(each),
-          std::string(each.unit), list + "]"};
+  for (const double value : usual) {
+    if (!allows(value, each)) return note;
+    list += (list.empty() ? "[" : ", ") + write_number(value);
+  }
+  note.default_value = list + "]";
+  return note;
 }
 
-KeyNote make_note(std::string_view key, const Vec3& usual, const NumberRule& each, std::string_view example) {
-  return make_note(key, std::span<const double>(usual.data(), 3), each, example);
+Parameter make_note(const Vec3& usual, const NumberRule& each, std::string_view example) {
+  return make_note(std::span<const double>(usual.data(), 3), each, example);
 }
 
-KeyNote make_note(std::string_view key, const std::array<int, 2>&, const IntegerRule& each) {
-  return {std::string(key), "2 whole numbers" + limits_of(each), "", ""};
+Parameter make_note(const std::array<int, 2>& usual, const IntegerRule& each) {
+  return make_note(each, static_cast<int>(usual.size()));
 }
 
 TomlValue TomlTable::get(std::string_view key) {
@@ -67,19 +98,33 @@ TomlValue TomlTable::get(std::string_view key) {
   return {*document_, *section_->table->get(key), std::string(key)};
 }
 
+void TomlTable::note(std::string_view key, Parameter note) {
+  note.key = key;
+  note.form = section_->form;
+  section_->notes.push_back(std::move(note));
+}
+
+int TomlTable::find_choice(std::string_view key, const std::vector<std::string>& names,
+                           std::string_view usual) {
+  Parameter note{.kind = ParameterKind::choice, .default_value = usual.empty() ? "" : quote(usual)};
+  for (const std::string& name : names) note.choices.push_back(quote(name));
+  const TomlValue value = get(key, std::move(note));
+  return value ? value.find_choice(names) : -1;
+}
+
 std::string TomlTable::path_of(std::string_view key) const {
   return section_->path + (section_->path.empty() ? "" : ".") + std::string(key);
 }
 
 TomlTable TomlTable::table(std::string_view key) {
-  const TomlValue value = get(key);
+  const TomlValue value = get(key, {.kind = ParameterKind::table});
   if (value && !value.is_table()) value.expected("a table");
   return {*document_, value ? value.node().as_table() : nullptr, path_of(key)};
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   std::vector<TomlTable> tables;
-  const TomlValue value = get(key);
+  const TomlValue value = get(key, {.kind = ParameterKind::tables});
   if (!value) return tables;
   const std::string path = path_of(key), expected = "an array of tables, written [[" + path + "]]";
   if (value.is_table()) {
@@ -94,8 +139,12 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   return tables;
 }
 
+void TomlTable::require_any(std::initializer_list<std::string_view> keys, std::string_view expected) {
+  section_->required.push_back({{keys.begin(), keys.end()}, std::string(expected)});
+}
+
 void TomlTable::require(std::initializer_list<std::string_view> one_of, std::string_view expected) {
-  section_->required.push_back({{one_of.begin(), one_of.end()}, std::string(expected)});
+  require_any(one_of, expected);
   // Of several, the mistake is at the key that comes later in the file.
   const toml::key* first = nullptr;
   for (const std::string_view name : one_of) {

@@ -88,27 +88,20 @@ class TomlValue {
   std::string name_;
 };
 
-// Documentation of a key, with the rules of TomlValue::read(); the target holds the default.
-KeyNote make_note(std::string_view key, const bool& usual);
-KeyNote make_note(std::string_view key, const std::string& usual);
-KeyNote make_note(std::string_view key, const int& usual, const IntegerRule& rule);
-KeyNote make_note(std::string_view key, const double& usual, const NumberRule& rule);
-KeyNote make_note(std::string_view key, std::span<const double> usual, const NumberRule& each,
-                  std::string_view example = "");
-KeyNote make_note(std::string_view key, const Vec3& usual, const NumberRule& each,
-                  std::string_view example = "");
-KeyNote make_note(std::string_view key, const std::array<int, 2>& usual, const IntegerRule& each);
+// Documentation of a key by the rules of TomlValue::read(), without a default.
+Parameter make_note(const NumberRule& rule);
+Parameter make_note(const IntegerRule& rule);
+Parameter make_note(const NumberRule& each, int length);  // arrays; length 0: any
+Parameter make_note(const IntegerRule& each, int length);
 
-template <class Choice>
-KeyNote make_choice_note(std::string_view key, const Choice& usual, Choices<Choice> choices) {
-  KeyNote note{.key = std::string(key)};
-  for (const auto& [name, choice] : choices) {
-    const std::string quoted = "\"" + std::string(name) + "\"";
-    note.holds += (note.holds.empty() ? "" : ", ") + quoted;
-    if (choice == usual) note.usual = quoted;
-  }
-  return note;
-}
+// The same with a default, unless the rule excludes it.
+Parameter make_note(const bool& usual);
+Parameter make_note(const std::string& usual);
+Parameter make_note(const int& usual, const IntegerRule& rule);
+Parameter make_note(const double& usual, const NumberRule& rule);
+Parameter make_note(std::span<const double> usual, const NumberRule& each, std::string_view example = "");
+Parameter make_note(const Vec3& usual, const NumberRule& each, std::string_view example = "");
+Parameter make_note(const std::array<int, 2>& usual, const IntegerRule& each);
 
 /// A table that records queried keys. A table that is not in the document can be queried too.
 class TomlTable {
@@ -121,25 +114,46 @@ class TomlTable {
 
   TomlValue get(std::string_view key);
 
+  /// Documents a key for parameters(); its `key` and `form` are set here.
+  void note(std::string_view key, Parameter note);
+
+  /// The keys that are read next belong to this Parameter::form.
+  void set_form(std::string_view form) { section_->form = form; }
+
+  /// note(key, …) and get(key).
+  TomlValue get(std::string_view key, Parameter documentation) {
+    note(key, std::move(documentation));
+    return get(key);
+  }
+
   /// get(key).read(…), false if the key is missing.
   template <class Target, class... Rules>
   bool read(std::string_view key, Target&& target, Rules&&... rules) {
-    section_->notes.push_back(make_note(key, target, rules...));
-    const TomlValue value = get(key);
+    const TomlValue value = get(key, make_note(target, rules...));
     return value && value.read(std::forward<Target>(target), std::forward<Rules>(rules)...);
   }
 
   template <class Choice>
   bool read_choice(std::string_view key, Choice& target, Choices<Choice> choices) {
-    section_->notes.push_back(make_choice_note(key, target, choices));
-    const TomlValue value = get(key);
+    Parameter note{.kind = ParameterKind::choice};
+    for (const auto& [name, choice] : choices) {
+      note.choices.push_back(quote(name));
+      if (choice == target) note.default_value = note.choices.back();
+    }
+    const TomlValue value = get(key, std::move(note));
     return value && value.read_choice(target, choices);
   }
+
+  /// Index of the given name; -1 if the key is missing or its value, a mistake, is none of the names.
+  int find_choice(std::string_view key, const std::vector<std::string>& names, std::string_view usual = "");
 
   TomlTable table(std::string_view key);
 
   /// The tables of an array, written [[key]] or key = [{ … }, …].
   std::vector<TomlTable> tables(std::string_view key);
+
+  /// At least one of the keys must be present (a mistake if not, unless one of them is misspelt).
+  void require_any(std::initializer_list<std::string_view> keys, std::string_view expected);
 
   /// Exactly one of the keys must be present (a mistake if not, unless one of them is misspelt).
   void require(std::initializer_list<std::string_view> one_of, std::string_view expected);

@@ -230,7 +230,7 @@ std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
   read(next);
   for (const MovingSurface& surface : surfaces_) {
     if (is_finite(surface.end)) continue;
-    ++num_left_out_;
+    ++pending_.num_left_out;
     return {};
   }
   test_features(next);
@@ -239,7 +239,7 @@ std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
   }
   for (MovingSurface& surface : surfaces_) surface.start.swap(surface.end);
   colliders_ = next.colliders;
-  open_ = std::move(still_open_);
+  pending_.open = std::move(still_open_);
   still_open_.clear();
   std::sort(passages_.begin(), passages_.end());
   return std::exchange(passages_, {});
@@ -254,7 +254,7 @@ void PassageWatch::test_features(const Frame& next) {
     const auto [passes, is_open_before, is_open_after] = test(surfaces_, pair);
     settle(pair, passes, is_open_before, is_open_after);
   });
-  if (!is_done) ++num_left_out_;
+  if (!is_done) ++pending_.num_left_out;
 }
 
 void PassageWatch::test_particles(const Frame& next, int cloth, int collider) {
@@ -275,15 +275,15 @@ void PassageWatch::test_particles(const Frame& next, int cloth, int collider) {
     const FeaturePair pair{Kind::particle_shape, cloth, collider_surface, {i, i}, {-1, -1}};
     const bool is_in_before = depth_at(way.start, frames[0].before, frames[0].shape) > tolerance_;
     const bool is_in_after = depth_at(way.end, frames[0].after, frames[0].shape) > tolerance_;
-    settle(pair, !is_in_before && !open_.contains(pair), is_in_before, is_in_after);
+    settle(pair, !is_in_before && !pending_.open.contains(pair), is_in_before, is_in_after);
   }
 }
 
 /// A pair is open while it touches, or a particle is in a shape; its result is reported when it is no longer
 /// open.
 void PassageWatch::settle(const FeaturePair& pair, bool passes, bool is_open_before, bool is_open_after) {
-  const auto known = open_.find(pair);
-  Open state = known != open_.end() ? known->second : Open{.is_known = !is_open_before};
+  const auto known = pending_.open.find(pair);
+  Open state = known != pending_.open.end() ? known->second : Open{.is_known = !is_open_before};
   state.is_through ^= passes;
   if (is_open_after) {
     still_open_[pair] = state;

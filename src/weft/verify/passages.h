@@ -27,6 +27,18 @@ namespace weft::engine::verify {
 /// vertices and the same triangles; coordinates are in the range of pair_motion.h.
 class PassageWatch {
  public:
+  /// A touching pair, or a particle in a shape.
+  struct Open {
+    bool is_through = false;  // currently
+    bool is_known = true;     // false: since the first frame
+  };
+
+  /// What a watch that begins at a later frame has to know of the frames before.
+  struct Pending {
+    std::map<FeaturePair, Open> open;
+    int num_left_out = 0;
+  };
+
   explicit PassageWatch(const Frame& start, double tolerance = 1e-4);  // in shapes [m]
 
   /// The pairs that pass in the motion from the last frame to this one, in order; `surface` and `other` are
@@ -35,15 +47,12 @@ class PassageWatch {
   std::vector<FeaturePair> advance(const Frame& next);
 
   /// Skipped motions: cloth moved by more than its own size, or its coordinates were not finite.
-  int num_left_out() const { return num_left_out_; }
+  int num_left_out() const { return pending_.num_left_out; }
+
+  const Pending& pending() const { return pending_; }
+  void set_pending(Pending pending) { pending_ = std::move(pending); }
 
  private:
-  /// A touching pair, or a particle in a shape.
-  struct Open {
-    bool is_through = false;  // currently
-    bool is_known = true;     // false: since the first frame
-  };
-
   void read(const Frame& frame);
   void test_features(const Frame& next);
   void test_particles(const Frame& next, int cloth, int collider);
@@ -53,9 +62,9 @@ class PassageWatch {
   std::vector<MovingSurface> surfaces_;
   FeaturePairs pairs_;
   std::vector<NamedCollider> colliders_;  // in the last frame; of meshes only the kind counts
-  std::map<FeaturePair, Open> open_, still_open_;
+  Pending pending_;
+  std::map<FeaturePair, Open> still_open_;
   std::vector<FeaturePair> passages_;
-  int num_left_out_ = 0;
 };
 
 /// `cloth "sheet" particle 12 passes through cloth "rag" triangle 7`

@@ -77,7 +77,7 @@ std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
 void require_points(const std::vector<Vec3>& values, std::size_t count, const std::string& what) {
   require(values.size() == count,
           what + ": expected " + std::to_string(count) + ", got " + std::to_string(values.size()));
-  require(std::ranges::all_of(values, [](const Vec3& p) { return p.allFinite(); }), what + " must be finite");
+  require_finite(values, what);
 }
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -197,7 +197,7 @@ void World::remove(ColliderId id) {
 Pose World::pose(ColliderId id) const { return colliders_[index_of(id)].motion.at(time_); }
 
 void World::move_collider(ColliderId id, const Pose& at_end) {
-  require_valid(at_end, "collider \"" + collider(id).name + "\"");
+  require_valid(at_end, "collider \"" + collider(id).name + "\", moved: ");
   Guide& guide = guides_[index_of(id)];
   guide.moves_by_hand = true;
   guide.pose = at_end;
@@ -205,7 +205,7 @@ void World::move_collider(ColliderId id, const Pose& at_end) {
 
 void World::place_collider(ColliderId id, const Pose& pose) {
   const std::size_t index = index_of(id);
-  require_valid(pose, "collider \"" + colliders_[index].name + "\"");
+  require_valid(pose, "collider \"" + colliders_[index].name + "\", moved: ");
   colliders_[index].motion = RigidMotion(pose);
   guides_[index].moves_by_hand = true;
   guides_[index].pose.reset();
@@ -393,9 +393,10 @@ void World::set_attachments(ClothId id, std::vector<Attachment> attachments) {
 void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
   Cloth& cloth = at(id);
   require_points(positions, cloth.state.x.size(), "cloth \"" + cloth.name + "\": positions");
-  ClothState state = make_state(positions);  // with an origin near them
+  ClothState state = make_state(positions);                                   // with an origin near them
+  if (state.origin == cloth.state.origin) state.origin = cloth.state.origin;  // with the signs of its zeros
   for (std::size_t i = 0; i < positions.size(); ++i) state.v.set(i, cloth.state.v.get(i));
-  cloth.state = std::move(state);
+  cloth.state = state;  // a copy, which keeps the memory that views show
   last_step_ = 0;
   for (PinnedParticle& p : cloth.pinned) {
     const Pin& pin = cloth.pins[p.pin];
@@ -415,7 +416,7 @@ void World::set_velocities(ClothId id, const std::vector<Vec3>& velocities) {
 
 void World::teleport(ClothId id, const Pose& pose) {
   const Cloth& cloth = at(id);
-  require_valid(pose, "cloth \"" + cloth.name + "\"");
+  require_valid(pose, "cloth \"" + cloth.name + "\", moved: ");
   std::vector<Vec3> positions, velocities;
   for (std::size_t i = 0; i < cloth.state.x.size(); ++i) {
     positions.push_back(apply(pose, Vec3::Zero(), cloth.state.position(i)));
@@ -516,6 +517,7 @@ std::vector<std::array<std::string, 2>> World::non_colliding_pairs() const {
 
 void World::set_integrator(const IntegratorSettings& settings) {
   std::unique_ptr<Integrator> integrator = make_integrator(settings);  // throws before anything has changed
+  require_valid(settings);
   for (const Cloth& cloth : cloths_) {
     if (cloth.model->elements) require_elements_supported(settings.integrator, cloth.name);
   }
@@ -841,7 +843,7 @@ void World::save(Snapshot& snapshot) const {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   save(snapshot);
-  for (const Cloth& cloth : cloths_) snapshot.held.push_back(held(cloth));
+  for (int c = 0; c < num_cloths(); ++c) snapshot.held.push_back(held(cloth(c)));
   snapshot.guides = guides_;
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     snapshot.guides[c].motion = colliders_[c].motion;
@@ -851,7 +853,8 @@ World::Snapshot World::snapshot() const {
   return snapshot;
 }
 
-World::Held World::held(const Cloth& cloth) const {
+World::Held World::held(ClothId id) const {
+  const Cloth& cloth = at(id);
   Held held{.pins = cloth.pins,
             .anchors = std::vector<Vec3>(cloth.pinned.size()),
             .attachments = cloth.attachments.attachments(),
@@ -862,8 +865,8 @@ World::Held World::held(const Cloth& cloth) const {
   return held;
 }
 
-void World::hold(Held held, Cloth& cloth) {
-  const ClothId id{id_, cloth.number};
+void World::hold(ClothId id, Held held) {
+  Cloth& cloth = at(id);
   set_pins(id, std::move(held.pins));
   for (PinnedParticle& p : cloth.pinned) p.anchor = held.anchors[p.order];
   set_attachments(id, std::move(held.attachments));
@@ -879,15 +882,14 @@ void World::restore(const Snapshot& snapshot) {
     require(snapshot.states[c].x.size() == cloths_[c].state.x.size(),
             "the snapshot's cloth \"" + cloths_[c].name + "\" has a different number of particles");
   }
-  require(snapshot.guides.empty() || snapshot.guides.size() == guides_.size(),
+  require(snapshot.guides.size() == guides_.size(),
           "the snapshot and the world have different numbers of colliders");
   time_ = snapshot.time;
   part_ = snapshot.part;
   calm_ = snapshot.calm;
   last_step_ = 0;
   restore_motion(snapshot);
-  for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(snapshot.held[c], cloths_[c]);
-  if (snapshot.guides.empty()) return;
+  for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(cloth(static_cast<int>(c)), snapshot.held[c]);
   const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
   if (std::ranges::any_of(guides_, is_by_hand) || std::ranges::any_of(snapshot.guides, is_by_hand))
     contact_system_ = {};

@@ -221,6 +221,11 @@ class World {
     std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
   };
 
+  /// Present pins, attachments and forces, and their replacement. Throws InputError as set_pins() and
+  /// set_attachments() do.
+  Held held(ClothId cloth) const;
+  void hold(ClothId cloth, Held held);
+
   /// The complete dynamic state; restoring it and stepping again gives bit-identical results.
   struct Snapshot {
     double time = 0;
@@ -268,8 +273,6 @@ class World {
   void guide_colliders(double dt);
   void guide_points(double dt);
   void set_acceleration(Cloth& cloth);
-  Held held(const Cloth& cloth) const;
-  void hold(Held held, Cloth& cloth);
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;

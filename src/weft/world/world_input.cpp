@@ -1,5 +1,6 @@
 #include "weft/world/world_input.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -122,8 +123,14 @@ void require_valid(const Collider& collider) {
     require(std::isfinite(friction) && friction >= 0, who + "friction must be 0 or more");
 }
 
-void require_valid(const Pose& pose, const std::string& owner) {
-  const ShapeChecker checker{owner + ", moved: "};
+void require_finite(const std::vector<Vec3>& values, const std::string& what) {
+  constexpr double kMost = 1e38;  // of floats, with room for a difference
+  const auto is_in_range = [](const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMost; };
+  require(std::ranges::all_of(values, is_in_range), what + " must be finite, and at most 1e38");
+}
+
+void require_valid(const Pose& pose, const std::string& who) {
+  const ShapeChecker checker{who};
   checker.finite(pose.translation, "its translation");
   checker.rotation(pose.rotation);
 }
@@ -131,13 +138,26 @@ void require_valid(const Pose& pose, const std::string& owner) {
 void require_valid(const Wind& wind, const std::string& integrator) {
   require(wind.velocity.allFinite() && std::isfinite(wind.drag) && wind.drag >= 0,
           "the wind's velocity must be finite, and its drag 0 or more");
+  const auto above_zero = [](double value) { return std::isfinite(value) && value > 0; };
+  require(std::isfinite(wind.gusts.strength) && wind.gusts.strength >= 0 && above_zero(wind.gusts.length) &&
+              above_zero(wind.gusts.time),
+          "gusts require a strength of 0 or more, and a length and a time above 0");
   if (wind.air.density == 0) return;
-  require(wind.air.density > 0 && wind.air.drag > 0 && wind.air.lift >= 0 && wind.air.lift <= wind.air.drag,
+  require(above_zero(wind.air.density) && above_zero(wind.air.drag) && wind.air.lift >= 0 &&
+              wind.air.lift <= wind.air.drag,
           "the air's density and drag must be above 0, and its lift from 0 to its drag");
-  require(wind.gusts.length > 0 && wind.gusts.time > 0, "gusts require a length and a time above 0");
   require(supports_aerodynamics(integrator),
           integrator + " does not support aerodynamic drag and lift; use newton or " +
               "implicit_euler, or only the wind's drag");
+}
+
+void require_valid(const IntegratorSettings& s) {
+  require(s.explicit_euler.substeps >= 0, "explicit: substeps must be 0 or more");
+  require(std::isfinite(s.implicit_euler.tolerance) && s.implicit_euler.tolerance > 0,
+          "implicit_euler: tolerance must be above 0 m/s");
+  require(s.implicit_euler.iterations >= 1, "implicit_euler: iterations must be at least 1");
+  require(s.newton.iterations >= 0, "newton: iterations must be 0 or more");
+  require(s.xpbd.substeps >= 1, "xpbd: substeps must be at least 1");
 }
 
 void require_elements_supported(const std::string& integrator, const std::string& cloth) {

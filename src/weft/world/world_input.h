@@ -1,12 +1,14 @@
 #pragma once
-/// Private to world/: validation of a World's input. Each function throws InputError.
+/// Validation of a World's input. Each function throws InputError.
 
 #include <string>
+#include <vector>
 
 #include "weft/contact/collider.h"
 #include "weft/error.h"
 #include "weft/forces/wind.h"
 #include "weft/model/cloth_model.h"
+#include "weft/solver.h"
 
 namespace weft::engine {
 
@@ -18,7 +20,14 @@ inline void require(bool condition, const std::string& message) {
 void require_valid(const ClothMaterial& material, const std::string& cloth);
 void require_valid(const ClothTopology& topology, const std::string& cloth);
 void require_valid(const Collider& collider);
-void require_valid(const Pose& pose, const std::string& owner);
+
+/// The message begins with `who`, of the form "collider "ball", moved: ".
+void require_valid(const Pose& pose, const std::string& who);
+
+/// Vectors that floats can hold. The message begins with `what`.
+void require_finite(const std::vector<Vec3>& values, const std::string& what);
+
+void require_valid(const IntegratorSettings& settings);
 
 /// Valid wind that the integrator supports.
 void require_valid(const Wind& wind, const std::string& integrator);

@@ -1,4 +1,4 @@
-#include "weft/render/window.h"
+#include "weft/window/window.h"
 
 // epoxy must precede GLFW, which otherwise includes OpenGL's own header.
 #include <epoxy/gl.h>

@@ -10,6 +10,8 @@
 namespace weft::engine {
 namespace {
 
+class Study : public App {};
+
 /// The values of rows "| `name` | 0.1235 m | … |" of a report.
 std::map<std::string, double> read_figures(const std::string& report) {
   static const std::regex kRow(R"(\| `([a-z0-9_]+)` \| ([-+.e0-9]+)[^|]*\|[^|]*\|)");
@@ -22,7 +24,7 @@ std::map<std::string, double> read_figures(const std::string& report) {
   return figures;
 }
 
-TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
+TEST_F(Study, QuickFindsWhatTheCommittedReportSays) {
   const Finished done = shell("weft study all --quick --out study --cache cache --json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
@@ -53,7 +55,7 @@ TEST_F(App, QuickStudyFindsWhatTheCommittedReportSays) {
   EXPECT_TRUE(contains(shell("weft study all --quick --out study --only papre").err, "--only"));
 }
 
-TEST_F(App, StudyOfOneChapterPrintsItsReport) {
+TEST_F(Study, OfOneChapterPrintsItsReport) {
   std::ofstream(fs::path("notes.json")) << "{}";
   expect_bad_input(
       "mkdir -p out && cp notes.json out/paper.json && weft study all --only paper --quick --out out",

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to face/: binary serialisation, with one description of each type.
+/// Binary serialisation, with one description of each type.
 ///
 /// describe(archive, value) lists a type's members; a Writer appends them, a Reader fills them in. Numbers
 /// are little-endian, as on every supported machine. A Reader never reserves more memory than a small
@@ -9,11 +9,14 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -33,8 +36,13 @@ class Writer {
 
   template <Plain T>
   void plain(const T& value) {
-    const auto* from = reinterpret_cast<const std::byte*>(&value);
-    bytes.insert(bytes.end(), from, from + sizeof value);
+    plain(&value, 1);
+  }
+
+  template <Plain T>
+  void plain(const T* values, std::size_t count) {
+    const auto* from = reinterpret_cast<const std::byte*>(values);
+    bytes.insert(bytes.end(), from, from + count * sizeof(T));
   }
 };
 
@@ -42,7 +50,8 @@ class Reader {
  public:
   static constexpr bool kReads = true;
 
-  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+  /// `what` the bytes are, for messages: "a saved world".
+  Reader(std::span<const std::byte> bytes, std::string_view what) : left_(bytes), what_(what) {}
 
   template <Plain T>
   void plain(T& value) {
@@ -55,11 +64,19 @@ class Reader {
     left_ = left_.subspan(sizeof value);
   }
 
+  template <Plain T>
+  void plain(T* values, std::size_t count) {
+    if (left_.size() / sizeof(T) < count) fail();
+    if (count > 0) std::memcpy(values, left_.data(), count * sizeof(T));
+    left_ = left_.subspan(count * sizeof(T));
+  }
+
   std::size_t left() const { return left_.size(); }
-  [[noreturn]] static void fail() { throw InputError("not a saved world, or a damaged one"); }
+  [[noreturn]] void fail() const { throw InputError("not " + std::string(what_) + ", or a damaged one"); }
 
  private:
   std::span<const std::byte> left_;
+  std::string_view what_;
 };
 
 template <class Archive, Plain T>
@@ -87,7 +104,13 @@ std::size_t describe_size(Archive& archive, std::size_t size) {
 template <class Archive, class T>
 void describe(Archive& archive, std::vector<T>& values) {
   const std::size_t count = describe_size(archive, values.size());
-  if constexpr (Archive::kReads) {
+  if constexpr (Plain<T> && !std::is_same_v<T, bool>) {
+    if constexpr (Archive::kReads) {
+      if (count > archive.left() / sizeof(T)) archive.fail();
+      values.resize(count);
+    }
+    archive.plain(values.data(), count);
+  } else if constexpr (Archive::kReads) {
     values.clear();
     for (std::size_t i = 0; i < count; ++i) describe(archive, values.emplace_back());
   } else {
@@ -98,7 +121,7 @@ void describe(Archive& archive, std::vector<T>& values) {
 template <class Archive>
 void describe(Archive& archive, std::string& text) {
   text.resize(describe_size(archive, text.size()));
-  for (char& c : text) archive.plain(c);
+  archive.plain(text.data(), text.size());
 }
 
 template <class Archive, class T, std::size_t N>
@@ -112,6 +135,15 @@ void describe(Archive& archive, std::optional<T>& value) {
   archive.plain(is_set);
   if constexpr (Archive::kReads) value = is_set ? std::optional<T>(std::in_place) : std::nullopt;
   if (value) describe(archive, *value);
+}
+
+template <class Archive, class Key, class Value>
+void describe(Archive& archive, std::map<Key, Value>& values) {
+  std::vector<std::pair<Key, Value>> list(values.begin(), values.end());
+  const std::size_t count = describe_size(archive, list.size());
+  list.resize(count);
+  for (auto& [key, value] : list) members(archive, key, value);
+  if constexpr (Archive::kReads) values = {list.begin(), list.end()};
 }
 
 template <class Archive, class... Types>

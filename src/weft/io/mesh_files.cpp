@@ -1,0 +1,40 @@
+#include "weft/io/mesh_files.h"
+
+#include "weft/error.h"
+#include "weft/io/mdd.h"
+#include "weft/io/obj_reader.h"
+#include "weft/io/pc2.h"
+#include "weft/io/ply.h"
+#include "weft/io/stl.h"
+#include "weft/io/words.h"
+
+namespace weft::engine {
+
+bool has_ending(const std::filesystem::path& file, const char* ending) {
+  return to_lower(file.extension().string()) == ending;
+}
+
+Vec3 to_world(const Vec3& p, bool up_is_z, double scale) {
+  return scale * (up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
+}
+
+MeshFromFile read_mesh(const std::filesystem::path& file) {
+  if (has_ending(file, ".ply")) return read_ply(file);
+  if (has_ending(file, ".stl")) return read_stl(file);
+  return read_obj(file);
+}
+
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
+                const std::vector<CornerUv>& uv) {
+  if (has_ending(file, ".obj")) return write_obj(file, mesh, uv);
+  if (has_ending(file, ".ply")) return write_ply(file, mesh, uv);
+  throw InputError(file.string() + ": a mesh is written as .obj or .ply");
+}
+
+std::unique_ptr<PointCacheReader> open_point_cache(const std::filesystem::path& file) {
+  if (has_ending(file, ".pc2")) return std::make_unique<Pc2Reader>(file);
+  if (has_ending(file, ".mdd")) return std::make_unique<MddReader>(file);
+  throw InputError(file.string() + ": expected a point cache, .pc2 or .mdd");
+}
+
+}  // namespace weft::engine

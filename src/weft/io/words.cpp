@@ -1,0 +1,56 @@
+#include "weft/io/words.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace weft::engine {
+
+std::string_view take_line(std::string_view text, std::size_t& at) {
+  const std::size_t begin = at, end = std::min(text.find('\n', at), text.size());
+  at = std::min(end + 1, text.size());
+  return text.substr(begin, end - begin);
+}
+
+void append_words(std::string_view line, std::vector<std::string_view>& words) {
+  constexpr std::string_view kBlanks = " \t\v\f\r";
+  for (std::size_t begin = 0; (begin = line.find_first_not_of(kBlanks, begin)) != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.begin(), word.end(), value);
+  if (error != std::errc() || end != word.end()) return std::nullopt;
+  return value;
+}
+
+std::optional<double> parse_finite(std::string_view word) {
+  const std::optional<double> value = parse_number(word);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::string to_lower(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) {
+    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  const bool is_long = word.size() > kLongest;
+  std::string shown(word.substr(0, kLongest));
+  for (char& c : shown) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return "'" + shown + (is_long ? "…'" : "'");
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,151 @@
+#include "weft/run/convert_files.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "weft/core/file_name.h"
+#include "weft/core/make_folder.h"
+#include "weft/core/staged_file.h"
+#include "weft/error.h"
+#include "weft/io/mdd.h"
+#include "weft/io/mesh_files.h"
+#include "weft/io/pc2.h"
+#include "weft/run/run_folder.h"
+
+namespace weft::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualFps = 60;
+constexpr double kLargest = 100, kSmallest = 0.01;  // of cloth and bodies, without a note [m]
+
+/// A sentence for a size that is none of cloth or of a body.
+void check_size(const fs::path& in, const Eigen::AlignedBox3d& box, std::vector<std::string>& notes) {
+  const double size = box.sizes().maxCoeff();
+  if (size <= kLargest && size >= kSmallest) return;
+  char text[160];
+  std::snprintf(text, sizeof text, " is %.3g m large; --scale gives the length of its unit in metres", size);
+  notes.push_back(in.string() + text);
+}
+
+void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
+  MeshFromFile read = read_mesh(in);
+  done.notes = read.warnings;
+  Eigen::AlignedBox3d box;
+  for (Vec3& p : read.mesh.positions) {
+    p = to_world(p, options.up_is_z, options.scale);
+    box.extend(p);
+  }
+  check_size(in, box, done.notes);
+  write_mesh(out, read.mesh, read.uv);
+  done.files.push_back(out);
+}
+
+/// Frames of a point cache, in the output's coordinates.
+class Frames {
+ public:
+  Frames(const fs::path& in, const ConvertOptions& options)
+      : in_(in), options_(options), cache_(open_point_cache(in)), first_(options.first_frame) {
+    const int last = options.last_frame.value_or(cache_->num_frames() - 1);
+    if (first_ < 0 || last < first_ || last >= cache_->num_frames())
+      throw InputError(in.string() + " has the frames 0 to " + std::to_string(cache_->num_frames() - 1) +
+                       "; it has not " + std::to_string(first_) + " to " + std::to_string(last));
+    count_ = last - first_ + 1;
+  }
+
+  int num_points() const { return cache_->num_points(); }
+  int count() const { return count_; }
+
+  std::vector<float> at(int k, std::vector<std::string>& notes) {
+    std::vector<float> frame = cache_->frame(first_ + k);
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < frame.size(); i += 3) {
+      const Vec3 p = to_world(Vec3(frame[i], frame[i + 1], frame[i + 2]), options_.up_is_z, options_.scale);
+      box.extend(p);
+      for (int axis = 0; axis < 3; ++axis) frame[i + axis] = static_cast<float>(p[axis]);
+    }
+    if (k == 0) check_size(in_, box, notes);
+    return frame;
+  }
+
+  /// Times of the frames: the file's own, else by the number of frames per second [s].
+  std::vector<float> times(std::vector<std::string>& notes, std::optional<double> fps_of_run) const {
+    std::vector<float> times;
+    const auto* mdd = dynamic_cast<const MddReader*>(cache_.get());
+    if (!mdd && !options_.fps && !fps_of_run)
+      notes.push_back(in_.string() + " does not say its frames per second: 60 (--fps)");
+    const double fps = options_.fps.value_or(fps_of_run.value_or(kUsualFps));
+    for (int k = 0; k < count_; ++k)
+      times.push_back(mdd && !options_.fps ? mdd->times()[first_ + k]
+                                           : static_cast<float>((first_ + k) / fps));
+    return times;
+  }
+
+ private:
+  fs::path in_;
+  ConvertOptions options_;
+  std::unique_ptr<PointCacheReader> cache_;
+  int first_, count_ = 0;
+};
+
+void convert_cache(const fs::path& in, const fs::path& out, const ConvertOptions& options,
+                   std::optional<double> fps_of_run, Converted& done) {
+  Frames frames(in, options);
+  StagedFile file(out);
+  const auto write = [&](auto& writer) {
+    for (int k = 0; k < frames.count(); ++k) writer.add_frame(frames.at(k, done.notes));
+    writer.finish();
+  };
+  if (has_ending(out, ".mdd")) {
+    MddWriter writer(file, frames.num_points(), frames.times(done.notes, fps_of_run));
+    write(writer);
+  } else if (has_ending(out, ".pc2")) {
+    Pc2Writer writer(file, frames.num_points());
+    write(writer);
+  } else {
+    throw InputError(out.string() + ": a point cache is written as .pc2 or .mdd");
+  }
+  file.replace();
+  done.files.push_back(out);
+}
+
+void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
+  const fs::path list = in / kRunName;
+  std::ifstream stream(list);
+  const nlohmann::json run = nlohmann::json::parse(stream, nullptr, false);
+  const auto fail = [&] { throw InputError(list.string() + ": not the list of a run's files"); };
+  if (!run.is_object() || !run.contains("cloths") || !run["cloths"].is_array() || run["cloths"].empty())
+    fail();
+  const bool is_one = run["cloths"].size() == 1;
+  FileNames names;
+  for (const nlohmann::json& cloth : run["cloths"]) {
+    if (!cloth.is_object() || !cloth.value("name", nlohmann::json()).is_string()) fail();
+    if (!cloth.value("positions", nlohmann::json()).is_string())
+      throw InputError(in.string() + " has no point caches: it was run with --no-pc2");
+    fs::path own = out;
+    if (!is_one)
+      own.replace_filename(out.stem().string() + '_' + names.add(cloth["name"]) + out.extension().string());
+    convert_cache(in / fs::path(cloth["positions"].get<std::string>()).filename(), own, options,
+                  run.value("fps", kUsualFps), done);
+  }
+}
+
+}  // namespace
+
+Converted convert_files(const fs::path& in, const fs::path& out, const ConvertOptions& options) {
+  Converted done;
+  if (!out.parent_path().empty()) make_folder(out.parent_path());
+  if (fs::is_directory(in))
+    convert_run(in, out, options, done);
+  else if (has_ending(in, ".pc2") || has_ending(in, ".mdd"))
+    convert_cache(in, out, options, {}, done);
+  else
+    convert_mesh(in, out, options, done);
+  return done;
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,51 @@
+#include "weft/run/frame_log.h"
+
+#include <utility>
+
+#include "weft/error.h"
+
+namespace weft::engine {
+namespace {
+
+/// Calls visit(address, number of bytes) for each list of numbers.
+template <class Frame, class Visit>
+void visit_numbers(Frame& frame, const Visit& visit) {
+  for (auto& cloth : frame.cloths) visit(cloth.data(), cloth.size() * sizeof(float));
+  for (auto& pose : frame.poses) {
+    visit(pose.translation.data(), 3 * sizeof(double));
+    visit(pose.rotation.coeffs().data(), 4 * sizeof(double));
+  }
+  for (auto& body : frame.body_vertices) visit(body.data(), body.size() * sizeof(float));
+}
+
+std::uintmax_t size_of(const AnimationFrame& frame) {
+  std::uintmax_t size = 0;
+  visit_numbers(frame, [&](const void*, std::size_t bytes) { size += bytes; });
+  return size;
+}
+
+}  // namespace
+
+FrameLog::FrameLog(const std::filesystem::path& file, const std::filesystem::path& log, AnimationFrame like,
+                   int num_frames)
+    : log_(log),
+      frame_(std::move(like)),
+      file_(file, log, num_frames * size_of(frame_)),
+      num_frames_(num_frames) {}
+
+void FrameLog::append(const AnimationFrame& frame) {
+  visit_numbers(frame, [&](const void* numbers, std::size_t bytes) {
+    file_.out().write(static_cast<const char*>(numbers), static_cast<std::streamsize>(bytes));
+  });
+  file_.flush();
+  ++num_frames_;
+}
+
+void FrameLog::read_frame(std::ifstream& in) {
+  visit_numbers(frame_, [&](void* numbers, std::size_t bytes) {
+    in.read(static_cast<char*>(numbers), static_cast<std::streamsize>(bytes));
+  });
+  if (!in) throw InputError(log_.string() + " cannot be read");
+}
+
+}  // namespace weft::engine

@@ -1,0 +1,43 @@
+#pragma once
+/// Frames of an animation on disk, until a file is made of them.
+
+#include <cstdint>
+#include <filesystem>
+
+#include "weft/core/staged_file.h"
+#include "weft/io/animation.h"
+
+namespace weft::engine {
+
+/// Frames of the same size, one after the other. Every error is an InputError with the name of the file that
+/// the frames are for, and the system's reason.
+class FrameLog {
+ public:
+  /// `like`: a frame of the animation. Keeps the first `num_frames` of the log, which must have them; writes to
+  /// `log`, for `file`.
+  FrameLog(const std::filesystem::path& file, const std::filesystem::path& log, AnimationFrame like,
+           int num_frames = 0);
+
+  void append(const AnimationFrame& frame);
+  void sync() { file_.sync(); }
+
+  /// Calls `receive(frame)` for every frame, in order.
+  template <class Receive>
+  void read(const Receive& receive) {
+    std::ifstream in(log_, std::ios::binary);
+    for (int k = 0; k < num_frames_; ++k) {
+      read_frame(in);
+      receive(frame_);
+    }
+  }
+
+ private:
+  void read_frame(std::ifstream& in);
+
+  std::filesystem::path log_;
+  AnimationFrame frame_;  // the last one read
+  StagedFile file_;
+  int num_frames_;
+};
+
+}  // namespace weft::engine
