@@ -176,12 +176,20 @@ constexpr ParameterText kTexts[] = {
     {"collider.half_size", "box", "Half of the edge lengths, along the box's own axes."},
     {"collider.rotation", "box", "Rotation of the box at the start: angles about fixed x, then y, then z."},
     {"collider.file", "mesh",
-     "OBJ, PLY or STL file of a rigid body, closed and facing outwards. Coincident vertices are merged."},
+     "OBJ, PLY or STL file of a rigid body, closed and facing outwards, or a glTF file (.glb, .gltf), whose "
+     "animation moves it. Coincident vertices are merged."},
+    {"collider.node", "mesh",
+     "Node of a glTF file: its meshes and those below it are the body. Not given: all of the scene."},
+    {"collider.clip", "mesh", "Animation of a glTF file that moves the body. Not given: the first one."},
+    {"collider.start_time", "mesh",
+     "Time of the clip at time 0 of the scene. Not given: its first key. Before and after its keys the body "
+     "stands still."},
     {"collider.up", "mesh", "Axis of the file of the body that points upwards."},
     {"collider.scale", "mesh", "Length of the unit of the body's file. Larger: a larger body."},
     {"collider.frame_rate", "mesh", "Frames per second of a deforming body. Higher: it moves faster."},
     {"collider.frames", "mesh",
-     "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have the same "
+     "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have "
+     "the same "
      "triangles."},
     {"collider.rest", "mesh",
      "OBJ, PLY or STL file of the pose from which the body moves to its first one during `settle`."},

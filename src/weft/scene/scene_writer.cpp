@@ -346,6 +346,9 @@ struct ShapeKeys {
       table.add("file", files.name_of(m.source, owner));
     else
       table.add("frames", files.name_of_frames(m, owner)).add("frame_rate", m.frame_rate);
+    if (!m.node.empty()) table.add("node", m.node);
+    if (!m.clip.empty()) table.add("clip", m.clip);
+    if (m.start_time) table.add("start_time", *m.start_time);
     if (!m.rest.empty()) table.add("rest", files.relative(m.rest));
     add_mesh_keys(m.source, table);
     table.add("position", m.position, PlacedMesh().position)

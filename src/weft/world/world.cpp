@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "weft/animation/mesh_sequence.h"
 #include "weft/core/hash.h"
 #include "weft/world/infeasible_pairs.h"
 #include "weft/world/world_input.h"
@@ -61,17 +62,8 @@ std::size_t index_of_id(const Entries& entries, Id id, std::uint32_t world, std:
                    ") refers to a removed body");
 }
 
-std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key> keys) {
+std::shared_ptr<const VertexSource> make_sequence(std::vector<MeshSequence::Key> keys) {
   return std::make_shared<const MeshSequence>(std::move(keys));
-}
-
-/// Vertices of a mesh collider, in mesh coordinates [m].
-std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
-  if (!shape.sequence) return shape.mesh->positions;
-  const MeshSequence::Blend blend = shape.sequence->at(time);
-  std::vector<Vec3> vertices;
-  for (int v = 0; v < shape.mesh->num_vertices(); ++v) vertices.push_back(shape.sequence->position(blend, v));
-  return vertices;
 }
 
 void require_points(const std::vector<Vec3>& values, std::size_t count, const std::string& what) {
@@ -226,15 +218,16 @@ MeshShape& World::mesh_of(ColliderId id, const std::vector<Vec3>& positions) {
 }
 
 void World::move_vertices(ColliderId id, std::vector<Vec3> at_end) {
-  mesh_of(id, at_end);
+  MeshShape& shape = mesh_of(id, at_end);
   Guide& guide = guides_[index_of(id)];
+  if (!guide.deforms_by_hand) shape.source = make_sequence({{time_, shape.at(time_).vertices()}});
   guide.deforms_by_hand = true;
   guide.vertices = std::move(at_end);
 }
 
 void World::place_vertices(ColliderId id, std::vector<Vec3> positions) {
   MeshShape& shape = mesh_of(id, positions);
-  shape.sequence = make_sequence({{time_, std::move(positions)}});
+  shape.source = make_sequence({{time_, std::move(positions)}});
   guides_[index_of(id)].deforms_by_hand = true;
   guides_[index_of(id)].vertices.reset();
   contact_system_ = {};
@@ -261,10 +254,10 @@ void World::guide_colliders(double dt) {
     }
     if (guide.deforms_by_hand) {
       MeshShape& shape = std::get<MeshShape>(colliders_[c].shape);
-      if (!guide.vertices && shape.sequence->keys().size() == 1) continue;
-      std::vector<MeshSequence::Key> keys = {{time_, vertices_at(shape, time_)}};
+      if (!guide.vertices && shape.source->is_still()) continue;
+      std::vector<MeshSequence::Key> keys = {{time_, shape.at(time_).vertices()}};
       if (guide.vertices) keys.push_back({end, std::move(*guide.vertices)});
-      shape.sequence = make_sequence(std::move(keys));
+      shape.source = make_sequence(std::move(keys));
       guide.vertices.reset();
     }
   }
@@ -690,7 +683,7 @@ bool World::is_driven() const {
   if (wind_.drag > 0 || wind_.air.density > 0) return true;
   const auto is_deforming = [](const Collider& c) {
     const auto* mesh = std::get_if<MeshShape>(&c.shape);
-    return mesh && mesh->sequence && mesh->sequence->keys().size() > 1;
+    return mesh && mesh->source && !mesh->source->is_still();
   };
   return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
@@ -848,7 +841,7 @@ World::Snapshot World::snapshot() const {
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     snapshot.guides[c].motion = colliders_[c].motion;
     if (const MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
-      snapshot.guides[c].sequence = shape->sequence;
+      snapshot.guides[c].source = shape->source;
   }
   return snapshot;
 }
@@ -898,8 +891,7 @@ void World::restore(const Snapshot& snapshot) {
     guides_[c] = snapshot.guides[c];
     guides_[c].number = number;
     colliders_[c].motion = guides_[c].motion;
-    if (MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
-      shape->sequence = guides_[c].sequence;
+    if (MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape)) shape->source = guides_[c].source;
   }
 }
 

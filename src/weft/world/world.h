@@ -209,7 +209,7 @@ class World {
     std::optional<Pose> pose;                             // at the end of the next step, if set
     std::optional<std::vector<Vec3>> vertices;            // likewise [m]
     RigidMotion motion;                                   // in a snapshot
-    std::shared_ptr<const MeshSequence> sequence;         // likewise
+    std::shared_ptr<const VertexSource> source;           // likewise
   };
 
   /// Pins, attachments and forces of a cloth.
@@ -290,7 +290,7 @@ class World {
   std::vector<std::string> describe(const Intersections& intersections) const;
   Intersections find_intersections();
   World make_stage() const;
-  void thin_colliders(const Intersections& crossed, World& stage) const;
+  int thin_colliders(const Intersections& crossed, World& stage) const;
   void halt();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
