@@ -29,7 +29,7 @@ struct GltfOptions {
 };
 
 struct BodyFromFile {
-  TriangleMesh mesh = {};                  // at the start of the clip; uv is empty if a part has none
+  TriangleMesh mesh = {};                  // at the start of the clip; uv as in MeshFromFile
   VertexMotion motion = {};                // by the clip; empty if nothing moves
   std::string clip = {};                   // its name; "": none
   std::vector<std::string> warnings = {};  // ignored parts of the file, as sentences

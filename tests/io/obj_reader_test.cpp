@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <set>
@@ -92,6 +93,56 @@ TEST(ObjReader, TakesAnyLayoutOfLines) {
     EXPECT_EQ(mesh.positions[1], Vec3(1, 0, 0)) << text;
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << text;
   }
+}
+
+TEST(ObjReader, KeepsPolygonsWithTheirTextureCoordinates) {
+  const MeshFaces faces =
+      parse_obj("vt 0 0\nvt 1 0\nvt 1 1\n" + kFourVertices + "f 4/1 1/2 2/3 3/1\nf 1 2 3\nf 3/3 1/1 2/2\n",
+                "x.obj")
+          .faces;
+  ASSERT_EQ(faces.size(), 3u);
+  EXPECT_EQ(faces.corners, (std::vector<int>{3, 0, 1, 2, 0, 1, 2, 2, 0, 1}));
+  EXPECT_EQ(faces.ends, (std::vector<std::size_t>{4, 7, 10}));
+  ASSERT_EQ(faces.uv.size(), 10u);
+  EXPECT_EQ(faces.uv[2], Eigen::Vector2d(1, 1));
+  for (const Eigen::Vector2d& corner : faces.uv_of(1)) EXPECT_TRUE(std::isnan(corner.x()));
+  EXPECT_EQ(faces.uv_of(2)[2], Eigen::Vector2d(1, 0));
+
+  const MeshFaces bare = parse_obj("vt 0 0\n" + kFourVertices + "f 1 2 3 4\n", "x.obj").faces;
+  EXPECT_TRUE(bare.uv.empty());
+  EXPECT_TRUE(bare.uv_of(0).empty());
+}
+
+TEST(ObjReader, KeepsGroupsAndObjects) {
+  const auto groups_of = [](const std::string& text) {
+    return parse_obj(kFourVertices + text, "x.obj").faces.groups;
+  };
+  const std::string face = "f 1 2 3\n";
+  EXPECT_TRUE(groups_of(face).empty());
+  EXPECT_EQ(groups_of("g front\n" + face + face), (std::vector<MeshGroup>{{"front", false, {{0, 2}}}}));
+  // Several names on a line, one twice; a name that comes again; faces without a name; lines without faces.
+  EXPECT_EQ(groups_of("g none\n" + face + "g\n" + face + "g b a a\n" + face + "g none\ng a\n" + face + "g\n" +
+                      face + "g a c\n" + face + "g unused\n"),
+            (std::vector<MeshGroup>{{"none", false, {{0, 1}}},
+                                    {"b", false, {{2, 3}}},
+                                    {"a", false, {{2, 4}, {5, 6}}},
+                                    {"c", false, {{5, 6}}}}));
+  // An object goes on over lines g, and a group over lines o. Equal names of both kinds are two groups.
+  EXPECT_EQ(groups_of("g a\no a\n" + face + "g b\n" + face + "o my shirt\n" + face),
+            (std::vector<MeshGroup>{{"a", true, {{0, 2}}},
+                                    {"a", false, {{0, 1}}},
+                                    {"b", false, {{1, 3}}},
+                                    {"my shirt", true, {{2, 3}}}}));
+}
+
+TEST(ObjReader, NeedsNoMoreMemoryForGroupsThanTheFileHas) {
+  std::string text = kFourVertices + "g";
+  for (int k = 0; k < 2000; ++k) text += " name" + std::to_string(k);
+  text += '\n';
+  for (int k = 0; k < 2000; ++k) text += "f 1 2 3\n";
+  const std::vector<MeshGroup> groups = parse_obj(text, "x.obj").faces.groups;
+  ASSERT_EQ(groups.size(), 2000u);
+  for (const MeshGroup& group : groups) EXPECT_EQ(group.faces, (std::vector<FaceRange>{{0, 2000}}));
 }
 
 TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {

@@ -656,6 +656,9 @@ TEST_F(PlyWriter, WritesPolygonsThatAreCutAsBefore) {
     EXPECT_EQ(read.mesh.positions, expected.mesh.positions);
     EXPECT_EQ(read.mesh.triangles, expected.mesh.triangles);
     EXPECT_EQ(read.uv, expected.uv);
+    EXPECT_EQ(read.faces.corners, expected.faces.corners);
+    EXPECT_EQ(read.faces.ends, expected.faces.ends);
+    EXPECT_EQ(read.faces.uv, expected.faces.uv);
   }
 }
 

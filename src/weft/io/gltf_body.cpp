@@ -610,12 +610,12 @@ GltfBody parse_gltf_body(std::span<const unsigned char> bytes, const std::string
 MeshFromFile mesh_at_start(const GltfBody& body) {
   MeshFromFile result{.mesh = {.triangles = body.triangles}, .warnings = body.warnings};
   body.vertices.evaluate(body.vertices.start(), result.mesh.positions);
-  if (!std::ranges::all_of(body.uv, [](const auto& uv) { return uv.allFinite(); })) return result;
   for (const Triangle& triangle : body.triangles) {
     if (body.uv.empty()) break;
     CornerUv& corners = result.uv.emplace_back();
     for (int c = 0; c < 3; ++c) corners[c] = body.uv[triangle[c]];
   }
+  result.faces = make_faces(result.mesh.triangles, result.uv);
   return result;
 }
 

@@ -52,7 +52,7 @@ GltfBody read_gltf_body(const std::filesystem::path& file, const GltfOptions& op
 GltfBody parse_gltf_body(std::span<const unsigned char> bytes, const std::string& name,
                          const GltfOptions& options = {});
 
-/// The mesh at the start of the clip. Without texture coordinates if a primitive has none.
+/// The mesh at the start of the clip.
 MeshFromFile mesh_at_start(const GltfBody& body);
 
 /// Names of the nodes with meshes, and of the clips.

@@ -11,8 +11,10 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
@@ -83,6 +85,67 @@ long long parse_uv_index(std::string_view word) {
   return parse_index(word).value_or(0);
 }
 
+// ---- Groups ----
+
+/// The groups of a file, while its faces are counted. A line costs as much as it is long, whatever the number
+/// of faces behind it.
+class GroupList {
+ public:
+  /// g NAME NAME …: the groups of the faces from this one on; no names: none.
+  void set_groups(std::span<const std::string_view> names, int face) {
+    close(open_groups_, face);
+    for (const std::string_view name : names) open(name, false, face, open_groups_);
+  }
+
+  /// o NAME: the object of the faces from this one on; "": none.
+  void set_object(const std::string& name, int face) {
+    close(open_objects_, face);
+    if (!name.empty()) open(name, true, face, open_objects_);
+  }
+
+  std::vector<MeshGroup> finish(int num_faces) {
+    close(open_groups_, num_faces);
+    close(open_objects_, num_faces);
+    std::erase_if(groups_, [](const MeshGroup& group) { return group.faces.empty(); });
+    std::ranges::stable_sort(groups_, {}, [](const MeshGroup& group) {
+      return std::pair(group.faces.front().begin, !group.is_object);
+    });
+    return std::move(groups_);
+  }
+
+ private:
+  void open(std::string_view name, bool is_object, int face, std::vector<std::size_t>& opened) {
+    const auto [found, is_new] = numbers_.try_emplace({is_object, std::string(name)}, groups_.size());
+    if (is_new) groups_.push_back({std::string(name), is_object, {}});
+    std::vector<FaceRange>& faces = groups_[found->second].faces;
+    if (!faces.empty() && faces.back().end == kOpen) return;  // twice on a line
+    const bool continues = !faces.empty() && faces.back().end == face;
+    continues ? void(faces.back().end = kOpen) : faces.push_back({face, kOpen});
+    opened.push_back(found->second);
+  }
+
+  void close(std::vector<std::size_t>& opened, int face) {
+    for (const std::size_t k : opened) {
+      std::vector<FaceRange>& faces = groups_[k].faces;
+      faces.back().end = face;
+      if (faces.back().begin == face) faces.pop_back();
+    }
+    opened.clear();
+  }
+
+  static constexpr int kOpen = -1;                               // end of a range that goes on
+  std::vector<MeshGroup> groups_;                                // in the order of their first lines
+  std::map<std::pair<bool, std::string>, std::size_t> numbers_;  // by MeshGroup::is_object and name
+  std::vector<std::size_t> open_groups_, open_objects_;
+};
+
+/// The words with one blank between them: names of objects may have blanks.
+std::string join(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) (text += text.empty() ? "" : " ") += word;
+  return text;
+}
+
 // ---- The file ----
 
 class ObjParser {
@@ -96,7 +159,11 @@ class ObjParser {
     if (positions().empty()) throw InputError(name_ + ": there are no vertices; expected lines v X Y Z");
     if (faces_.empty()) throw InputError(name_ + ": there are no faces; expected lines f A B C");
     for (const Face& face : faces_) add_face(face);
-    if (!has_uv_) result_.uv.clear();
+    if (!has_uv_) {
+      result_.uv.clear();
+      result_.faces.uv.clear();
+    }
+    result_.faces.groups = groups_.finish(num_faces());
     add_warnings();
     return std::move(result_);
   }
@@ -113,6 +180,7 @@ class ObjParser {
   };
 
   std::vector<Vec3>& positions() { return result_.mesh.positions; }
+  int num_faces() const { return static_cast<int>(faces_.size()); }
 
   [[noreturn]] void fail(int line, const std::string& message) const {
     throw InputError(name_ + ":" + std::to_string(line) + ": " + message);
@@ -120,14 +188,18 @@ class ObjParser {
 
   void read_line(std::string_view keyword) {
     // vv and t occur in the garment files of Berkeley.
-    constexpr std::array<std::string_view, 11> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s", "g",
-                                                              "o",  "l",      "p",      "vv",     "t"};
+    constexpr std::array<std::string_view, 9> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s",
+                                                             "l",  "p",      "vv",     "t"};
     if (keyword == "v") {
       read_vertex();
     } else if (keyword == "vt") {
       read_uv();
     } else if (keyword == "f") {
       read_face();
+    } else if (keyword == "g") {
+      groups_.set_groups({lines_.words().begin() + 1, lines_.words().end()}, num_faces());
+    } else if (keyword == "o") {
+      groups_.set_object(join({lines_.words().begin() + 1, lines_.words().end()}), num_faces());
     } else if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) == kPassedOver.end()) {
       Unknown& unknown = unknown_[std::string(keyword)];
       if (unknown.num_lines++ == 0) unknown.first_line = lines_.line();
@@ -232,6 +304,7 @@ class ObjParser {
   std::vector<Eigen::Vector2d> uv_;
   bool has_uv_ = false;  // of any triangle
   std::vector<Face> faces_;
+  GroupList groups_;
   std::map<std::string, Unknown> unknown_;
   MeshFromFile result_;
 };

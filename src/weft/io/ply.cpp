@@ -112,7 +112,10 @@ class PlyParser {
     warn_of_rest();
     read_vertices();
     read_faces();
-    if (std::none_of(result_.uv.begin(), result_.uv.end(), has_any)) result_.uv.clear();
+    if (std::none_of(result_.uv.begin(), result_.uv.end(), has_any)) {
+      result_.uv.clear();
+      result_.faces.uv.clear();
+    }
     return std::move(result_);
   }
 

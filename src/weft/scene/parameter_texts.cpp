@@ -42,7 +42,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.velocity", "", "Velocity of all particles at the start."},
     {"cloth.color", "", "Linear red, green and blue of the cloth in pictures and files."},
     {"cloth.pins", "",
-     "Particles that are held still, as in [\"corner:0,0\", \"index:12\"]; only grids have corners."},
+     "Particles that are held still, as in [\"corner:0,0\", \"index:12\", \"group:waist\"]. Only grids have "
+     "corners, only meshes groups."},
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
     {"cloth.grid", "grid", "A rectangle of square or rectangular cells, horizontal before its rotation."},
@@ -135,12 +136,15 @@ constexpr ParameterText kTexts[] = {
      "Coulomb coefficient of a cloth of springs on cloth. Higher: layers stick sooner."},
 
     {"cloth.pin.select", "",
-     "The particles: a corner or index as in `pins`, or a table with indices, a box or a sphere."},
+     "The particles: a corner, index or group as in `pins`, or a table with indices, a group, a box or a "
+     "sphere."},
     {"cloth.pin.motion", "",
      "Key frames of the pinned particles: displacement from the start, linear between keys."},
     {"cloth.pin.pivot", "", "Centre of the rotation of the pins' motion, in the world."},
     {"cloth.pin.select.index", "",
      "Indices of particles: on a grid j (cells_x + 1) + i, on a mesh the file's vertices from 0."},
+    {"cloth.pin.select.group", "",
+     "Name of a group (`g`) or an object (`o`) of the mesh's OBJ file: all vertices of its faces."},
     {"cloth.pin.select.box", "", "All particles in a box of the world at the start."},
     {"cloth.pin.select.sphere", "", "All particles in a sphere of the world at the start."},
     {"cloth.pin.select.box.min", "", "Corner of the box with the smallest coordinates."},
@@ -189,8 +193,7 @@ constexpr ParameterText kTexts[] = {
     {"collider.frame_rate", "mesh", "Frames per second of a deforming body. Higher: it moves faster."},
     {"collider.frames", "mesh",
      "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have "
-     "the same "
-     "triangles."},
+     "the same triangles."},
     {"collider.rest", "mesh",
      "OBJ, PLY or STL file of the pose from which the body moves to its first one during `settle`."},
     {"collider.position", "mesh", "Displacement of the body at the start, after its rotation."},

@@ -9,12 +9,13 @@ namespace {
 /// Valid selections for pins; a shape that could not be read allows all.
 struct Pinnable {
   bool has_corners = true;
+  bool is_grid = false;  // certainly
   IntegerRule index = {.least = 0};
 
   explicit Pinnable(const std::variant<Grid, MeshSource>* shape) {
     if (!shape) return;
     const Grid* grid = std::get_if<Grid>(shape);
-    has_corners = grid != nullptr;
+    has_corners = is_grid = grid != nullptr;
     if (grid) index.most = grid->num_particles() - 1;
   }
 };
@@ -51,12 +52,31 @@ std::string describe_index(const IntegerRule& rule) {
 std::optional<ParticleSelection> read_corner(const TomlValue& value, std::string_view text,
                                              const Pinnable& pinnable) {
   if (!pinnable.has_corners) {
-    value.mistake("a mesh has no corners; pin an index, a box or a sphere");
+    value.mistake("a mesh has no corners; pin an index, a group, a box or a sphere");
     return {};
   }
   const std::optional<ParticleSelection> selection = parse_corner(text);
   if (!selection) value.expected("\"corner:0,0\", \"corner:1,0\", \"corner:0,1\" or \"corner:1,1\"");
   return selection;
+}
+
+std::optional<ParticleSelection> read_group(const TomlValue& value, std::string_view name,
+                                            const Pinnable& pinnable) {
+  if (pinnable.is_grid) {
+    value.mistake("a grid has no groups; pin a corner, an index, a box or a sphere");
+    return {};
+  }
+  if (name.empty()) {
+    value.expected("the name of a group of the mesh's file");
+    return {};
+  }
+  return GroupName{std::string(name)};
+}
+
+std::optional<ParticleSelection> read_group(const TomlValue& value, const Pinnable& pinnable) {
+  std::string name;
+  if (!value.read(name)) return {};
+  return read_group(value, name, pinnable);
 }
 
 std::optional<ParticleSelection> read_name(const TomlValue& value, const Pinnable& pinnable) {
@@ -68,8 +88,10 @@ std::optional<ParticleSelection> read_name(const TomlValue& value, const Pinnabl
   } else if (text.starts_with("index:")) {
     selection = parse_index(text.substr(6), pinnable.index);
     if (!selection) value.expected(describe_index(pinnable.index));
+  } else if (text.starts_with("group:")) {
+    selection = read_group(value, std::string_view(text).substr(6), pinnable);
   } else {
-    value.expected("\"corner:0,0\" or \"index:12\"");
+    value.expected("\"corner:0,0\", \"index:12\" or \"group:waist\"");
   }
   return selection;
 }
@@ -102,10 +124,12 @@ std::optional<ParticleSelection> read_indices(const TomlValue& value, const Pinn
 }
 
 std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pinnable) {
-  table.require({"index", "box", "sphere"}, "one of them");
-  const TomlValue index = table.get("index", make_note(IntegerRule{.least = 0}, 0)), box = table.get("box"),
+  table.require({"index", "group", "box", "sphere"}, "one of them");
+  const TomlValue index = table.get("index", make_note(IntegerRule{.least = 0}, 0)),
+                  group = table.get("group", {.kind = ParameterKind::text}), box = table.get("box"),
                   sphere = table.get("sphere");
   if (index) return read_indices(index, pinnable);
+  if (group) return read_group(group, pinnable);
   if (box) return read_box(table.table("box"));
   if (sphere) return read_ball(table.table("sphere"));
   return {};
@@ -113,7 +137,8 @@ std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pi
 
 std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pinnable) {
   constexpr std::string_view kForms =
-      "\"corner:0,0\", \"index:12\", { index = [1, 2] }, { box = … } or { sphere = … }";
+      "\"corner:0,0\", \"index:12\", \"group:waist\", { index = [1, 2] }, { group = \"waist\" }, "
+      "{ box = … } or { sphere = … }";
   pin.require({"select"}, kForms);
   const TomlValue select = pin.get("select", {.kind = ParameterKind::table});
   if (!select) return {};

@@ -31,8 +31,13 @@ struct ParticleIndices {
   bool operator==(const ParticleIndices&) const = default;
 };
 
+struct GroupName {
+  std::string name;  // of a group or an object of the mesh's file: the vertices of its faces
+  bool operator==(const GroupName&) const = default;
+};
+
 using ParticleSelection =
-    std::variant<GridCorner, ParticleIndices, Box, Sphere>;  // regions: initial position, world
+    std::variant<GridCorner, ParticleIndices, GroupName, Box, Sphere>;  // regions: initial position, world
 
 struct PinDesc {
   ParticleSelection select;

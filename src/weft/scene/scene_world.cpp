@@ -60,6 +60,18 @@ struct Selector {
     return selected;
   }
 
+  std::vector<int> operator()(const GroupName& group) const {
+    std::vector<int> selected;
+    for (const int vertex : find_group(cloth, group.name)) {
+      const int particle = particle_of_vertex[vertex];
+      if (particle >= 0) selected.push_back(particle);
+    }
+    if (selected.empty())
+      throw InputError("cloth \"" + cloth.name + "\": group \"" + group.name +
+                       "\" cannot be selected: its faces have no area");
+    return selected;
+  }
+
   std::vector<int> operator()(const Box& box) const {
     return select_inside(positions, [&](const Vec3& p) { return box.contains(p); });
   }

@@ -226,6 +226,7 @@ std::string selection_text(const ParticleSelection& selection) {
     return toml("corner:" + std::to_string(corner->i) + "," + std::to_string(corner->j));
   if (const auto* indices = std::get_if<ParticleIndices>(&selection))
     return "{ index = " + toml_array(indices->indices) + " }";
+  if (const auto* group = std::get_if<GroupName>(&selection)) return "{ group = " + toml(group->name) + " }";
   if (const auto* box = std::get_if<Box>(&selection))
     return "{ box = " + Table().add("min", box->min).add("max", box->max).in_line() + " }";
   const Sphere& ball = std::get<Sphere>(selection);
