@@ -1,6 +1,7 @@
 /// World::save and World::load: a world's descriptions and state as bytes.
 
 #include <algorithm>
+#include <utility>
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/core/archive.h"
@@ -198,11 +199,15 @@ const std::vector<MeshSequence::Key>& keys_by_hand(const World::Guide& guide) {
 }
 template <class Archive>
 void describe(Archive& archive, Pin& p) {
-  members(archive, p.particles, p.motion, p.pivot);
+  members(archive, p.particles, p.motion, p.pivot, p.follow);
+}
+template <class Archive>
+void describe(Archive& archive, SurfaceAnchor& a) {
+  members(archive, a.triangle, a.weights, a.offset);
 }
 template <class Archive>
 void describe(Archive& archive, Attachment& g) {
-  members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target);
+  members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target, g.follow, g.anchor);
 }
 template <class Archive>
 void describe(Archive& archive, PointGuide& g) {
@@ -210,7 +215,7 @@ void describe(Archive& archive, PointGuide& g) {
 }
 template <class Archive>
 void describe(Archive& archive, World::Held& h) {
-  members(archive, h.pins, h.anchors, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
+  members(archive, h.pins, h.anchors, h.on_surface, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
 }
 template <class Archive>
 void describe(Archive& archive, World::Guide& g) {
@@ -313,18 +318,35 @@ void check(const engine::PointGuide& guide, std::size_t count) {
   for (const auto* points : {&guide.from, &guide.to}) check(*points, guide.is_empty() ? 0 : count);
 }
 
-void check(const engine::World::Held& held, std::size_t num_particles, const std::vector<char>& is_soft) {
+using Colliders = std::vector<engine::Collider>;
+
+/// `follow`: index of a collider, or −1.
+void check(const engine::SurfaceAnchor& anchor, int follow, const Colliders& colliders) {
+  require(follow >= -1 && std::cmp_less(follow, colliders.size()));
+  require(anchor.weights.allFinite() && anchor.offset.allFinite());
+  const auto* mesh = follow < 0 ? nullptr : std::get_if<engine::MeshShape>(&colliders[follow].shape);
+  require(mesh ? anchor.triangle >= 0 && anchor.triangle < mesh->mesh->num_triangles()
+               : anchor.triangle == -1);
+}
+
+void check(const engine::World::Held& held, std::size_t num_particles, const std::vector<char>& is_soft,
+           const Colliders& colliders) {
   std::size_t pinned = 0;
   for (const engine::Pin& pin : held.pins) {
     require(pin.pivot.allFinite());
-    pinned += pin.particles.size();
+    for (std::size_t k = 0; k < pin.particles.size(); ++k, ++pinned) {
+      require(pinned < held.on_surface.size());
+      check(held.on_surface[pinned], pin.follow, colliders);
+    }
   }
+  require(held.on_surface.size() == pinned);
   check(held.anchors, pinned);
   require(static_cast<std::size_t>(std::ranges::count(is_soft, 0)) == pinned);
   require(is_soft.size() - pinned == held.attachments.size());
   for (const engine::Attachment& attachment : held.attachments) {
     require(attachment.particles.size() == 1 && attachment.target.allFinite() &&
             are_finite(attachment.offsets));
+    check(attachment.anchor, attachment.follow, colliders);
     require(std::ranges::all_of(attachment.shares, [](double share) { return std::isfinite(share); }));
   }
   check(held.pin_guide, pinned);
@@ -377,7 +399,7 @@ void check(const SavedWorld& saved, const engine::World& world) {
     const auto count =
         static_cast<std::size_t>(world.model(world.cloth(static_cast<int>(c))).num_particles());
     check(state.states[c], count);
-    check(state.held[c], count, saved.cloths[c].is_soft);
+    check(state.held[c], count, saved.cloths[c].is_soft, world.colliders());
   }
   for (std::size_t c = 0; c < saved.colliders.size(); ++c) check(state.guides[c], world.colliders()[c]);
 }
