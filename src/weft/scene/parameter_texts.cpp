@@ -141,6 +141,16 @@ constexpr ParameterText kTexts[] = {
     {"cloth.pin.motion", "",
      "Key frames of the pinned particles: displacement from the start, linear between keys."},
     {"cloth.pin.pivot", "", "Centre of the rotation of the pins' motion, in the world."},
+    {"cloth.pin.group", "", "Short for `select = { group = … }`."},
+    {"cloth.pin.follow", "",
+     "Name of a collider that the particles follow, as if glued to its surface where they are at the start. "
+     "A "
+     "waistband stays on a walking body."},
+    {"cloth.pin.stiffness", "",
+     "Stiffness of a spring per particle that holds it. Not given: held exactly. Higher: it follows more "
+     "closely."},
+    {"cloth.pin.damping", "",
+     "Damping coefficient of that spring, on the particle's own velocity. Higher: it lags more."},
     {"cloth.pin.select.index", "",
      "Indices of particles: on a grid j (cells_x + 1) + i, on a mesh the file's vertices from 0."},
     {"cloth.pin.select.group", "",

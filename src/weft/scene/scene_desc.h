@@ -41,8 +41,11 @@ using ParticleSelection =
 
 struct PinDesc {
   ParticleSelection select;
-  std::vector<KeyFrame> motion;  // empty: held still
-  Vec3 pivot = Vec3::Zero();     // centre of the rotation of `motion` [m]
+  std::vector<KeyFrame> motion;     // empty: held still
+  Vec3 pivot = Vec3::Zero();        // centre of the rotation of `motion` [m]
+  std::string follow;               // name of the collider whose surface they follow; "": none
+  std::optional<double> stiffness;  // of a spring per particle; empty: held exactly [N/m]
+  double damping = 0;               // of that spring [N·s/m]
   bool operator==(const PinDesc&) const = default;
 };
 

@@ -312,7 +312,10 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
     Table own;
     own.add_text("select", selection_text(pin.select));
     if (!pin.motion.empty()) own.add_text("motion", motion_text(pin.motion));
-    text += "\n[[cloth.pin]]\n" + own.add("pivot", pin.pivot, PinDesc().pivot).lines();
+    own.add("pivot", pin.pivot, PinDesc().pivot);
+    if (!pin.follow.empty()) own.add("follow", pin.follow);
+    if (pin.stiffness) own.add("stiffness", *pin.stiffness).add("damping", pin.damping, PinDesc().damping);
+    text += "\n[[cloth.pin]]\n" + own.lines();
   }
   for (const StiffenDesc& part : cloth.stiffened)
     text += "\n[[cloth.stiffen]]\n" +
