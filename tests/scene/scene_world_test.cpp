@@ -286,9 +286,9 @@ file = "body.obj"
 
 TEST_F(MeshCollider, AndClothAreReadFromPlyAndStlToo) {
   const TriangleMesh cloth = build_grid_mesh({.cells_x = 2, .cells_z = 2}, GridDiagonals::alternating);
-  write_mesh(folder_ / "cloth.obj", cloth);
-  write_mesh(folder_ / "cloth.PLY", cloth);
-  write_mesh(folder_ / "body.obj", box());
+  write_mesh(folder_ / "cloth.obj", cloth.positions, make_faces(cloth.triangles));
+  write_mesh(folder_ / "cloth.PLY", cloth.positions, make_faces(cloth.triangles));
+  write_obj(folder_ / "body.obj", box());
   std::ofstream stl(folder_ / "body.stl");
   stl << "solid box\n";
   for (const Triangle& t : box().triangles) {

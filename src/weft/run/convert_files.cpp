@@ -32,6 +32,15 @@ void check_size(const fs::path& in, const Eigen::AlignedBox3d& box, std::vector<
   notes.push_back(in.string() + text);
 }
 
+/// A sentence for groups, which only OBJ files have.
+void note_groups(const fs::path& in, const MeshFaces& faces, const fs::path& out,
+                 std::vector<std::string>& notes) {
+  if (faces.groups.empty() || has_ending(out, ".obj")) return;
+  notes.push_back(in.string() + " has " + std::to_string(faces.groups.size()) +
+                  (faces.groups.size() == 1 ? " group" : " groups") +
+                  ", which are lost: only .obj holds them");
+}
+
 void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
   MeshFromFile read = read_mesh(in);
   done.notes = read.warnings;
@@ -41,7 +50,8 @@ void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions&
     box.extend(p);
   }
   check_size(in, box, done.notes);
-  write_mesh(out, read.mesh, read.uv);
+  note_groups(in, read.faces, out, done.notes);
+  write_mesh(out, read.mesh.positions, read.faces);
   done.files.push_back(out);
 }
 
