@@ -14,7 +14,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
-#include "weft/scene/scene_meshes.h"
+#include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/world/measures.h"
 
@@ -232,7 +232,7 @@ TEST_F(GroupsOfAMesh, AreNotOfMeshesInMemory) {
   }
 }
 
-TEST(SceneMeshes, FacesOfAGridAreItsCells) {
+TEST(ClothFaces, FacesOfAGridAreItsCells) {
   ClothSceneDesc cloth{.shape = Grid{.size_x = 1, .size_z = 1, .cells_x = 2, .cells_z = 1}};
   const MeshFaces faces = read_faces(cloth);
   EXPECT_EQ(faces.corners, (std::vector<int>{0, 3, 4, 1, 1, 4, 5, 2}));
