@@ -14,7 +14,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
-#include "weft/scene/scene_meshes.h"
+#include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/world/measures.h"
 
@@ -232,7 +232,7 @@ TEST_F(GroupsOfAMesh, AreNotOfMeshesInMemory) {
   }
 }
 
-TEST(SceneMeshes, FacesOfAGridAreItsCells) {
+TEST(ClothFaces, FacesOfAGridAreItsCells) {
   ClothSceneDesc cloth{.shape = Grid{.size_x = 1, .size_z = 1, .cells_x = 2, .cells_z = 1}};
   const MeshFaces faces = read_faces(cloth);
   EXPECT_EQ(faces.corners, (std::vector<int>{0, 3, 4, 1, 1, 4, 5, 2}));
@@ -286,9 +286,9 @@ file = "body.obj"
 
 TEST_F(MeshCollider, AndClothAreReadFromPlyAndStlToo) {
   const TriangleMesh cloth = build_grid_mesh({.cells_x = 2, .cells_z = 2}, GridDiagonals::alternating);
-  write_mesh(folder_ / "cloth.obj", cloth);
-  write_mesh(folder_ / "cloth.PLY", cloth);
-  write_mesh(folder_ / "body.obj", box());
+  write_mesh(folder_ / "cloth.obj", cloth.positions, make_faces(cloth.triangles));
+  write_mesh(folder_ / "cloth.PLY", cloth.positions, make_faces(cloth.triangles));
+  write_obj(folder_ / "body.obj", box());
   std::ofstream stl(folder_ / "body.stl");
   stl << "solid box\n";
   for (const Triangle& t : box().triangles) {

@@ -30,10 +30,10 @@ MeshFromFile read_mesh(const std::filesystem::path& file) {
   return read_obj(file);
 }
 
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
-                const std::vector<CornerUv>& uv) {
-  if (has_ending(file, ".obj")) return write_obj(file, mesh, uv);
-  if (has_ending(file, ".ply")) return write_ply(file, mesh, uv);
+void write_mesh(const std::filesystem::path& file, const std::vector<Vec3>& positions,
+                const MeshFaces& faces) {
+  if (has_ending(file, ".obj")) return write_obj(file, positions, faces);
+  if (has_ending(file, ".ply")) return write_ply(file, positions, faces);
   throw InputError(file.string() + ": a mesh is written as .obj or .ply");
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 /// The common result of the readers of mesh files.
 
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +49,11 @@ struct MeshFaces {
   /// Appends a face. `corner_uv`: one for each corner; empty in all faces or in none.
   void add(std::span<const int> polygon, std::span<const Eigen::Vector2d> corner_uv = {});
 };
+
+/// The bits of texture coordinates, for comparisons.
+inline std::array<std::uint64_t, 2> bits_of(const Eigen::Vector2d& uv) {
+  return {std::bit_cast<std::uint64_t>(uv.x()), std::bit_cast<std::uint64_t>(uv.y())};
+}
 
 /// Triangles as faces. `uv` as in MeshFromFile.
 MeshFaces make_faces(const std::vector<Triangle>& triangles, const std::vector<CornerUv>& uv = {});

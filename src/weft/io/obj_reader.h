@@ -23,17 +23,21 @@ MeshFromFile read_obj(const std::filesystem::path& file);
 MeshFromFile parse_obj(const std::string& text, const std::string& name);
 
 struct ObjObject {
-  std::string name;  // one word
+  std::string name;
   TriangleMesh mesh;
 };
 
-/// Writes vertices and triangles, with enough digits to read the same doubles back. `uv` as in MeshFromFile.
-/// Throws InputError if the file cannot be written.
-void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
-               const std::vector<CornerUv>& uv = {});
+/// Writes vertices and faces, with enough digits to read the same doubles back: polygons, texture coordinates
+/// (each once), groups and objects. Throws InputError if the file cannot be written, and for a group's name
+/// that is not one word, or that has # or ends in a backslash.
+void write_obj(const std::filesystem::path& file, const std::vector<Vec3>& positions, const MeshFaces& faces);
 
 /// What write_obj() writes.
-std::string obj_text(const TriangleMesh& mesh, const std::vector<CornerUv>& uv = {});
+std::string obj_text(const std::vector<Vec3>& positions, const MeshFaces& faces);
+
+/// The same of triangles. `uv` as in MeshFromFile.
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
+               const std::vector<CornerUv>& uv = {});
 
 /// The same for several meshes, each as a separate object.
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects);

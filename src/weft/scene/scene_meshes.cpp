@@ -1,26 +1,17 @@
 #include "weft/scene/scene_meshes.h"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 
-#include "weft/core/nearest_name.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/io.h"
 #include "weft/io/mesh_files.h"
 #include "weft/mesh/solid.h"
+#include "weft/scene/cloth_faces.h"
 
 namespace weft::engine {
 namespace {
-
-MeshFromFile read(const std::filesystem::path& file, const std::string& owner) {
-  try {
-    return engine::read_mesh(file);
-  } catch (const InputError& error) {  // names the file and the line
-    throw InputError(owner + ": " + error.what());
-  }
-}
 
 /// In metres, y up.
 Vec3 to_world(const Vec3& p, const MeshSource& source) {
@@ -29,7 +20,7 @@ Vec3 to_world(const Vec3& p, const MeshSource& source) {
 
 MeshFromFile read_in_metres(const std::filesystem::path& file, const MeshSource& source,
                             const std::string& owner) {
-  MeshFromFile obj = read(file, owner);
+  MeshFromFile obj = read_mesh_of(file, owner);
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   return obj;
 }
@@ -45,43 +36,6 @@ weft::TriangleMesh read_mesh(const MeshSource& source, const std::string& owner,
   for (const std::string& warning : obj.warnings)
     warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
   return from_engine(obj.mesh, obj.uv);
-}
-
-std::string owner_of(const ClothSceneDesc& desc) { return "cloth \"" + desc.name + '"'; }
-
-MeshFaces make_grid_faces(const Grid& grid) {
-  MeshFaces cells;
-  for (int j = 0; j < grid.cells_z; ++j) {
-    for (int i = 0; i < grid.cells_x; ++i)
-      cells.add(
-          std::array{grid.index(i, j), grid.index(i, j + 1), grid.index(i + 1, j + 1), grid.index(i + 1, j)});
-  }
-  return cells;
-}
-
-/// `"front", "back" and 7 more`
-std::string list_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k)
-    list += (k > 0 ? ", \"" : "\"") + names[k] + '"';
-  if (names.size() > kMost) list += " and " + std::to_string(names.size() - kMost) + " more";
-  return list;
-}
-
-[[noreturn]] void fail_group(const ClothSceneDesc& desc, const std::string& name,
-                             const std::vector<std::string>& names) {
-  const MeshSource* source = std::get_if<MeshSource>(&desc.shape);
-  const bool is_file = source && !source->mesh;
-  const std::string message = owner_of(desc) +
-                              (is_file ? " (" + source->file.filename().string() + ")" : "") +
-                              ": there is no group \"" + name + '"';
-  if (!is_file)
-    throw InputError(message + "; only meshes in files have groups, select an index, a box or a sphere");
-  if (names.empty()) throw InputError(message + "; the file names no groups (lines g or o of an OBJ file)");
-  const std::string nearest = find_nearest(name, names);
-  throw InputError(message + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
-                   (nearest.empty() ? "; there are " : " There are ") + list_names(names));
 }
 
 weft::Pose make_pose(const Vec3& position, const Vec3& rotation_deg) {
@@ -216,7 +170,7 @@ int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
   ClothDesc cloth{.name = desc.name};
   if (const MeshSource* file = std::get_if<MeshSource>(&desc.shape)) {
-    cloth.shape = read_mesh(*file, owner_of(desc), warnings);
+    cloth.shape = read_mesh(*file, "cloth \"" + desc.name + '"', warnings);
     cloth.source = file->file.filename().string();
     if (file->weld) cloth.weld = file->weld_distance;
     cloth.sew = file->sew_distance;
@@ -236,30 +190,6 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
   cloth.velocity = from_engine(desc.velocity);
   cloth.fits_thickness = has_contact && !desc.has_own_thickness;
   return cloth;
-}
-
-MeshFaces read_faces(const ClothSceneDesc& desc) {
-  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return make_grid_faces(*grid);
-  const MeshSource& source = std::get<MeshSource>(desc.shape);
-  if (source.mesh) return make_faces(source.mesh->triangles, to_engine(source.mesh->uv));
-  return read(source.file, owner_of(desc)).faces;
-}
-
-std::vector<int> find_group(const ClothSceneDesc& desc, const std::string& name) {
-  const MeshFaces faces = read_faces(desc);
-  std::vector<int> vertices;
-  std::vector<std::string> names;
-  for (const MeshGroup& group : faces.groups) {
-    if (std::find(names.begin(), names.end(), group.name) == names.end()) names.push_back(group.name);
-    if (group.name != name) continue;
-    for (const auto [begin, end] : group.faces)
-      vertices.insert(vertices.end(), faces.corners.begin() + faces.begin_of(begin),
-                      faces.corners.begin() + faces.begin_of(end));
-  }
-  if (vertices.empty()) fail_group(desc, name, names);
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
 }
 
 ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,

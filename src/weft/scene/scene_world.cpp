@@ -10,6 +10,7 @@
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
+#include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_meshes.h"
 
 namespace weft::engine {

@@ -112,6 +112,11 @@ class MeshNames {
   virtual std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) = 0;
 };
 
+/// Faces of a mesh in memory.
+MeshFaces faces_of(const MeshSource& source) {
+  return make_faces(source.mesh->triangles, to_engine(source.mesh->uv));
+}
+
 /// Hashes of contents instead of names; a mesh in memory has that of the file that MeshFiles writes.
 class MeshHashes : public MeshNames {
  public:
@@ -119,18 +124,15 @@ class MeshHashes : public MeshNames {
 
   std::string name_of(const MeshSource& source, const std::string&) override {
     if (!source.mesh) return relative(source.file);
-    return hash(obj_text(to_engine(*source.mesh), to_engine(source.mesh->uv)));
+    return hash(obj_text(to_engine(*source.mesh).positions, faces_of(source)));
   }
 
   std::string name_of_frames(const PlacedMesh& mesh, const std::string&) override {
     std::string all;
     for (const fs::path& file : mesh.frames) all += hash(read(file));
     if (!mesh.frame_positions.empty()) {
-      TriangleMesh moved = to_engine(*mesh.source.mesh);
-      for (const std::vector<Vec3>& positions : mesh.frame_positions) {
-        moved.positions = positions;
-        all += hash(obj_text(moved, to_engine(mesh.source.mesh->uv)));
-      }
+      const MeshFaces faces = faces_of(mesh.source);
+      for (const std::vector<Vec3>& positions : mesh.frame_positions) all += hash(obj_text(positions, faces));
     }
     return hash(all);
   }
@@ -158,7 +160,7 @@ class MeshFiles : public MeshNames {
   std::string name_of(const MeshSource& source, const std::string& owner) override {
     if (!source.mesh) return relative(source.file);
     const std::string name = names_.add(stem_ + "_" + owner) + ".obj";
-    write_obj(folder_ / name, to_engine(*source.mesh), to_engine(source.mesh->uv));
+    write_obj(folder_ / name, to_engine(*source.mesh).positions, faces_of(source));
     return name;
   }
 
@@ -166,12 +168,11 @@ class MeshFiles : public MeshNames {
   std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) override {
     if (mesh.frame_positions.empty()) return relative(pattern_of(mesh.frames, owner));
     const std::string begin = names_.add(stem_ + "_" + owner) + "_";
-    TriangleMesh moved = to_engine(*mesh.source.mesh);
+    const MeshFaces faces = faces_of(mesh.source);
     for (std::size_t k = 0; k < mesh.frame_positions.size(); ++k) {
-      moved.positions = mesh.frame_positions[k];
       char number[32];
       std::snprintf(number, sizeof number, "%06zu.obj", k);
-      write_obj(folder_ / (begin + number), moved, to_engine(mesh.source.mesh->uv));
+      write_obj(folder_ / (begin + number), mesh.frame_positions[k], faces);
     }
     return begin + "*.obj";
   }
