@@ -70,6 +70,7 @@ TEST_F(SceneWriter, WritesEveryShippedSceneSoThatItReadsBackEqual) {
 /// Every key of a scene file, with another value than its default.
 TEST_F(SceneWriter, WritesEveryKey) {
   std::ofstream(folder_ / "a.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+  std::ofstream(folder_ / "c.glb") << "glTF";
   std::ofstream(folder_ / "b_1.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
   std::ofstream(folder_ / "b_2.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n";
   const SceneDesc scene = parse_scene(R"([scene]
@@ -107,7 +108,7 @@ sew = 0.002
 fabric = { base = "denim", friction = 0.77 }
 membrane = "springs"
 warp = [1, 0, 0.5]
-pins = ['group:left "cuff"']
+pins = ['group:left "cuff"', { group = "waist", follow = "dancer", stiffness = 50, damping = 0.1 }]
 [[cloth]]
 grid = { size = [1, 1], cells = [2, 2] }
 fabric = { name = "mine", density = 0.2, c11 = 500, c22 = 400, g = 30, stretch_warp = [[0.01, 5], [0.02, 12]], strain_limit = 0.2 }
@@ -142,6 +143,14 @@ up = "z"
 scale = 2
 position = [0, 1, 0]
 rotation = [0, 90, 0]
+[[collider]]
+name = "dancer"
+shape = "mesh"
+file = "c.glb"
+node = "Body"
+clip = "walk"
+start_time = 0.5
+scale = 0.01
 [[contact]]
 between = ["mesh", "body"]
 collide = false

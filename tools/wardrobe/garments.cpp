@@ -33,6 +33,9 @@ Field skirt_field() {
   };
 }
 
+/// The skirt with the hips in it.
+Field worn_skirt_field() { return unite(offset(body_field({kHips}, 0.06), 0.009), skirt_field()); }
+
 std::vector<HalfSpace> join(std::vector<HalfSpace> first, const std::vector<HalfSpace>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
@@ -146,8 +149,12 @@ TriangleMesh make_trousers(double cell) {
 }
 
 TriangleMesh make_skirt(double cell) {
-  return wall(unite(offset(body_field({kHips}, 0.06), 0.009), skirt_field()), cell,
-              {below(1.04), above(0.5)});
+  return wall(worn_skirt_field(), cell, {below(1.04), above(0.5)});
+}
+
+TriangleMesh make_shirt_over_skirt(double cell) {
+  const Field field = unite(offset(body_field(kTop, 0.06), 0.012), offset(worn_skirt_field(), 0.008));
+  return wall(field, cell, join({above(0.93), neckline()}, cuffs(0.34)));
 }
 
 TriangleMesh make_coat(double cell) {

@@ -13,6 +13,8 @@ TriangleMesh make_shirt(double cell, double lift_deg);
 /// With slivers of 0.1 mm at waist and ankles.
 TriangleMesh make_trousers(double cell);
 TriangleMesh make_skirt(double cell);
+/// A T-shirt to be worn over the skirt, to below the waist.
+TriangleMesh make_shirt_over_skirt(double cell);
 /// Open in front; a lining 1 mm inside, in the same mesh.
 TriangleMesh make_coat(double cell);
 /// Three layers round the neck.

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFigureCell = 0.016, kGarmentCell = 0.020;  // [m]
+constexpr double kFigureCell = 0.0159, kGarmentCell = 0.020;  // [m]
 constexpr double kDuration = 5;                              // of the clip [s]
 constexpr int kKeysPerSecond = 20;
 constexpr double kWaist = 1.012;  // cloth above belongs to the waistband [m]
@@ -186,7 +186,7 @@ void write_walk(const std::filesystem::path& folder) {
   const std::string figure = figure_bytes();
   write_file(folder / "figure.glb", figure);
   write_skirt(folder / "walk_skirt.obj");
-  write_obj(folder / "walk_shirt.obj", make_tshirt(kGarmentCell));
+  write_obj(folder / "walk_shirt.obj", make_shirt_over_skirt(kGarmentCell));
 }
 
 }  // namespace weft::engine::wardrobe
