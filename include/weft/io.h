@@ -40,6 +40,10 @@ WEFT_API MeshFromFile read_obj(const std::string& file);
 /// written.
 WEFT_API void write_obj(const std::string& file, const TriangleMesh& mesh);
 
+/// The same of polygons. Throws InputError also for faces of other vertices, for lists that do not fit each other,
+/// and for a name that an OBJ file cannot hold.
+WEFT_API void write_obj(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces);
+
 /// Reads a PLY (`.ply`) or STL (`.stl`) file; any other is read as Wavefront OBJ. Throws InputError for an
 /// unusable one.
 WEFT_API MeshFromFile read_mesh(const std::string& file);
@@ -48,8 +52,7 @@ WEFT_API MeshFromFile read_mesh(const std::string& file);
 /// another ending, and if it cannot be written.
 WEFT_API void write_mesh(const std::string& file, const TriangleMesh& mesh);
 
-/// The same of polygons. PLY files have no groups. Throws InputError also for faces of other vertices, for lists
-/// that do not fit each other, and for a name that an OBJ file cannot hold.
+/// The same of polygons; errors as of write_obj(). PLY files have no groups.
 WEFT_API void write_mesh(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces);
 
 }  // namespace weft

@@ -38,6 +38,8 @@ TEST_F(PublicMeshes, FacesAreReadAndWrittenAsTheFileHasThem) {
   EXPECT_EQ(read.mesh.num_triangles(), 4);
   write_mesh(path("again.obj"), read.mesh.positions, read.faces);
   EXPECT_EQ(engine::read_text(path("again.obj")), kShirt);
+  write_obj(path("again.txt"), read.mesh.positions, read.faces);
+  EXPECT_EQ(engine::read_text(path("again.txt")), kShirt);
   write_mesh(path("shirt.ply"), read.mesh.positions, read.faces);
   const MeshFaces ply = read_mesh(path("shirt.ply")).faces;
   EXPECT_EQ(ply.sizes, read.faces.sizes);

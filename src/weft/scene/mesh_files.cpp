@@ -109,6 +109,10 @@ void write_obj(const std::string& file, const TriangleMesh& mesh) {
   engine::write_obj(file, engine::to_engine(mesh.positions), to_faces(mesh, file + ": "));
 }
 
+void write_obj(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces) {
+  engine::write_obj(file, engine::to_engine(vertices), to_engine(faces, vertices.size(), file + ": "));
+}
+
 MeshFromFile read_mesh(const std::string& file) { return from_engine(engine::read_mesh(file)); }
 
 void write_mesh(const std::string& file, const TriangleMesh& mesh) {
