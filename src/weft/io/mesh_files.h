@@ -10,7 +10,8 @@
 
 namespace weft::engine {
 
-/// Reads a PLY (`.ply`) or STL (`.stl`) file; any other is read as Wavefront OBJ. Upper case counts as lower
+/// Reads a PLY (`.ply`), STL (`.stl`) or glTF (`.glb`, `.gltf`) file, of the last all meshes of the default
+/// scene at the start of its first animation; any other is read as Wavefront OBJ. Upper case counts as lower
 /// case.
 MeshFromFile read_mesh(const std::filesystem::path& file);
 
@@ -24,6 +25,9 @@ void write_mesh(const std::filesystem::path& file, const std::vector<Vec3>& posi
 
 /// Opens a PC2 (`.pc2`) or MDD (`.mdd`) point cache. Throws InputError for another ending.
 std::unique_ptr<PointCacheReader> open_point_cache(const std::filesystem::path& file);
+
+/// Whether the name ends in `.glb` or `.gltf`.
+bool is_gltf(const std::filesystem::path& file);
 
 /// Whether the name has this ending: ".ply". Upper case counts as lower case.
 bool has_ending(const std::filesystem::path& file, const char* ending);

@@ -141,6 +141,16 @@ constexpr ParameterText kTexts[] = {
     {"cloth.pin.motion", "",
      "Key frames of the pinned particles: displacement from the start, linear between keys."},
     {"cloth.pin.pivot", "", "Centre of the rotation of the pins' motion, in the world."},
+    {"cloth.pin.group", "", "Short for `select = { group = … }`."},
+    {"cloth.pin.follow", "",
+     "Name of a collider that the particles follow, as if glued to its surface where they are at the start. "
+     "A "
+     "waistband stays on a walking body."},
+    {"cloth.pin.stiffness", "",
+     "Stiffness of a spring per particle that holds it. Not given: held exactly. Higher: it follows more "
+     "closely."},
+    {"cloth.pin.damping", "",
+     "Damping coefficient of that spring, on the particle's own velocity. Higher: it lags more."},
     {"cloth.pin.select.index", "",
      "Indices of particles: on a grid j (cells_x + 1) + i, on a mesh the file's vertices from 0."},
     {"cloth.pin.select.group", "",
@@ -180,7 +190,14 @@ constexpr ParameterText kTexts[] = {
     {"collider.half_size", "box", "Half of the edge lengths, along the box's own axes."},
     {"collider.rotation", "box", "Rotation of the box at the start: angles about fixed x, then y, then z."},
     {"collider.file", "mesh",
-     "OBJ, PLY or STL file of a rigid body, closed and facing outwards. Coincident vertices are merged."},
+     "OBJ, PLY or STL file of a rigid body, closed and facing outwards, or a glTF file (.glb, .gltf), whose "
+     "animation moves it. Coincident vertices are merged."},
+    {"collider.node", "mesh",
+     "Node of a glTF file: its meshes and those below it are the body. Not given: all of the scene."},
+    {"collider.clip", "mesh", "Animation of a glTF file that moves the body. Not given: the first one."},
+    {"collider.start_time", "mesh",
+     "Time of the clip at time 0 of the scene. Not given: its first key. Before and after its keys the body "
+     "stands still."},
     {"collider.up", "mesh", "Axis of the file of the body that points upwards."},
     {"collider.scale", "mesh", "Length of the unit of the body's file. Larger: a larger body."},
     {"collider.frame_rate", "mesh", "Frames per second of a deforming body. Higher: it moves faster."},

@@ -148,26 +148,49 @@ std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pin
   return {};
 }
 
+/// The key "select", or its short form "group".
+std::optional<ParticleSelection> read_pin_select(TomlTable& pin, const Pinnable& pinnable) {
+  const TomlValue group = pin.get("group", {.kind = ParameterKind::text});
+  if (!group) return read_select(pin, pinnable);
+  pin.refuse("select", "has the same meaning as group; expected one of the two");
+  return read_group(group, pinnable);
+}
+
+PinDesc read_pin(TomlTable table, const Pinnable& pinnable) {
+  PinDesc pin;
+  if (const auto selection = read_pin_select(table, pinnable)) pin.select = *selection;
+  pin.motion = read_motion(table);
+  table.read("pivot", pin.pivot, any_number("m"));
+  table.read("follow", pin.follow);
+  double stiffness = 0;
+  const TomlValue spring = table.get("stiffness", make_note(not_negative("N/m")));
+  if (spring && spring.read(stiffness, not_negative("N/m"))) pin.stiffness = stiffness;
+  table.read("damping", pin.damping, not_negative("N·s/m"));
+  if (table.has("damping") && !spring) table.get("damping").mistake("requires stiffness");
+  if (pin.motion.empty()) return pin;
+  if (spring) spring.mistake("a pin with a motion is held exactly");
+  if (!pin.follow.empty())
+    table.get("follow").mistake("a pin that follows a collider has no motion of its own");
+  return pin;
+}
+
 }  // namespace
 
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<PinDesc> pins;
   if (const TomlValue names = cloth.get("pins", {.kind = ParameterKind::texts})) {
-    constexpr std::string_view kForm = "an array of strings, as in [\"corner:0,0\", \"index:12\"]";
+    constexpr std::string_view kForm =
+        "an array of strings or tables, as in [\"corner:0,0\", { group = \"waist\", follow = \"body\" }]";
     for (const TomlValue& name : names.elements(kForm)) {
-      const auto selection = read_name(name, pinnable);
-      if (selection) pins.push_back({.select = *selection, .motion = {}});
+      if (name.is_table()) {
+        pins.push_back(read_pin(cloth.element("pin", name), pinnable));
+      } else if (const auto selection = read_name(name, pinnable)) {
+        pins.push_back({.select = *selection, .motion = {}});
+      }
     }
   }
-  for (TomlTable& table : cloth.tables("pin")) {
-    PinDesc pin;
-    const auto selection = read_select(table, pinnable);
-    pin.motion = read_motion(table);
-    table.read("pivot", pin.pivot, any_number("m"));
-    if (selection) pin.select = *selection;
-    pins.push_back(std::move(pin));
-  }
+  for (const TomlTable& table : cloth.tables("pin")) pins.push_back(read_pin(table, pinnable));
   return pins;
 }
 

@@ -41,8 +41,11 @@ using ParticleSelection =
 
 struct PinDesc {
   ParticleSelection select;
-  std::vector<KeyFrame> motion;  // empty: held still
-  Vec3 pivot = Vec3::Zero();     // centre of the rotation of `motion` [m]
+  std::vector<KeyFrame> motion;     // empty: held still
+  Vec3 pivot = Vec3::Zero();        // centre of the rotation of `motion` [m]
+  std::string follow;               // name of the collider whose surface they follow; "": none
+  std::optional<double> stiffness;  // of a spring per particle; empty: held exactly [N/m]
+  double damping = 0;               // of that spring [N·s/m]
   bool operator==(const PinDesc&) const = default;
 };
 
@@ -71,6 +74,8 @@ struct PlacedMesh {
   std::vector<std::filesystem::path> frames;       // of a sequence, in order, with the first one; empty: none
   std::vector<std::vector<Vec3>> frame_positions;  // the same in memory, (num_vertices) each; in the
                                                    // source's unit and axes [m]
+  std::string node, clip;                          // of a glTF file, as in GltfOptions
+  std::optional<double> start_time;                // of the clip, at time 0; empty: its first key [s]
   std::filesystem::path rest;                      // pose before SceneDesc::settle; empty: that of the start
   double frame_rate = 30;                          // of a sequence, > 0 [1/s]
   Vec3 position = Vec3::Zero();                    // added after the rotation [m]

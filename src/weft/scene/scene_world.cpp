@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "weft/core/nearest_name.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
@@ -93,6 +94,21 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
       " contains no particle; regions are in world coordinates [m], after position and rotation");
 }
 
+/// The collider of the name; empty for a pin that follows none.
+std::optional<ColliderId> find_followed(const ClothSceneDesc& cloth, const PinDesc& pin,
+                                        const weft::World& world) {
+  if (pin.follow.empty()) return {};
+  std::vector<std::string> names;
+  for (int c = 0; c < world.num_colliders(); ++c) {
+    names.push_back(world.name(world.collider(c)));
+    if (names.back() == pin.follow) return world.collider(c);
+  }
+  const std::string nearest = find_nearest(pin.follow, names);
+  throw InputError("cloth \"" + cloth.name + "\": a pin follows \"" + pin.follow +
+                   "\", but there is no collider of this name" +
+                   (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+}
+
 /// Pins and stiffened regions, selected by initial particle positions.
 void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   const std::vector<Vec3> positions =
@@ -104,7 +120,10 @@ void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   for (const PinDesc& pin : desc.pins)
     pins.push_back({.particles = select(selector, pin.select, "a pin's region"),
                     .motion = from_engine(pin.motion),
-                    .pivot = from_engine(pin.pivot)});
+                    .pivot = from_engine(pin.pivot),
+                    .follow = find_followed(desc, pin, built),
+                    .stiffness = pin.stiffness,
+                    .damping = pin.damping});
   built.set_pins(id, pins);
 }
 

@@ -313,7 +313,10 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
     Table own;
     own.add_text("select", selection_text(pin.select));
     if (!pin.motion.empty()) own.add_text("motion", motion_text(pin.motion));
-    text += "\n[[cloth.pin]]\n" + own.add("pivot", pin.pivot, PinDesc().pivot).lines();
+    own.add("pivot", pin.pivot, PinDesc().pivot);
+    if (!pin.follow.empty()) own.add("follow", pin.follow);
+    if (pin.stiffness) own.add("stiffness", *pin.stiffness).add("damping", pin.damping, PinDesc().damping);
+    text += "\n[[cloth.pin]]\n" + own.lines();
   }
   for (const StiffenDesc& part : cloth.stiffened)
     text += "\n[[cloth.stiffen]]\n" +
@@ -348,6 +351,9 @@ struct ShapeKeys {
       table.add("file", files.name_of(m.source, owner));
     else
       table.add("frames", files.name_of_frames(m, owner)).add("frame_rate", m.frame_rate);
+    if (!m.node.empty()) table.add("node", m.node);
+    if (!m.clip.empty()) table.add("clip", m.clip);
+    if (m.start_time) table.add("start_time", *m.start_time);
     if (!m.rest.empty()) table.add("rest", files.relative(m.rest));
     add_mesh_keys(m.source, table);
     table.add("position", m.position, PlacedMesh().position)
