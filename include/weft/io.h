@@ -41,8 +41,8 @@ WEFT_API MeshFromFile read_obj(const std::string& file);
 /// written.
 WEFT_API void write_obj(const std::string& file, const TriangleMesh& mesh);
 
-/// The same of polygons. Throws InputError also for faces of other vertices, for lists that do not fit each other,
-/// and for a name that an OBJ file cannot hold.
+/// The same of polygons. Throws InputError also for faces of other vertices, and for lists that do not fit each
+/// other. A group's name must be one word, an object's words, without # and without a backslash at the end.
 WEFT_API void write_obj(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces);
 
 /// Reads a PLY (`.ply`) or STL (`.stl`) file; any other is read as Wavefront OBJ. Throws InputError for an

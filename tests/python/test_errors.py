@@ -382,6 +382,11 @@ def unused_vertex(folder: Path) -> str:
     return GRID + 'mesh = "m.obj"\n'
 
 
+def with_groups(folder: Path) -> str:
+    (folder / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 2 0 0\ng all\nf 1 3 2\ng flat\nf 4 4 4\n")
+    return GRID + 'mesh = "m.obj"\n'
+
+
 def two_meshes(folder: Path) -> str:
     weft.write_obj(folder / "m_0.obj", SQUARE)
     weft.write_obj(folder / "m_1.obj", triangulated(2))
@@ -410,6 +415,10 @@ FILES: list[tuple[Callable[[Path], object], str]] = [
      'cloth "cloth": there is no index 99 to pin; the last one is 4'),
     (lambda t: world_of(unused_vertex(t) + 'pins = ["index:4"]\n', t),
      'cloth "cloth": vertex 4 cannot be pinned: no triangle uses it'),
+    (lambda t: world_of(with_groups(t) + 'pins = ["group:flat"]\n', t),
+     'cloth "cloth": group "flat" cannot be selected: its faces have no area'),
+    (lambda t: world_of(with_groups(t) + 'pins = ["group:hem"]\n', t),
+     'cloth "cloth" (m.obj): there is no group "hem"; there are "all", "flat"'),
     (lambda t: world_of(GRID_OF_FOUR + "pin = [{ select = { sphere = { center = [5, 5, 5], radius = 1 } } }]\n", t),
      'cloth "cloth": a pin\'s region contains no particle; regions are in world coordinates [m], after position and '
      "rotation"),

@@ -141,8 +141,4 @@ BodyFromFile read_gltf(const std::string& file, const GltfOptions& options) {
   return result;
 }
 
-void write_obj(const std::string& file, const TriangleMesh& mesh) {
-  engine::write_obj(file, engine::to_engine(mesh), engine::to_engine(mesh.uv));
-}
-
 }  // namespace weft
