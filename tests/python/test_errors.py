@@ -616,7 +616,8 @@ OWN: list[tuple[Callable[[], object], str]] = [
     (lambda: weft.Polygons([3], [0, 1, 2], uv=[(0, 0)]), "uv: expected shape (3, 2), found (1, 2)"),
     (lambda: weft.Polygons([3], [0, 1, 2], groups={"hem": [1]}),
      "groups['hem']: polygon 1 is out of range for 1 polygons"),
-    (lambda: weft.Polygons([3], [0, 1, 2], groups=[0]), "groups: expected polygons by name, found [0]"),
+    (lambda: weft.Polygons([3], [0, 1, 2], groups=[0]),  # type: ignore[arg-type]
+     "groups: expected polygons by name, found [0]"),
     (lambda: weft.Polygons([3], [0, 1, 2], groups={"hem": [0]}).vertices_of("hme"),
      'there is no group "hme"; there are "hem"'),
     (lambda: weft.Mesh(5, 5), "vertices: expected shape (n, 3), found ()"),
