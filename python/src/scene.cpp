@@ -1,5 +1,6 @@
 /// Scene files, runs and mesh files.
 
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 
 #include "locked_world.h"
@@ -108,6 +109,45 @@ nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, b
   return values;
 }
 
+/// Sizes, corners, texture coordinates of the corners, and groups as (name, is an object, faces).
+nb::tuple polygon_arrays(MeshFaces&& faces) {
+  nb::list groups;
+  for (MeshGroup& group : faces.groups)
+    groups.append(nb::make_tuple(group.name, group.is_object, make_array<int>(std::move(group.faces), {})));
+  return nb::make_tuple(make_array<int>(std::move(faces.sizes), {}),
+                        make_array<int>(std::move(faces.corners), {}),
+                        make_array<double>(std::move(faces.uv), {2}), groups);
+}
+
+using Uvs = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Groups = std::vector<std::tuple<std::string, bool, Indices>>;
+
+MeshFaces to_faces(const Indices& sizes, const Indices& corners, const std::optional<Uvs>& uv,
+                   const Groups& groups) {
+  MeshFaces faces{.sizes = to_indices(sizes), .corners = to_indices(corners)};
+  for (std::size_t c = 0; uv && c < uv->shape(0); ++c)
+    faces.uv.push_back({uv->data()[2 * c], uv->data()[2 * c + 1]});
+  for (const auto& [name, is_object, of] : groups) faces.groups.push_back({name, is_object, to_indices(of)});
+  return faces;
+}
+
+void bind_polygons(nb::module_& m) {
+  m.def(
+      "write_obj_polygons",
+      [](const std::string& file, const Vectors& vertices, const Indices& sizes, const Indices& corners,
+         const std::optional<Uvs>& uv, const Groups& groups) {
+        const std::vector<Vec3> positions = to_vectors(vertices);
+        const MeshFaces faces = to_faces(sizes, corners, uv, groups);
+        const nb::gil_scoped_release release;
+        write_obj(file, positions, faces);
+      },
+      nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
+      nb::sig(
+          "def write_obj_polygons(file: str, vertices: NDArray[numpy.float64], sizes: NDArray[numpy.int32], "
+          "corners: NDArray[numpy.int32], uv: NDArray[numpy.float64] | None, "
+          "groups: list[tuple[str, bool, NDArray[numpy.int32]]], /) -> None"));
+}
+
 void bind_meshes(nb::module_& m) {
   m.def(
       "read_obj",
@@ -119,10 +159,13 @@ void bind_meshes(nb::module_& m) {
         }
         return nb::make_tuple(make_array(std::move(read->mesh.positions)),
                               make_array<int>(std::move(read->mesh.triangles), {3}),
-                              make_array<double>(std::move(read->mesh.uv), {3, 2}));
+                              make_array<double>(std::move(read->mesh.uv), {3, 2}),
+                              polygon_arrays(std::move(read->faces)));
       },
-      nb::sig("def read_obj(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
-              "NDArray[numpy.float64]]"));
+      nb::sig(
+          "def read_obj(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
+          "NDArray[numpy.float64], tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64], "
+          "list[tuple[str, bool, NDArray[numpy.int32]]]]]"));
   m.def("write_obj", [](const std::string& file, const Vectors& vertices, const Triangles& faces,
                         const std::optional<CornerUvs>& uv) {
     const TriangleMesh mesh = to_mesh(vertices, faces, uv);
@@ -137,6 +180,7 @@ void bind_scene(nb::module_& m) {
   bind_errors(m);
   bind_scene_class(m);
   bind_meshes(m);
+  bind_polygons(m);
   m.def("run", run_scene, nb::arg("scene"), nb::arg("frames").none(), nb::arg("threads"), nb::arg("audit"),
         nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("unfinished"),
         nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),

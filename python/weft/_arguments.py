@@ -92,6 +92,19 @@ def faces(value: ArrayLike, num_vertices: int, name: str) -> Ints:
     return np.ascontiguousarray(array, np.int32)
 
 
+def whole_numbers(value: ArrayLike, name: str) -> Ints:
+    """A list of whole numbers of 32 bits."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise _core.InputError(f"{name}: expected integers, found {_words(value)}") from None
+    if array.size == 0:
+        return np.empty(0, np.int32)
+    if array.dtype.kind not in "iu" or array.ndim != 1 or array.max() >= 2**31 or array.min() < -(2**31):
+        raise _core.InputError(f"{name}: expected a list of integers of 32 bits, found {_words(value)}")
+    return np.ascontiguousarray(array, np.int32)
+
+
 def real(value: object, name: str) -> float:
     """A finite number."""
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,80 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arguments import faces as as_faces
-from ._arguments import numbers, vectors
+from ._arguments import numbers, vectors, whole_numbers
+
+
+class Polygons:
+    """The faces of a mesh file as they are there: quads and polygons, texture coordinates by corner, named groups.
+
+    sizes: (num_polygons,) corners of each, 3 or more. corners: vertices of the first polygon, then of the second, ….
+    uv: texture coordinates (num_corners, 2), NaN where the file has none. groups, objects: the polygons of each name,
+    ascending indices; of an OBJ file those behind its lines g and o. A polygon is in one object at most.
+
+    >>> quad = Polygons([4], [0, 1, 2, 3], groups={"hem": [0]})
+    >>> quad
+    Polygons(1 polygons, groups hem)
+    >>> quad.vertices_of("hem")
+    array([0, 1, 2, 3], dtype=int32)
+    """
+
+    def __init__(
+        self,
+        sizes: ArrayLike,
+        corners: ArrayLike,
+        *,
+        uv: ArrayLike | None = None,
+        groups: Mapping[str, ArrayLike] | None = None,
+        objects: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
+        self.sizes = whole_numbers(sizes, "sizes")
+        self.corners = whole_numbers(corners, "corners")
+        if (self.sizes < 3).any():
+            raise _core.InputError(f"sizes: expected 3 or more corners of each, found {self.sizes.min()}")
+        if int(self.sizes.sum(dtype=np.int64)) != len(self.corners):
+            raise _core.InputError(
+                f"corners: expected {self.sizes.sum(dtype=np.int64)}, the sum of sizes, found {len(self.corners)}"
+            )
+        self.uv = None if uv is None else self._as_uv(uv)
+        self.groups = self._as_groups(groups, "groups")
+        self.objects = self._as_groups(objects, "objects")
+
+    def _as_uv(self, uv: ArrayLike) -> NDArray[np.float64]:
+        try:
+            array = np.ascontiguousarray(uv, np.float64)
+        except (TypeError, ValueError):
+            raise _core.InputError(f"uv: expected an array of numbers, found {uv!r:.60}") from None
+        if array.shape != (len(self.corners), 2):
+            raise _core.InputError(f"uv: expected shape ({len(self.corners)}, 2), found {array.shape}")
+        return array
+
+    def _as_groups(self, groups: Mapping[str, ArrayLike] | None, name: str) -> dict[str, NDArray[np.int32]]:
+        if groups is None:
+            return {}
+        if not isinstance(groups, Mapping) or not all(isinstance(key, str) for key in groups):
+            raise _core.InputError(f"{name}: expected polygons by name, found {groups!r:.60}")
+        arrays = {key: whole_numbers(of, f"{name}[{key!r}]") for key, of in groups.items()}
+        for key, array in arrays.items():
+            wrong = (array < 0) | (array >= len(self.sizes))
+            if wrong.any():
+                raise _core.InputError(
+                    f"{name}[{key!r}]: polygon {array[wrong][0]} is out of range for {len(self.sizes)} polygons"
+                )
+        return arrays
+
+    def vertices_of(self, name: str) -> NDArray[np.int32]:
+        """The vertices of the polygons of a group or object, ascending. Raises InputError for an unknown name."""
+        chosen = [names[name] for names in (self.groups, self.objects) if name in names]
+        if not chosen:
+            known = ", ".join(f'"{known}"' for known in [*self.objects, *self.groups])
+            raise _core.InputError(f'there is no group "{name}"; there are {known or "none"}')
+        polygons = np.zeros(len(self.sizes), bool)
+        polygons[np.concatenate(chosen)] = True
+        return np.unique(self.corners[np.repeat(polygons, self.sizes)])
+
+    def __repr__(self) -> str:
+        names = ", ".join(dict.fromkeys([*self.objects, *self.groups]))
+        return f"Polygons({len(self.sizes)} polygons{', groups ' + names if names else ''})"
 
 
 class Mesh:
@@ -18,6 +92,7 @@ class Mesh:
 
     vertices: (num_vertices, 3) [m]. faces: (num_triangles, 3), counter-clockwise seen from the front.
     uv: texture coordinates by vertex (num_vertices, 2) or by corner (num_triangles, 3, 2); warp runs along u.
+    polygons: of a mesh that was read, the faces of the file, which writing keeps; set it to None to write triangles.
 
     >>> square = Mesh([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)], [(0, 2, 1), (0, 3, 2)])
     >>> square
@@ -28,6 +103,7 @@ class Mesh:
         self.vertices: NDArray[np.float64] = vectors(vertices, "vertices")
         self.faces: NDArray[np.int32] = as_faces(faces, len(self.vertices), "faces")
         self.uv: NDArray[np.float64] | None = None
+        self.polygons: Polygons | None = None
         if uv is not None:
             array = numbers(uv, "uv")
             if array.shape == (len(self.vertices), 2):
@@ -83,13 +159,38 @@ def grid(size: tuple[float, float] = (1.0, 1.0), cells: tuple[int, int] = (32, 3
 def read_obj(file: str | os.PathLike[str]) -> Mesh:
     """Reads a Wavefront OBJ file: vertices in the file's order, quads and polygons cut into triangles.
 
-    Raises InputError ("FILE:LINE: …") for an unusable one.
+    `polygons` of the mesh has the file's faces and groups. Raises InputError ("FILE:LINE: …") for an unusable one.
     """
-    vertices, faces, uv = _core.read_obj(os.fspath(file))
-    return Mesh(vertices, faces, uv if len(uv) else None)
+    vertices, faces, uv, polygons = _core.read_obj(os.fspath(file))
+    mesh = Mesh(vertices, faces, uv if len(uv) else None)
+    mesh.polygons = polygons_from(*polygons)
+    return mesh
+
+
+def polygons_from(
+    sizes: NDArray[np.int32],
+    corners: NDArray[np.int32],
+    uv: NDArray[np.float64],
+    groups: list[tuple[str, bool, NDArray[np.int32]]],
+) -> Polygons:
+    """Polygons from what the module reads."""
+    return Polygons(
+        sizes, corners, uv=uv if len(uv) else None,
+        groups={name: of for name, is_object, of in groups if not is_object},
+        objects={name: of for name, is_object, of in groups if is_object},
+    )  # fmt: skip
 
 
 def write_obj(file: str | os.PathLike[str], mesh: Any) -> None:
-    """Writes an OBJ file, with enough digits to read the same numbers back. Raises InputError if it cannot."""
+    """Writes an OBJ file, with enough digits to read the same numbers back. Raises InputError if it cannot.
+
+    Of a mesh with `polygons` these are written, with their texture coordinates and groups, instead of the triangles.
+    """
     own = as_mesh(mesh)
-    _core.write_obj(os.fspath(file), own.vertices, own.faces, own.uv)
+    if own.polygons is None:
+        _core.write_obj(os.fspath(file), own.vertices, own.faces, own.uv)
+        return
+    all_faces = own.polygons
+    groups = [(name, True, of) for name, of in all_faces.objects.items()]
+    groups += [(name, False, of) for name, of in all_faces.groups.items()]
+    _core.write_obj_polygons(os.fspath(file), own.vertices, all_faces.sizes, all_faces.corners, all_faces.uv, groups)

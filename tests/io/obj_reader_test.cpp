@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -76,6 +77,17 @@ TEST(ObjReader, PassesOverWeightsAndColours) {
   EXPECT_EQ(mesh.positions[0], Vec3(1, 2, 3));
   EXPECT_EQ(mesh.positions[1], Vec3(4, 5, 6));
   EXPECT_EQ(mesh.positions[2], Vec3(7, 8, 9));
+}
+
+TEST(ObjReader, TakesNumbersTooSmallForADoubleAsZero) {
+  const std::string long_zero = "0." + std::string(400, '0') + "1";
+  const TriangleMesh mesh =
+      parse("v 1e-400 -1e-400 " + long_zero + "\nv 0.01e-323 1e-99999999999999999999 1\nv 1" +
+            std::string(400, '0') + "e-400 " + long_zero + "e401 5e-324\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions[0], Vec3::Zero());
+  EXPECT_TRUE(std::signbit(mesh.positions[0].y()));
+  EXPECT_EQ(mesh.positions[1], Vec3(0, 0, 1));
+  EXPECT_EQ(mesh.positions[2], Vec3(1, 1, std::numeric_limits<double>::denorm_min()));
 }
 
 TEST(ObjReader, TakesAnyLayoutOfLines) {
@@ -263,6 +275,7 @@ TEST(ObjReader, NamesTheLineOfWhatItRefuses) {
       {"v 0 0 0\nv 1 nan 0\n", "x.obj:2: 'nan' is not a coordinate; expected a finite number"},
       {"v 0 0 inf\n", "x.obj:1: 'inf'"},
       {"v 0 0 1e999\n", "x.obj:1: '1e999'"},
+      {"v 0 0 1e99999999999999999999\n", "x.obj:1: '1e99999999999999999999'"},
       {"\n\nv 0 0 1,5\n", "x.obj:3: '1,5'"},
       {"v 0 0\n", "x.obj:1: a vertex with 2 coordinates; expected v X Y Z with three numbers"},
       {"v\n", "x.obj:1: a vertex with 0 coordinates"},

@@ -94,5 +94,12 @@ TEST(CleanMesh, NamesNonManifoldEdges) {
   EXPECT_TRUE(has_warning(clean_mesh(mesh), "1 edges belong to more than two triangles"));
 }
 
+TEST(CleanMesh, EndsWhereABorderIsMuchShorterThanASeamMayBe) {
+  // The border of the second triangle was followed round by round, for as long as a seam may be.
+  const TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-10, 0, 0}, {0, 1e-10, 0}},
+                          .triangles = {{0, 1, 2}, {0, 3, 4}}};
+  EXPECT_EQ(clean_mesh(mesh).mesh.num_triangles(), 2);
+}
+
 }  // namespace
 }  // namespace weft::engine

@@ -382,6 +382,11 @@ def unused_vertex(folder: Path) -> str:
     return GRID + 'mesh = "m.obj"\n'
 
 
+def with_groups(folder: Path) -> str:
+    (folder / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 2 0 0\ng all\nf 1 3 2\ng flat\nf 4 4 4\n")
+    return GRID + 'mesh = "m.obj"\n'
+
+
 def two_meshes(folder: Path) -> str:
     weft.write_obj(folder / "m_0.obj", SQUARE)
     weft.write_obj(folder / "m_1.obj", triangulated(2))
@@ -410,6 +415,10 @@ FILES: list[tuple[Callable[[Path], object], str]] = [
      'cloth "cloth": there is no index 99 to pin; the last one is 4'),
     (lambda t: world_of(unused_vertex(t) + 'pins = ["index:4"]\n', t),
      'cloth "cloth": vertex 4 cannot be pinned: no triangle uses it'),
+    (lambda t: world_of(with_groups(t) + 'pins = ["group:flat"]\n', t),
+     'cloth "cloth": group "flat" cannot be selected: its faces have no area'),
+    (lambda t: world_of(with_groups(t) + 'pins = ["group:hem"]\n', t),
+     'cloth "cloth" (m.obj): there is no group "hem"; there are "all", "flat"'),
     (lambda t: world_of(GRID_OF_FOUR + "pin = [{ select = { sphere = { center = [5, 5, 5], radius = 1 } } }]\n", t),
      'cloth "cloth": a pin\'s region contains no particle; regions are in world coordinates [m], after position and '
      "rotation"),
@@ -601,6 +610,16 @@ OWN: list[tuple[Callable[[], object], str]] = [
     (lambda: collider(SQUARE, frames=[(1, 2, 3)]), "frames: expected pairs (time, vertices), found 3 items"),
     (lambda: collider(SQUARE, frames=[("x", SQUARE.vertices)]), "frames: expected a number, found 'x'"),
     (lambda: collider(friction="x"), "friction: expected a number, found 'x'"),
+    (lambda: weft.Polygons([2], [0, 1]), "sizes: expected 3 or more corners of each, found 2"),
+    (lambda: weft.Polygons([3], [0, 1, 2, 3]), "corners: expected 3, the sum of sizes, found 4"),
+    (lambda: weft.Polygons([3.5], [0]), "sizes: expected a list of integers of 32 bits, found [3.5]"),
+    (lambda: weft.Polygons([3], [0, 1, 2], uv=[(0, 0)]), "uv: expected shape (3, 2), found (1, 2)"),
+    (lambda: weft.Polygons([3], [0, 1, 2], groups={"hem": [1]}),
+     "groups['hem']: polygon 1 is out of range for 1 polygons"),
+    (lambda: weft.Polygons([3], [0, 1, 2], groups=[0]),  # type: ignore[arg-type]
+     "groups: expected polygons by name, found [0]"),
+    (lambda: weft.Polygons([3], [0, 1, 2], groups={"hem": [0]}).vertices_of("hme"),
+     'there is no group "hme"; there are "hem"'),
     (lambda: weft.Mesh(5, 5), "vertices: expected shape (n, 3), found ()"),
     (lambda: weft.Mesh([(0, 0)], [(0, 1, 2)]), "vertices: expected shape (n, 3), found (1, 2)"),
     (lambda: weft.Mesh(SQUARE.vertices, [(0, 1, 4)]), "faces: vertex 4 is out of range for 4 vertices"),

@@ -86,6 +86,8 @@ RIGHT: dict[str, tuple[list[Any], dict[str, Any]]] = {
     "Batch.reset": ([[0]], {}),
     "Batch.rollout": ([GOALS[:, None], DT], dict(cloth="sheet", particles=PINS)),
     "weft.Mesh": ([SQUARE.vertices, SQUARE.faces], dict(uv=SQUARE.vertices[:, [0, 2]])),
+    "weft.Polygons": ([[4], [0, 1, 2, 3]], dict(uv=np.zeros((4, 2)), groups={"hem": [0]}, objects={"shirt": [0]})),
+    "Polygons": ([[4], [0, 1, 2, 3]], {}),
     "weft.grid": ([], dict(size=(1, 2), cells=(3, 4))),
     "weft.Camera": ([], dict(position=(1, 1, 1), target=(0, 0, 0), fov_deg=40.0, size=(8, 6))),
     "weft.fabric_from": ([weft.CloProperties(density=100)], {}),
@@ -136,7 +138,7 @@ def objects(folder: Path) -> dict[str, Any]:
     values = {name: getattr(weft, name)() for name in weft.__all__ if hasattr(getattr(weft, name), "_asdict")}
     return {
         "World": world, "Cloth": sheet, "Collider": world.colliders[0],
-        "Mesh": weft.Mesh(SQUARE.vertices, SQUARE.faces),
+        "Mesh": weft.Mesh(SQUARE.vertices, SQUARE.faces), "Polygons": weft.Polygons([4], [0, 1, 2, 3]),
         "Batch": weft.Batch(lambda i: hanging(4), 2), "Scene": scene, "Section": scene.cloths[0],
         "Run": weft.open_run(folder / "run"), "Camera": weft.Camera(size=(16, 12)), "StepReport": world.step(DT),
         "Snapshot": world.snapshot(), "weft": weft, **values,

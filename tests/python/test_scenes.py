@@ -321,3 +321,39 @@ def test_text_is_a_scene() -> None:
 def test_a_folder_of_scenes_is_found_anywhere() -> None:
     done = python("import os, weft; os.chdir('/'); print(len(weft.scenes()))")
     assert done.stdout.strip() == str(len(weft.scenes()))
+
+
+SHIRT = (
+    "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 2 0 0.1\nvt 0 0\nvt 0.5 0\nvt 0.5 1\n"
+    "o shirt\ng front\nf 1/1 2/2 3/3 4/1\ng back hem\nf 2/1 5/2 3/3\n"
+)
+
+
+def test_polygons_of_a_file_come_back(tmp_path: Path) -> None:
+    (tmp_path / "shirt.obj").write_text(SHIRT)
+    mesh = weft.read_obj(tmp_path / "shirt.obj")
+    polygons = mesh.polygons
+    assert polygons is not None
+    assert polygons.sizes.tolist() == [4, 3] and polygons.corners.tolist() == [0, 1, 2, 3, 1, 4, 2]
+    assert polygons.uv is not None and polygons.uv[2].tolist() == [0.5, 1]
+    assert {name: of.tolist() for name, of in polygons.groups.items()} == {"front": [0], "back": [1], "hem": [1]}
+    assert polygons.vertices_of("hem").tolist() == [1, 2, 4]
+    assert polygons.vertices_of("shirt").tolist() == [0, 1, 2, 3, 4]
+    weft.write_obj(tmp_path / "again.obj", mesh)
+    assert (tmp_path / "again.obj").read_text() == SHIRT
+
+
+def test_a_simulated_mesh_is_written_with_the_faces_of_its_file(tmp_path: Path) -> None:
+    (tmp_path / "shirt.obj").write_text(SHIRT)
+    mesh = weft.read_obj(tmp_path / "shirt.obj")
+    assert mesh.polygons is not None
+    world = weft.World()
+    cloth = world.add_cloth(mesh, fabric="denim")
+    cloth.pin(cloth.particle_of_vertex[mesh.polygons.vertices_of("hem")])
+    world.step(1 / 60)
+    mesh.vertices = cloth.vertices
+    weft.write_obj(tmp_path / "moved.obj", mesh)
+    moved = weft.read_obj(tmp_path / "moved.obj")
+    assert np.array_equal(moved.vertices, cloth.vertices) and not np.array_equal(moved.vertices[0], (0, 0, 0))
+    faces = [line for line in SHIRT.splitlines() if line[:2] != "v "]
+    assert [line for line in (tmp_path / "moved.obj").read_text().splitlines() if line[:2] != "v "] == faces

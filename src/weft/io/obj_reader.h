@@ -28,8 +28,8 @@ struct ObjObject {
 };
 
 /// Writes vertices and faces, with enough digits to read the same doubles back: polygons, texture coordinates
-/// (each once), groups and objects. Throws InputError if the file cannot be written, and for a group's name
-/// that is not one word, or that has # or ends in a backslash.
+/// (each once), groups and objects. A group's name must be one word, an object's words, without # and without a
+/// backslash at the end. Throws InputError for others, and if the file cannot be written.
 void write_obj(const std::filesystem::path& file, const std::vector<Vec3>& positions, const MeshFaces& faces);
 
 /// What write_obj() writes.

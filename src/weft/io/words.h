@@ -14,8 +14,8 @@ std::string_view take_line(std::string_view text, std::size_t& at);
 /// Appends the words of a line, which blanks separate.
 void append_words(std::string_view line, std::vector<std::string_view>& words);
 
-/// The number that the whole word is, a leading + included; nothing for other words, and out of the range of
-/// doubles.
+/// The number that the whole word is, a leading + included; 0 for one that is too small for a double. Nothing
+/// for other words, and for a number that is too large.
 std::optional<double> parse_number(std::string_view word);
 
 /// The same for finite numbers only.

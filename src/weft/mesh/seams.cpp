@@ -160,7 +160,7 @@ double SeamFinder::find_gap(const Vec3& p, const BorderPlace& place) const {
     BorderPlace at = place;
     for (double way = 0; way <= 2 * distance_;) {
       if (edge_ahead(at, direction) < 0) break;
-      const BorderPlace next = next_place(at, direction, at);
+      const BorderPlace next = next_place(at, direction, place);
       const Vec3 from = position(at), to = position(next);
       nearest = std::min(nearest, point_segment_distance(p, from, to).distance());
       way += (to - from).norm();

@@ -45,7 +45,7 @@ class GlbSink : public FrameSink {
 /// Writes for each cloth a PC2 point cache and the mesh of its points: `FOLDER/sheet.pc2` and
 /// `FOLDER/sheet.mesh.obj` of cloth "sheet". Frame 0 is the start, and the mesh is at the start. Points are the
 /// vertices of the cloth's mesh as it was given, in their order (World::vertex_positions), in world
-/// coordinates [m]; the mesh has the polygons, texture coordinates and groups of its file.
+/// coordinates [m]. The mesh has the polygons, texture coordinates and groups of its file.
 class Pc2Sink : public FrameSink {
  public:
   /// The files are in `part` during the run; replace() moves them into `folder`. Both must exist.
@@ -86,8 +86,9 @@ class Pc2Sink : public FrameSink {
 };
 
 /// Writes a sequence of OBJ files, one per cloth and frame: `FOLDER/sheet_0000.obj` is the start of cloth
-/// "sheet". Each has the vertices of the cloth's mesh as it was given, in their order, with the polygons, texture
-/// coordinates and groups of its file; a grid has its cells. A file is on the disk after sync() or finish().
+/// "sheet". Each has the vertices of the cloth's mesh as it was given, in their order. Polygons, texture
+/// coordinates and groups are those of its file; a grid has its cells. A file is on the disk after sync() or
+/// finish().
 class ObjSink : public FrameSink {
  public:
   /// The folder must exist.
