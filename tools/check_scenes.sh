@@ -28,6 +28,17 @@ check contact/funnel 0.000001 120
 check contact/twisted_tube 0.000001 100
 check contact/stack 0.000001 40
 
+# A skinned body and cloth that holds on to it. The same run, killed five times, ends with the same bytes.
+check garments/walk 0.000001
+for seconds in 2 4 6 8 10; do
+  begin=$([ -d "$out/killed" ] && echo "--resume $out/killed" || echo "garments/walk --out $out/killed --checkpoint-every 5")
+  timeout --signal=KILL "$seconds" "$weft" run $begin || true
+done
+"$weft" run --resume "$out/killed"
+for file in animation.glb skirt.pc2 shirt.pc2; do
+  cmp "$out/garments/walk/$file" "$out/killed/$file"
+done
+
 "$weft" run garment --frames 30 --out "$out/garment"
 "$weft" verify "$out/garment" || echo "garment: reported only"
 

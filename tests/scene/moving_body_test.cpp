@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <numeric>
 
 #include "tests/io/gltf_builder.h"
 #include "weft/io.h"
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using engine::test::Floats;
 using engine::test::GltfBuilder;
+using engine::test::operator+;
 
 constexpr int kCells = 10;     // along the arm, and half as many across
 constexpr double kLength = 1;  // of the arm, along x from 0 [m]
@@ -211,6 +213,22 @@ TEST_F(MovingBody, CarriesPinsAtTheirOffsetFromItsSurface) {
   }
 }
 
+TEST_F(MovingBody, DoesNotCollideWithThePinsThatFollowIt) {
+  World world;
+  const ColliderId arm = world.add_collider(describe_arm());
+  ClothDesc sheet = describe_sheet();
+  sheet.pose.translation.y = 1e-4;  // less than half of the thickness
+  const ClothId cloth = world.add_cloth(sheet);
+  std::vector<int> all(25);
+  std::iota(all.begin(), all.end(), 0);
+  world.set_pins(cloth, {{.particles = all, .follow = arm}});
+  for (int frame = 0; frame < 60; ++frame) {
+    const StepReport report = world.step(1.0 / 60);
+    ASSERT_TRUE(report.ok);
+    ASSERT_TRUE(report.infeasible.empty()) << "frame " << frame;
+  }
+}
+
 TEST_F(MovingBody, CarriesPinsOfRigidShapes) {
   World world;
   const ColliderId ball = world.add_collider(
@@ -331,7 +349,7 @@ position = [-0.62, 0, 0]
 )";
   const engine::SceneDesc read = parse(scene);
   EXPECT_EQ(read.cloths[0].pins[1].follow, "arm");
-  weft::World world = std::move(engine::build_scene(read, engine::make_serial_jobs()).world);
+  weft::World world = std::move(engine::build_scene(read, make_serial_jobs()).world);
   const Vec3 start = world.positions(world.cloth(0))[0];
   for (int frame = 0; frame < 30; ++frame) ASSERT_TRUE(world.step(1.0 / 60).ok);
   const Vec3 end = world.positions(world.cloth(0))[0];
@@ -339,7 +357,7 @@ position = [-0.62, 0, 0]
   const auto mistakes = [&](const std::string& from, const std::string& to) {
     std::string text = scene;
     text.replace(text.find(from), from.size(), to);
-    return complaint([&] { engine::build_scene(parse(text), engine::make_serial_jobs()); });
+    return complaint([&] { engine::build_scene(parse(text), make_serial_jobs()); });
   };
   EXPECT_EQ(mistakes("follow = \"arm\"", "follow = \"arms\""),
             "cloth \"sheet\": a pin follows \"arms\", but there is no collider of this name; did you mean "
@@ -354,7 +372,7 @@ position = [-0.62, 0, 0]
                 .find("has no motion of its own"),
             std::string::npos);
   const engine::SceneDesc late = parse(std::string(scene).replace(scene.find("1.5"), 3, "2.5"));
-  const auto warnings = engine::build_scene(late, engine::make_serial_jobs()).warnings;
+  const auto warnings = engine::build_scene(late, make_serial_jobs()).warnings;
   EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& w) {
     return w == "collider \"arm\" (arm.glb): start_time = 2.5 is outside the clip, which lasts from 1 to 2 s";
   }));

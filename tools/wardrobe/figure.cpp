@@ -26,7 +26,7 @@ Vec3 along_arm(double length, double front = 0, double up = 0) {
   return kShoulder + Vec3(cos * length + sin * up, -sin * length + cos * up, front);
 }
 
-std::vector<Cone> make_left_side() {
+std::vector<Cone> make_left_side(Hands hands) {
   std::vector<Cone> cones = {
       {kHips, {0.085, 0.94, 0}, {0.05, 1.10, 0}, 0.100, 0.088},
       {kHips, {0.075, 0.93, -0.05}, {0.07, 0.90, -0.05}, 0.075, 0.075},
@@ -42,19 +42,23 @@ std::vector<Cone> make_left_side() {
       {kLeftShin, {0.10, 0.40, -0.02}, {0.10, 0.32, -0.025}, 0.054, 0.048},  // calf
       {kLeftFoot, {0.10, 0.055, -0.03}, {0.12, 0.035, 0.14}, 0.042, 0.032},
   };
+  if (hands == Hands::mittens) {
+    cones.push_back({kLeftHand, along_arm(0.62), along_arm(0.70), 0.026, 0.018});
+    return cones;
+  }
   for (const double front : {-0.026, -0.009, 0.009, 0.026})  // fingers
     cones.push_back({kLeftHand, along_arm(0.63, front), along_arm(0.71, 1.3 * front), 0.011, 0.009});
   return cones;
 }
 
-std::vector<Cone> make_cones() {
+std::vector<Cone> make_cones(Hands hands) {
   std::vector<Cone> cones = {
       {kChest, {0, 1.30, -0.01}, {0, 1.46, -0.01}, 0.09, 0.06},
       {kHead, {0, 1.46, -0.01}, {0, 1.56, 0.005}, 0.055, 0.052},
       {kHead, {0, 1.60, 0.02}, {0, 1.68, 0.01}, 0.072, 0.090},
       {kHead, {0, 1.64, 0.10}, {0, 1.62, 0.108}, 0.008, 0.012},  // nose
   };
-  for (Cone cone : make_left_side()) {
+  for (Cone cone : make_left_side(hands)) {
     cones.push_back(cone);
     if (cone.bone > kHead) cone.bone = static_cast<Bone>(cone.bone + 3);
     for (Vec3* end : {&cone.a, &cone.b}) end->x() = -end->x();
@@ -63,9 +67,10 @@ std::vector<Cone> make_cones() {
   return cones;
 }
 
-const std::vector<Cone>& all_cones() {
-  static const std::vector<Cone> cones = make_cones();
-  return cones;
+const std::vector<Cone>& all_cones(Hands hands = Hands::fingers) {
+  static const std::vector<Cone> with_fingers = make_cones(Hands::fingers),
+                                 mittens = make_cones(Hands::mittens);
+  return hands == Hands::fingers ? with_fingers : mittens;
 }
 
 double distance_to(const Cone& cone, const Vec3& p) {
@@ -198,9 +203,9 @@ Pose sit(double time) {
 
 }  // namespace
 
-Field body_field(const std::vector<Bone>& bones, double blend) {
+Field body_field(const std::vector<Bone>& bones, double blend, Hands hands) {
   std::vector<Cone> cones;
-  for (const Cone& cone : all_cones()) {
+  for (const Cone& cone : all_cones(hands)) {
     if (std::find(bones.begin(), bones.end(), cone.bone) != bones.end()) cones.push_back(cone);
   }
   return [cones, blend](const Vec3& p) {
@@ -246,11 +251,11 @@ Mat3 rotation_of(const Vec3& angles_deg) {
       .toRotationMatrix();
 }
 
-Figure make_figure(double cell) {
+Figure make_figure(double cell, Hands hands) {
   std::vector<Bone> bones;
   for (int b = 0; b < kNumBones; ++b) bones.push_back(static_cast<Bone>(b));
   Figure figure;
-  figure.mesh = build_isosurface(body_field(bones, 0.02),
+  figure.mesh = build_isosurface(body_field(bones, 0.02, hands),
                                  Eigen::AlignedBox3d(Vec3(-0.95, -0.1, -0.25), Vec3(0.95, 1.85, 0.25)), cell);
   figure.num_skin_triangles = figure.mesh.num_triangles();
   append(figure.mesh,

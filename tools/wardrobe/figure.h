@@ -35,9 +35,11 @@ enum Bone {
 /// Rotation of each bone relative to its parent: about x, y, z, in this order [degrees].
 using Pose = std::array<Vec3, kNumBones>;
 
+enum class Hands { fingers, mittens };
+
 /// The figure's skin at rest, for these bones only, joined over a length of `blend`, the torso over 0.06 or
 /// more [m].
-Field body_field(const std::vector<Bone>& bones, double blend);
+Field body_field(const std::vector<Bone>& bones, double blend, Hands hands = Hands::fingers);
 
 /// Start of the bone at rest [m].
 Vec3 joint_of(Bone bone);
@@ -57,8 +59,9 @@ struct Figure {
   std::vector<std::array<float, kNumBones>> weights;  // (num_vertices) sums are 1 [1]
 };
 
-/// With cells of side `cell` [m]; 0.011 gives 15,000 vertices.
-Figure make_figure(double cell);
+/// With cells of side `cell` [m]; 0.011 gives 15,000 vertices. Fingers need cells below that: else they merge
+/// into edges of more than two triangles.
+Figure make_figure(double cell, Hands hands = Hands::fingers);
 
 /// The mesh's vertices in a pose (num_vertices) [m].
 std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose);

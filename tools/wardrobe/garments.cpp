@@ -148,9 +148,7 @@ TriangleMesh make_trousers(double cell) {
   return wall(offset(body_field(kBottom, 0.03), 0.009), cell, {below(1.03), above(0.13)}, 0);
 }
 
-TriangleMesh make_skirt(double cell) {
-  return wall(worn_skirt_field(), cell, {below(1.04), above(0.5)});
-}
+TriangleMesh make_skirt(double cell) { return wall(worn_skirt_field(), cell, {below(1.04), above(0.5)}); }
 
 TriangleMesh make_shirt_over_skirt(double cell) {
   const Field field = unite(offset(body_field(kTop, 0.06), 0.012), offset(worn_skirt_field(), 0.008));

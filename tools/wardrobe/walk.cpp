@@ -12,13 +12,14 @@
 #include "tools/wardrobe/garments.h"
 #include "weft/core/staged_file.h"
 #include "weft/io/obj_reader.h"
+#include "weft/mesh/clean.h"
 
 namespace weft::engine::wardrobe {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFigureCell = 0.0159, kGarmentCell = 0.020;  // [m]
+constexpr double kFigureCell = 0.0155, kGarmentCell = 0.020;  // [m]
 constexpr double kDuration = 5;                              // of the clip [s]
 constexpr int kKeysPerSecond = 20;
 constexpr double kWaist = 1.012;  // cloth above belongs to the waistband [m]
@@ -151,7 +152,7 @@ void add_walk(GlbFile& file) {
 }
 
 std::string figure_bytes() {
-  const Figure figure = make_figure(kFigureCell);
+  const Figure figure = make_figure(kFigureCell, Hands::mittens);
   GlbFile file;
   std::vector<std::uint32_t> indices;
   for (const Triangle& t : figure.mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
@@ -165,8 +166,13 @@ std::string figure_bytes() {
   return file.bytes();
 }
 
+/// Without slivers and double vertices.
+TriangleMesh clean(const TriangleMesh& garment) {
+  return clean_mesh(garment, {.weld_distance = 1e-4, .short_edge = 1e-3}).mesh;
+}
+
 void write_skirt(const std::filesystem::path& file) {
-  const TriangleMesh skirt = make_skirt(kGarmentCell);
+  const TriangleMesh skirt = clean(make_skirt(kGarmentCell));
   MeshFaces faces;
   for (const bool is_band : {true, false}) {
     const int begin = static_cast<int>(faces.size());
@@ -186,7 +192,7 @@ void write_walk(const std::filesystem::path& folder) {
   const std::string figure = figure_bytes();
   write_file(folder / "figure.glb", figure);
   write_skirt(folder / "walk_skirt.obj");
-  write_obj(folder / "walk_shirt.obj", make_shirt_over_skirt(kGarmentCell));
+  write_obj(folder / "walk_shirt.obj", clean(make_shirt_over_skirt(kGarmentCell)));
 }
 
 }  // namespace weft::engine::wardrobe
