@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "weft/error.h"
-#include "weft/run/convert_files.h"
+#include "weft/io.h"
 
 namespace weft::engine::app {
 namespace {
@@ -66,9 +66,9 @@ void add_convert_command(CLI::App& app, int& exit_code) {
   command->callback([request, &exit_code] {
     request->options.up_is_z = request->up == "z";
     if (!request->frames.empty()) set_frames(request->frames, request->options);
-    const Converted done = convert_files(request->in, request->out, request->options);
+    const Converted done = convert(request->in, request->out, request->options);
     for (const std::string& note : done.notes) fmt::print(stderr, "note: {}\n", note);
-    for (const auto& file : done.files) fmt::print("{}\n", file.string());
+    for (const std::string& file : done.files) fmt::print("{}\n", file);
     exit_code = kDone;
   });
 }

@@ -1,4 +1,4 @@
-/// Scene files, runs and mesh files.
+/// Scene files, runs, mesh files and point caches.
 
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -131,47 +131,126 @@ MeshFaces to_faces(const Indices& sizes, const Indices& corners, const std::opti
   return faces;
 }
 
-void bind_polygons(nb::module_& m) {
-  m.def(
-      "write_obj_polygons",
-      [](const std::string& file, const Vectors& vertices, const Indices& sizes, const Indices& corners,
-         const std::optional<Uvs>& uv, const Groups& groups) {
-        const std::vector<Vec3> positions = to_vectors(vertices);
-        const MeshFaces faces = to_faces(sizes, corners, uv, groups);
-        const nb::gil_scoped_release release;
-        write_obj(file, positions, faces);
-      },
-      nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
-      nb::sig(
-          "def write_obj_polygons(file: str, vertices: NDArray[numpy.float64], sizes: NDArray[numpy.int32], "
-          "corners: NDArray[numpy.int32], uv: NDArray[numpy.float64] | None, "
-          "groups: list[tuple[str, bool, NDArray[numpy.int32]]], /) -> None"));
+using Floats = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+std::span<const float> to_span(const Floats& array) { return {array.data(), array.size()}; }
+
+nb::ndarray<nb::numpy, float> to_rows(std::vector<float>&& numbers) {
+  auto* own = new std::vector<float>(std::move(numbers));
+  nb::capsule owner(own, [](void* p) noexcept { delete static_cast<std::vector<float>*>(p); });
+  return nb::ndarray<nb::numpy, float>(own->data(), {own->size() / 3, 3}, owner);
+}
+
+/// Vertices, triangles, texture coordinates of their corners, the file's polygons, and warnings.
+template <auto kRead>
+nb::tuple read_arrays(const std::string& file) {
+  std::optional<MeshFromFile> read;
+  {
+    const nb::gil_scoped_release release;
+    read.emplace(kRead(file));
+  }
+  return nb::make_tuple(make_array(std::move(read->mesh.positions)),
+                        make_array<int>(std::move(read->mesh.triangles), {3}),
+                        make_array<double>(std::move(read->mesh.uv), {3, 2}),
+                        polygon_arrays(std::move(read->faces)), std::move(read->warnings));
+}
+
+using WriteMesh = void (*)(const std::string&, const TriangleMesh&);
+using WritePolygons = void (*)(const std::string&, const std::vector<Vec3>&, const MeshFaces&);
+
+template <WriteMesh kWrite>
+void write_arrays(const std::string& file, const Vectors& vertices, const Triangles& faces,
+                  const std::optional<CornerUvs>& uv) {
+  const TriangleMesh mesh = to_mesh(vertices, faces, uv);
+  const nb::gil_scoped_release release;
+  kWrite(file, mesh);
+}
+
+template <WritePolygons kWrite>
+void write_polygons(const std::string& file, const Vectors& vertices, const Indices& sizes,
+                    const Indices& corners, const std::optional<Uvs>& uv, const Groups& groups) {
+  const std::vector<Vec3> positions = to_vectors(vertices);
+  const MeshFaces faces = to_faces(sizes, corners, uv, groups);
+  const nb::gil_scoped_release release;
+  kWrite(file, positions, faces);
+}
+
+/// The functions of a kind of file: read_NAME, write_NAME, write_NAME_polygons.
+template <auto kRead, WriteMesh kWrite, WritePolygons kWritePolygons>
+void bind_files(nb::module_& m, const std::string& name) {
+  m.def(("read_" + name).c_str(), read_arrays<kRead>,
+        nb::sig(("def read_" + name +
+                 "(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.float64], "
+                 "tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64], "
+                 "list[tuple[str, bool, NDArray[numpy.int32]]]], list[str]]")
+                    .c_str()));
+  m.def(("write_" + name).c_str(), write_arrays<kWrite>);
+  m.def(("write_" + name + "_polygons").c_str(), write_polygons<kWritePolygons>, nb::arg(), nb::arg(),
+        nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
+        nb::sig(("def write_" + name +
+                 "_polygons(file: str, vertices: NDArray[numpy.float64], sizes: NDArray[numpy.int32], "
+                 "corners: NDArray[numpy.int32], uv: NDArray[numpy.float64] | None, "
+                 "groups: list[tuple[str, bool, NDArray[numpy.int32]]], /) -> None")
+                    .c_str()));
 }
 
 void bind_meshes(nb::module_& m) {
+  bind_files<read_obj, write_obj, write_obj>(m, "obj");
+  bind_files<read_mesh, write_mesh, write_mesh>(m, "mesh");
   m.def(
-      "read_obj",
-      [](const std::string& file) {
-        std::optional<MeshFromFile> read;
+      "triangulate",
+      [](const Vectors& corners, const Indices& counts) {
+        return make_array<int>(triangulate(to_vectors(corners), to_indices(counts)), {3});
+      },
+      nb::sig("def triangulate(corners: NDArray[numpy.float64], counts: NDArray[numpy.int32]) -> "
+              "NDArray[numpy.int32]"));
+  m.def(
+      "vertex_normals",
+      [](const Triangles& triangles, const Floats& positions) {
+        return to_rows(vertex_normals(to_triangles(triangles), to_span(positions)));
+      },
+      nb::sig("def vertex_normals(triangles: NDArray[numpy.int32], positions: NDArray[numpy.float32]) -> "
+              "NDArray[numpy.float32]"));
+}
+
+void bind_point_caches(nb::module_& m) {
+  nb::class_<PointCacheFile>(m, "PointCacheFile")
+      .def(nb::init<const std::string&>())
+      .def_prop_ro("num_points", &PointCacheFile::num_points)
+      .def_prop_ro("num_frames", &PointCacheFile::num_frames)
+      .def_prop_ro("times", &PointCacheFile::times)
+      .def(
+          "frame", [](const PointCacheFile& file, int k) { return to_rows(file.frame(k)); },
+          nb::sig("def frame(self, k: int) -> NDArray[numpy.float32]"));
+  nb::class_<PointCacheWriter>(m, "PointCacheWriter")
+      .def(nb::init<const std::string&, int, const std::vector<float>&>())
+      .def(
+          "add_frame",
+          [](PointCacheWriter& writer, const Floats& positions) { writer.add_frame(to_span(positions)); },
+          nb::sig("def add_frame(self, positions: NDArray[numpy.float32]) -> None"))
+      .def("finish", &PointCacheWriter::finish);
+}
+
+void bind_convert(nb::module_& m) {
+  m.def(
+      "convert",
+      [](const std::string& in, const std::string& out, std::optional<double> fps, bool up_is_z, double scale,
+         int first_frame, std::optional<int> last_frame, const std::string& mesh) {
+        std::optional<Converted> done;
         {
           const nb::gil_scoped_release release;
-          read.emplace(read_obj(file));
+          done.emplace(convert(in, out,
+                               {.fps = fps,
+                                .up_is_z = up_is_z,
+                                .scale = scale,
+                                .first_frame = first_frame,
+                                .last_frame = last_frame,
+                                .mesh = mesh}));
         }
-        return nb::make_tuple(make_array(std::move(read->mesh.positions)),
-                              make_array<int>(std::move(read->mesh.triangles), {3}),
-                              make_array<double>(std::move(read->mesh.uv), {3, 2}),
-                              polygon_arrays(std::move(read->faces)));
+        return std::pair(done->files, done->notes);
       },
-      nb::sig(
-          "def read_obj(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
-          "NDArray[numpy.float64], tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64], "
-          "list[tuple[str, bool, NDArray[numpy.int32]]]]]"));
-  m.def("write_obj", [](const std::string& file, const Vectors& vertices, const Triangles& faces,
-                        const std::optional<CornerUvs>& uv) {
-    const TriangleMesh mesh = to_mesh(vertices, faces, uv);
-    const nb::gil_scoped_release release;
-    write_obj(file, mesh);
-  });
+      nb::arg("file"), nb::arg("out"), nb::arg("fps").none(), nb::arg("up_is_z"), nb::arg("scale"),
+      nb::arg("first_frame"), nb::arg("last_frame").none(), nb::arg("mesh"));
 }
 
 }  // namespace
@@ -180,7 +259,8 @@ void bind_scene(nb::module_& m) {
   bind_errors(m);
   bind_scene_class(m);
   bind_meshes(m);
-  bind_polygons(m);
+  bind_point_caches(m);
+  bind_convert(m);
   m.def("run", run_scene, nb::arg("scene"), nb::arg("frames").none(), nb::arg("threads"), nb::arg("audit"),
         nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("unfinished"),
         nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),

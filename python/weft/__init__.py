@@ -49,19 +49,20 @@ from ._core import (
     parameters,
 )
 from ._core import version as __version__
-from ._errors import SimulationError, SimulationWarning
-from ._mesh import Mesh, Polygons, grid, read_obj, write_obj
+from ._convert import convert
+from ._errors import FileWarning, SimulationError, SimulationWarning
+from ._mesh import Mesh, Polygons, grid, read_mesh, read_obj, write_mesh, write_obj
 from ._pictures import Camera, Picture, Rendering
 from ._scene import Run, Scene, Section, load_scene, open_run, run, scenes
 from ._world import Cloth, Collider, SurfacePoint, World
 
 __all__ = [
-    "Air", "Batch", "Box", "Camera", "Capsule", "CloProperties", "Cloth", "Collider", "ContactSettings",
-    "Diagnostic", "ExplicitSettings", "Fabric", "FastSheet", "GraphicsError", "Grid", "Gusts",
+    "Air", "Batch", "Box", "Camera", "Capsule", "CloProperties", "Cloth", "Collider", "ContactSettings", "Diagnostic",
+    "ExplicitSettings", "Fabric", "FastSheet", "FileWarning", "GraphicsError", "Grid", "Gusts",
     "ImplicitEulerSettings", "InputError", "IntegratorSettings", "KesSheet", "KeyFrame", "Mesh", "NewtonSettings",
     "PaperSettings", "Picture", "Plane", "Polygons", "Rendering", "Run", "Scene", "SceneError", "Section",
     "SimulationError", "SimulationWarning", "Snapshot", "Sphere", "Springs", "StepDivision", "StepReport",
-    "StepWarning", "SurfacePoint", "Wind", "WindKey", "World", "XpbdSettings", "__version__", "fabric_from",
+    "StepWarning", "SurfacePoint", "Wind", "WindKey", "World", "XpbdSettings", "__version__", "convert", "fabric_from",
     "fabric_presets", "fabric_sources", "find_fabric", "grid", "integrator_names", "load_scene", "open_run",
-    "parameters", "read_obj", "run", "scenes", "write_obj",
+    "parameters", "read_mesh", "read_obj", "run", "scenes", "write_mesh", "write_obj",
 ]  # fmt: skip

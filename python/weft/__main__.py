@@ -1,12 +1,15 @@
-"""The verbs of `python -m weft`: run, check, scenes, fabrics, bench."""
+"""The verbs of `python -m weft`: run, check, convert, scenes, fabrics, bench."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
+from pathlib import Path
 
 from . import _core, bench
+from ._convert import as_options, convert_files
 from ._errors import SimulationError
 from ._scene import Scene, load_scene, run, scenes
 
@@ -40,6 +43,28 @@ def _check(options: argparse.Namespace) -> int:
     return 0
 
 
+def _convert(options: argparse.Namespace) -> int:
+    os.environ.setdefault("USDC_USE_PREAD", "1")  # read by USD: files are read, not mapped, and leave memory again
+    frames = None if options.frames is None else _frames(options.frames)
+    chosen = as_options(options.fps, options.up, options.scale, frames, options.mesh, options.node)
+    try:
+        files, notes = convert_files(Path(options.file), Path(options.out), chosen)
+    except ImportError as error:
+        raise _core.InputError(str(error)) from None
+    for note in notes:
+        print(f"note: {note}", file=sys.stderr)
+    print("\n".join(map(str, files)))
+    return 0
+
+
+def _frames(text: str) -> tuple[int, int | None]:
+    """A:B, A: or :B."""
+    found = re.fullmatch("([0-9]*):([0-9]*)", text)
+    if not found:
+        raise _core.InputError(f"--frames {text}: expected FIRST:LAST, whole numbers from 0")
+    return int(found[1] or 0), int(found[2]) if found[2] else None
+
+
 def _scenes(options: argparse.Namespace) -> int:
     print("\n".join(scenes()))
     return 0
@@ -62,12 +87,15 @@ def _parser() -> argparse.ArgumentParser:
     for name, call, text in (
         ("run", _run, "simulate a scene; write its frames and a report"),
         ("check", _check, "check a scene file: every mistake, with line and column"),
+        ("convert", _convert, "convert a mesh, a point cache, the point caches of a run, or USD"),
         ("scenes", _scenes, "list the shipped scenes"),
         ("fabrics", _fabrics, "list the fabrics by name"),
         ("bench", _bench, "measure the package's speed, as ratios"),
     ):
         verb = verbs.add_parser(name, help=text, description=text)
         verb.set_defaults(call=call)
+        if name == "convert":
+            _add_convert(verb)
         if name not in ("run", "check"):
             continue
         verb.add_argument("scene", help="a scene file, or the name of a shipped scene")
@@ -87,6 +115,23 @@ def _parser() -> argparse.ArgumentParser:
                           help="discard an unfinished run in the folder")  # fmt: skip
         verb.add_argument("--strict", action="store_true", help="exit with 1 if the run has problems")
     return parser
+
+
+def _add_convert(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("file", metavar="IN", help="a mesh (.obj, .ply, .stl), a point cache (.pc2, .mdd), the folder "
+                      "of a run, or USD (.usdc, .usda, .usd, .usdz)")  # fmt: skip
+    verb.add_argument("out", metavar="OUT", help="a mesh (.obj, .ply; of a cache one per frame), a point cache "
+                      "(.pc2, .mdd), or USD (.usdc, .usda, .usd); USD needs pip install weft[usd]")  # fmt: skip
+    verb.add_argument("--fps", type=float, metavar="N", help="frames per second of a cache that does not say it "
+                      "(default: 60); of USD, the frames that are sampled")  # fmt: skip
+    verb.add_argument("--up", choices=("y", "z"), help="the input's vertical axis; the output's is y "
+                      "(default: y; USD says it)")  # fmt: skip
+    verb.add_argument("--scale", type=float, metavar="S", help="length of the input's unit in metres "
+                      "(default: 1; USD says it)")  # fmt: skip
+    verb.add_argument("--frames", metavar="A:B", help="the frames to convert, from 0, both included")
+    verb.add_argument("--mesh", metavar="FILE", help="the mesh of a cache's points, to write .obj, .ply or USD; a run "
+                      "has its own")  # fmt: skip
+    verb.add_argument("--node", metavar="PATH", help="prim of USD whose meshes are read (default: all)")
 
 
 def main() -> int:

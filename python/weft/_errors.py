@@ -20,6 +20,16 @@ class SimulationWarning(UserWarning):
     """A step was made, but its result is below the requested accuracy. The sentence names the key to change."""
 
 
+class FileWarning(UserWarning):
+    """A file was read or written, but could not say or hold everything. The sentence names the option to set."""
+
+
+def tell_of_file(notes: list[str]) -> None:
+    """Warns of a file's notes, as seen by the caller of the package's function that calls this."""
+    for note in notes:
+        warnings.warn(note, FileWarning, stacklevel=3)
+
+
 def tell(
     report: _core.StepReport,
     describe: Callable[[_core.StepWarning], str],

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arguments import faces as as_faces
 from ._arguments import numbers, vectors, whole_numbers
+from ._errors import tell_of_file
 
 
 class Polygons:
@@ -159,11 +160,31 @@ def grid(size: tuple[float, float] = (1.0, 1.0), cells: tuple[int, int] = (32, 3
 def read_obj(file: str | os.PathLike[str]) -> Mesh:
     """Reads a Wavefront OBJ file: vertices in the file's order, quads and polygons cut into triangles.
 
-    `polygons` of the mesh has the file's faces and groups. Raises InputError ("FILE:LINE: …") for an unusable one.
+    `polygons` of the mesh has the file's faces and groups. Raises InputError ("FILE:LINE: …") for an unusable one. A
+    FileWarning names what was ignored.
     """
-    vertices, faces, uv, polygons = _core.read_obj(os.fspath(file))
-    mesh = Mesh(vertices, faces, uv if len(uv) else None)
-    mesh.polygons = polygons_from(*polygons)
+    vertices, faces, uv, polygons, notes = _core.read_obj(os.fspath(file))
+    tell_of_file(notes)
+    return mesh_with(vertices, faces, uv, polygons_from(*polygons))
+
+
+def read_mesh(file: str | os.PathLike[str]) -> Mesh:
+    """Reads a PLY, STL or OBJ file by the ending of its name, as read_obj(). `weft.usd.read_mesh` reads USD.
+
+    Raises InputError for an unusable one. A FileWarning names what was ignored.
+    """
+    vertices, faces, uv, polygons, notes = _core.read_mesh(os.fspath(file))
+    tell_of_file(notes)
+    return mesh_with(vertices, faces, uv, polygons_from(*polygons))
+
+
+def mesh_with(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], uv: NDArray[np.float64], polygons: Polygons
+) -> Mesh:
+    """A mesh from a file. Its texture coordinates are NaN at corners without any; none at all: empty."""
+    mesh = Mesh(vertices, faces)
+    mesh.uv = uv if len(uv) else None
+    mesh.polygons = polygons
     return mesh
 
 
@@ -189,8 +210,28 @@ def write_obj(file: str | os.PathLike[str], mesh: Any) -> None:
     own = as_mesh(mesh)
     if own.polygons is None:
         _core.write_obj(os.fspath(file), own.vertices, own.faces, own.uv)
-        return
-    all_faces = own.polygons
-    groups = [(name, True, of) for name, of in all_faces.objects.items()]
-    groups += [(name, False, of) for name, of in all_faces.groups.items()]
-    _core.write_obj_polygons(os.fspath(file), own.vertices, all_faces.sizes, all_faces.corners, all_faces.uv, groups)
+    else:
+        _core.write_obj_polygons(os.fspath(file), own.vertices, *_arrays(own.polygons))
+
+
+def write_mesh(file: str | os.PathLike[str], mesh: Any) -> None:
+    """Writes a .obj or .ply file, as write_obj(); PLY without groups. `weft.usd.write_mesh` writes USD.
+
+    Raises InputError for another ending, and if it cannot be written.
+    """
+    own = as_mesh(mesh)
+    if own.polygons is None:
+        _core.write_mesh(os.fspath(file), own.vertices, own.faces, own.uv)
+    else:
+        _core.write_mesh_polygons(os.fspath(file), own.vertices, *_arrays(own.polygons))
+
+
+def _arrays(
+    polygons: Polygons,
+) -> tuple[
+    NDArray[np.int32], NDArray[np.int32], NDArray[np.float64] | None, list[tuple[str, bool, NDArray[np.int32]]]
+]:
+    """Polygons as the module takes them."""
+    groups = [(name, True, of) for name, of in polygons.objects.items()]
+    groups += [(name, False, of) for name, of in polygons.groups.items()]
+    return polygons.sizes, polygons.corners, polygons.uv, groups

@@ -292,6 +292,12 @@ class Run:
         return frames
 
     @property
+    def frames_per_second(self) -> float:
+        """[1/s]"""
+        rate: float = self._contents["fps"]
+        return rate
+
+    @property
     def outcome(self) -> str:
         """ "done", "interrupted" or "failed"."""
         outcome: str = self.report["outcome"]

@@ -248,6 +248,7 @@ TEST_F(App, ConvertsMeshesAndPointCaches) {
   expect_bad_input("weft convert part.pc2 part.obj", "--mesh names the mesh of its points");
   expect_bad_input("weft convert part.pc2 part.fbx", "a point cache is written as .pc2 or .mdd");
   expect_bad_input("weft convert '" + shirt + "' shirt.fbx", "a mesh is written as .obj or .ply");
+  expect_bad_input("weft convert run run.usdc", "USD files are converted by `python -m weft convert`");
   expect_bad_input("weft convert out out.mdd", "out/run.json: not the list of a run's files");
 }
 

@@ -24,7 +24,7 @@ MODULES = ["weft", *(f"weft.{file.stem}" for file in sorted(PACKAGE.glob("*.py")
 
 # Members that the standard library and NumPy give to subclasses.
 INHERITED = {weft.Picture, weft.InputError, weft.SceneError, weft.SimulationError, weft.SimulationWarning,
-             weft.GraphicsError}  # fmt: skip
+             weft.FileWarning, weft.GraphicsError}  # fmt: skip
 
 
 def members(kind: type) -> Iterator[tuple[str, Any]]:
@@ -58,7 +58,7 @@ def docstring(thing: Any) -> str:
 def test_all_is_what_the_package_shows() -> None:
     shown = {name for name in vars(weft) if not name.startswith("_")}
     modules = {name for name in shown if inspect.ismodule(getattr(weft, name))}
-    assert modules <= {"bench"}
+    assert modules <= {"bench", "usd"}
     assert shown - modules == set(weft.__all__) - {"__version__"}
     assert sorted(weft.__all__) == list(weft.__all__)
     assert re.fullmatch(r"\d+\.\d+\.\d+", weft.__version__)
@@ -165,14 +165,17 @@ def test_errors_are_of_the_stated_kinds() -> None:
     assert issubclass(weft.SceneError, weft.InputError)
     assert issubclass(weft.SimulationError, RuntimeError)
     assert issubclass(weft.SimulationWarning, UserWarning)
+    assert issubclass(weft.FileWarning, UserWarning)
     assert issubclass(weft.GraphicsError, RuntimeError)
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_doctests(module: str) -> None:
+    if module == "weft.usd":
+        pytest.importorskip("pxr", reason="the Python package usd-core is missing")
     results = doctest.testmod(importlib.import_module(module), optionflags=doctest.ELLIPSIS)
     assert results.failed == 0
-    if module in ("weft", "weft._batch", "weft._mesh", "weft._pictures", "weft._scene", "weft._world"):
+    if module in ("weft", "weft._batch", "weft._mesh", "weft._pictures", "weft._scene", "weft._world", "weft.usd"):
         assert results.attempted > 0
 
 

@@ -12,10 +12,10 @@
 #include "tests/read_text.h"
 #include "tests/run/shipped.h"
 #include "weft/error.h"
+#include "weft/io.h"
 #include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
 #include "weft/io/pc2.h"
-#include "weft/run/convert_files.h"
 #include "weft/run/film.h"
 #include "weft/scene/scene_access.h"
 
@@ -73,11 +73,13 @@ TEST_F(RunFolder, HasTheListedFiles) {
                                     {{{"name", "lower sheet"},
                                       {"positions", "lower_sheet.pc2"},
                                       {"mesh", "lower_sheet.mesh.obj"},
+                                      {"color", {0.75, 0.6, 0.4}},
                                       {"vertices", 49},
                                       {"particles", 49}},
                                      {{"name", "upper sheet"},
                                       {"positions", "upper_sheet.pc2"},
                                       {"mesh", "upper_sheet.mesh.obj"},
+                                      {"color", {0.3, 0.05, 0.35}},
                                       {"vertices", 63},
                                       {"particles", 63}}}},
                                    {"animation", "animation.glb"},
@@ -192,13 +194,14 @@ TEST_F(PanelsFolder, MeshesHaveTheFacesOfTheMeshFile) {
 TEST_F(PanelsFolder, ConvertsToSequencesOfMeshes) {
   run_to_folder(panels(), options(3));
   const PointCache cache = read_pc2(folder_ / "lower_sheet.pc2");
-  const Converted all = convert_files(folder_, folder_ / "walk.obj", {});
+  const Converted all = weft::convert(folder_.string(), (folder_ / "walk.obj").string());
   ASSERT_EQ(all.files.size(), 4u);
-  EXPECT_EQ(all.files[3], folder_ / "walk_0003.obj");
-  const Converted some = convert_files(folder_ / "lower_sheet.pc2", folder_ / "part.ply",
-                                       {.first_frame = 1, .last_frame = 2, .mesh = file_});
+  EXPECT_EQ(all.files[3], (folder_ / "walk_0003.obj").string());
+  const Converted some =
+      weft::convert((folder_ / "lower_sheet.pc2").string(), (folder_ / "part.ply").string(),
+                    {.first_frame = 1, .last_frame = 2, .mesh = file_.string()});
   ASSERT_EQ(some.files.size(), 2u);
-  EXPECT_EQ(some.files[0], folder_ / "part_0001.ply");
+  EXPECT_EQ(some.files[0], (folder_ / "part_0001.ply").string());
   ASSERT_EQ(some.notes.size(), 1u);
   EXPECT_EQ(some.notes[0], file_.string() + " has 4 groups, which are lost: only .obj holds them");
   const MeshFaces source = read_obj(file_).faces;
@@ -221,7 +224,7 @@ TEST_F(PanelsFolder, MistakesOfAConversionNameTheirFiles) {
   const auto failure = [](const fs::path& in, const fs::path& to,
                           const ConvertOptions& given) -> std::string {
     try {
-      convert_files(in, to, given);
+      weft::convert(in.string(), to.string(), given);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -230,11 +233,11 @@ TEST_F(PanelsFolder, MistakesOfAConversionNameTheirFiles) {
   EXPECT_EQ(failure(cache, out, {}),
             out.string() + ": a point cache has no faces; --mesh names the mesh of its points");
   std::ofstream(folder_ / "other.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  EXPECT_EQ(failure(cache, out, {.mesh = folder_ / "other.obj"}),
+  EXPECT_EQ(failure(cache, out, {.mesh = (folder_ / "other.obj").string()}),
             cache.string() + " has 9 points, but " + (folder_ / "other.obj").string() +
                 " has 3 vertices; expected the mesh of its points");
   for (const fs::path& in : {file_, folder_})
-    EXPECT_EQ(failure(in, out, {.mesh = file_}),
+    EXPECT_EQ(failure(in, out, {.mesh = file_.string()}),
               file_.string() + ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
   std::ofstream(folder_ / "run.json") << R"({"cloths": [{"name": "a", "positions": "lower_sheet.pc2"}]})";
   EXPECT_EQ(failure(folder_, out, {}),

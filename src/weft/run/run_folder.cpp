@@ -228,6 +228,7 @@ class RunFiles : public FrameSink {
       cloths_.push_back({{"name", world.name(cloth)},
                          {"positions", pc2_ ? Json(pc2_->names()[c].cache) : Json(nullptr)},
                          {"mesh", pc2_ ? Json(pc2_->names()[c].mesh) : Json(nullptr)},
+                         {"color", run.scene().cloths[c].color},
                          {"vertices", world.notes(cloth).particle_of_vertex.size()},
                          {"particles", world.num_particles(cloth)}});
     }

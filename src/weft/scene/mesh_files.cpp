@@ -1,8 +1,9 @@
-/// Public functions for reading and writing mesh files.
+/// Public functions for mesh files.
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "weft/error.h"
@@ -12,6 +13,7 @@
 #include "weft/io/gltf_body.h"
 #include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
+#include "weft/mesh/vertex_normals.h"
 
 namespace weft {
 namespace {
@@ -125,6 +127,37 @@ void write_mesh(const std::string& file, const TriangleMesh& mesh) {
 
 void write_mesh(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces) {
   engine::write_mesh(file, engine::to_engine(vertices), to_engine(faces, vertices.size(), file + ": "));
+}
+
+std::vector<Triangle> triangulate(const std::vector<Vec3>& corners, const std::vector<int>& counts) {
+  engine::MeshFromFile cut;
+  cut.mesh.positions = engine::to_engine(corners);
+  std::vector<int> polygon;
+  std::size_t first = 0;
+  for (const int count : counts) {
+    if (count < 3)
+      throw InputError("a polygon has " + std::to_string(count) + " corners; expected 3 or more");
+    polygon.resize(count);
+    std::iota(polygon.begin(), polygon.end(), static_cast<int>(first));
+    first += polygon.size();
+    if (first > corners.size()) break;
+    engine::append_polygon(polygon, {}, cut);
+  }
+  if (first != corners.size())
+    throw InputError("the polygons have not " + std::to_string(corners.size()) +
+                     " corners together, the number of positions");
+  return cut.mesh.triangles;
+}
+
+std::vector<float> vertex_normals(const std::vector<Triangle>& triangles, std::span<const float> positions) {
+  for (const Triangle& triangle : triangles) {
+    for (const int v : triangle) {
+      if (v < 0 || 3 * static_cast<std::size_t>(v) + 2 >= positions.size())
+        throw InputError("a triangle has vertex " + std::to_string(v) + " of " +
+                         std::to_string(positions.size() / 3));
+    }
+  }
+  return engine::compute_vertex_normals(triangles, positions);
 }
 
 BodyFromFile read_gltf(const std::string& file, const GltfOptions& options) {

@@ -1,4 +1,4 @@
-#include "weft/run/convert_files.h"
+/// Public functions: conversion of files.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -8,11 +8,9 @@
 
 #include "weft/core/file_name.h"
 #include "weft/core/make_folder.h"
-#include "weft/core/staged_file.h"
 #include "weft/error.h"
-#include "weft/io/mdd.h"
+#include "weft/io.h"
 #include "weft/io/mesh_files.h"
-#include "weft/io/pc2.h"
 #include "weft/run/run_folder.h"
 
 namespace weft::engine {
@@ -52,27 +50,27 @@ void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions&
   check_size(in, box, done.notes);
   note_groups(in, read.faces, out, done.notes);
   write_mesh(out, read.mesh.positions, read.faces);
-  done.files.push_back(out);
+  done.files.push_back(out.string());
 }
 
 /// Frames of a point cache, in the output's coordinates.
 class Frames {
  public:
   Frames(const fs::path& in, const ConvertOptions& options)
-      : in_(in), options_(options), cache_(open_point_cache(in)), first_(options.first_frame) {
-    const int last = options.last_frame.value_or(cache_->num_frames() - 1);
-    if (first_ < 0 || last < first_ || last >= cache_->num_frames())
-      throw InputError(in.string() + " has the frames 0 to " + std::to_string(cache_->num_frames() - 1) +
+      : in_(in), options_(options), cache_(in.string()), first_(options.first_frame) {
+    const int last = options.last_frame.value_or(cache_.num_frames() - 1);
+    if (first_ < 0 || last < first_ || last >= cache_.num_frames())
+      throw InputError(in.string() + " has the frames 0 to " + std::to_string(cache_.num_frames() - 1) +
                        "; it has not " + std::to_string(first_) + " to " + std::to_string(last));
     count_ = last - first_ + 1;
   }
 
-  int num_points() const { return cache_->num_points(); }
+  int num_points() const { return cache_.num_points(); }
   int count() const { return count_; }
   int number(int k) const { return first_ + k; }  // in the cache
 
   std::vector<float> at(int k, std::vector<std::string>& notes) {
-    std::vector<float> frame = cache_->frame(first_ + k);
+    std::vector<float> frame = cache_.frame(first_ + k);
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < frame.size(); i += 3) {
       const Vec3 p = to_world(Vec3(frame[i], frame[i + 1], frame[i + 2]), options_.up_is_z, options_.scale);
@@ -85,43 +83,33 @@ class Frames {
 
   /// Times of the frames: the file's own, else by the number of frames per second [s].
   std::vector<float> times(std::vector<std::string>& notes, std::optional<double> fps_of_run) const {
-    std::vector<float> times;
-    const auto* mdd = dynamic_cast<const MddReader*>(cache_.get());
-    if (!mdd && !options_.fps && !fps_of_run)
+    const std::vector<float> own = options_.fps ? std::vector<float>() : cache_.times();
+    if (own.empty() && !options_.fps && !fps_of_run)
       notes.push_back(in_.string() + " does not say its frames per second: 60 (--fps)");
     const double fps = options_.fps.value_or(fps_of_run.value_or(kUsualFps));
-    for (int k = 0; k < count_; ++k)
-      times.push_back(mdd && !options_.fps ? mdd->times()[first_ + k]
-                                           : static_cast<float>((first_ + k) / fps));
+    std::vector<float> times;
+    for (int k = first_; k < first_ + count_; ++k)
+      times.push_back(own.empty() ? static_cast<float>(k / fps) : own[k]);
     return times;
   }
 
  private:
   fs::path in_;
   ConvertOptions options_;
-  std::unique_ptr<PointCacheReader> cache_;
+  PointCacheFile cache_;
   int first_, count_ = 0;
 };
 
 void convert_cache(const fs::path& in, const fs::path& out, const ConvertOptions& options,
                    std::optional<double> fps_of_run, Converted& done) {
   Frames frames(in, options);
-  StagedFile file(out);
-  const auto write = [&](auto& writer) {
-    for (int k = 0; k < frames.count(); ++k) writer.add_frame(frames.at(k, done.notes));
-    writer.finish();
-  };
-  if (has_ending(out, ".mdd")) {
-    MddWriter writer(file, frames.num_points(), frames.times(done.notes, fps_of_run));
-    write(writer);
-  } else if (has_ending(out, ".pc2")) {
-    Pc2Writer writer(file, frames.num_points());
-    write(writer);
-  } else {
-    throw InputError(out.string() + ": a point cache is written as .pc2 or .mdd");
-  }
-  file.replace();
-  done.files.push_back(out);
+  const bool has_times = has_ending(out, ".mdd");
+  PointCacheWriter writer(
+      out.string(), frames.num_points(),
+      has_times ? frames.times(done.notes, fps_of_run) : std::vector<float>(frames.count()));
+  for (int k = 0; k < frames.count(); ++k) writer.add_frame(frames.at(k, done.notes));
+  writer.finish();
+  done.files.push_back(out.string());
 }
 
 /// A sequence of meshes with the positions of a point cache.
@@ -143,7 +131,7 @@ void convert_to_meshes(const fs::path& in, const fs::path& mesh, const fs::path&
     fs::path file = out;
     file.replace_filename(out.stem().string() + frame_ending(frames.number(k)) + out.extension().string());
     write_mesh(file, positions, read.faces);
-    done.files.push_back(file);
+    done.files.push_back(file.string());
   }
 }
 
@@ -183,14 +171,23 @@ void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& 
   }
 }
 
-}  // namespace
+void require_positive(const char* option, double value) {
+  if (!(value > 0) || !std::isfinite(value))
+    throw InputError(std::string("ConvertOptions::") + option + ": expected a number above 0, found " +
+                     nlohmann::json(value).dump());
+}
 
-Converted convert_files(const fs::path& in, const fs::path& out, const ConvertOptions& options) {
-  Converted done;
+void refuse_usd(const fs::path& file) {
+  for (const char* ending : {".usd", ".usda", ".usdc", ".usdz"}) {
+    if (has_ending(file, ending))
+      throw InputError(file.string() + ": USD files are converted by `python -m weft convert`");
+  }
+}
+
+void convert_file(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
   const bool is_cache = has_ending(in, ".pc2") || has_ending(in, ".mdd");
   if (!options.mesh.empty() && !(is_cache && is_mesh(out)))
-    throw InputError(options.mesh.string() +
-                     ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
+    throw InputError(options.mesh + ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
   if (!out.parent_path().empty()) make_folder(out.parent_path());
   if (fs::is_directory(in))
     convert_run(in, out, options, done);
@@ -198,7 +195,21 @@ Converted convert_files(const fs::path& in, const fs::path& out, const ConvertOp
     is_mesh(out) ? convert_sequence(in, out, options, done) : convert_cache(in, out, options, {}, done);
   else
     convert_mesh(in, out, options, done);
+}
+
+}  // namespace
+}  // namespace weft::engine
+
+namespace weft {
+
+Converted convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
+  engine::require_positive("fps", options.fps.value_or(1));
+  engine::require_positive("scale", options.scale);
+  engine::refuse_usd(in);
+  engine::refuse_usd(out);
+  Converted done;
+  engine::convert_file(in, out, options, done);
   return done;
 }
 
-}  // namespace weft::engine
+}  // namespace weft
