@@ -65,7 +65,8 @@ void bind_scene_class(nb::module_& m) {
 
 nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, bool audit,
                    bool check_passages, const std::string& folder, bool glb, bool obj,
-                   const std::string& unfinished, std::optional<int> checkpoint_every, nb::object on_frame) {
+                   const std::string& start_from, const std::string& unfinished,
+                   std::optional<int> checkpoint_every, nb::object on_frame) {
   std::optional<nb::python_error> raised;  // ends the run, which keeps its frames, and is thrown then
   RunOptions options{.frames = frames,
                      .threads = threads,
@@ -75,6 +76,7 @@ nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, b
                      .pc2 = true,
                      .glb = glb,
                      .obj = obj,
+                     .start_from = start_from,
                      .unfinished = value_of<Unfinished>(unfinished),
                      .checkpoint_every = checkpoint_every};
   options.keep_going = [&] {
@@ -138,11 +140,11 @@ void bind_scene(nb::module_& m) {
   bind_scene_class(m);
   bind_meshes(m);
   m.def("run", run_scene, nb::arg("scene"), nb::arg("frames").none(), nb::arg("threads"), nb::arg("audit"),
-        nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("unfinished"),
-        nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),
+        nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("start_from"),
+        nb::arg("unfinished"), nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),
         nb::sig("def run(scene: Scene, frames: int | None, threads: int, audit: bool, check_passages: bool, "
                 "folder: str, "
-                "glb: bool, obj: bool, unfinished: str, checkpoint_every: int | None, "
+                "glb: bool, obj: bool, start_from: str, unfinished: str, checkpoint_every: int | None, "
                 "on_frame: collections.abc.Callable[[int, int, float, float], object] "
                 "| None) -> dict[str, typing.Any]"));
 }

@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "weft/core/file_name.h"
 #include "weft/core/make_folder.h"
@@ -13,7 +11,7 @@
 #include "weft/io/mdd.h"
 #include "weft/io/mesh_files.h"
 #include "weft/io/pc2.h"
-#include "weft/run/run_folder.h"
+#include "weft/run/past_run.h"
 
 namespace weft::engine {
 namespace {
@@ -114,23 +112,14 @@ void convert_cache(const fs::path& in, const fs::path& out, const ConvertOptions
 }
 
 void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
-  const fs::path list = in / kRunName;
-  std::ifstream stream(list);
-  const nlohmann::json run = nlohmann::json::parse(stream, nullptr, false);
-  const auto fail = [&] { throw InputError(list.string() + ": not the list of a run's files"); };
-  if (!run.is_object() || !run.contains("cloths") || !run["cloths"].is_array() || run["cloths"].empty())
-    fail();
-  const bool is_one = run["cloths"].size() == 1;
+  const PastRun run = read_past_run(in);
   FileNames names;
-  for (const nlohmann::json& cloth : run["cloths"]) {
-    if (!cloth.is_object() || !cloth.value("name", nlohmann::json()).is_string()) fail();
-    if (!cloth.value("positions", nlohmann::json()).is_string())
-      throw InputError(in.string() + " has no point caches: it was run with --no-pc2");
+  for (const PastCloth& cloth : run.cloths) {
+    open_cache(run, cloth);
     fs::path own = out;
-    if (!is_one)
-      own.replace_filename(out.stem().string() + '_' + names.add(cloth["name"]) + out.extension().string());
-    convert_cache(in / fs::path(cloth["positions"].get<std::string>()).filename(), own, options,
-                  run.value("fps", kUsualFps), done);
+    if (run.cloths.size() > 1)
+      own.replace_filename(out.stem().string() + '_' + names.add(cloth.name) + out.extension().string());
+    convert_cache(cloth.cache, own, options, run.fps, done);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "weft/run/frame_checker.h"
 #include "weft/run/recorder.h"
 #include "weft/run/run_archive.h"
+#include "weft/run/start_from.h"
 #include "weft/run/warnings.h"
 #include "weft/world/measures.h"
 
@@ -36,10 +37,10 @@ RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const Wor
 }  // namespace
 
 SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
-                   std::optional<int> num_frames)
+                   std::optional<int> num_frames, const SceneStart* start)
     : scene_(std::move(scene)),
       num_frames_(num_frames.value_or(scene_.num_frames())),
-      built_(build_scene(scene_, jobs)),
+      built_(build_scene(scene_, jobs, start)),
       sinks_(std::move(sinks)),
       report_(make_report(scene_, built_, world())) {
   report_.threads = jobs->num_threads();
@@ -175,7 +176,9 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std
   FrameChecker checker(options.check_passages);
   std::vector<FrameSink*> all = {&recorder, &checker};
   all.insert(all.end(), sinks.begin(), sinks.end());
-  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames);
+  std::optional<SceneStart> start;
+  if (!options.start_from.empty()) start = read_start(parse_start_from(options.start_from));
+  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames, start ? &*start : nullptr);
   return play(run, options, on_frame);
 }
 
