@@ -25,7 +25,7 @@ PastRun read_results(const fs::path& folder) {
   };
   if (!json.is_object() || !json.contains("cloths") || !json["cloths"].is_array() || json["cloths"].empty())
     fail();
-  PastRun run{.folder = folder, .scene = text(json, "scene"), .cloths = {}, .animation = {}};
+  PastRun run{.folder = folder, .scene = text(json, "scene"), .cloths = {}, .animation = {}, .frames = {}};
   if (!json.contains("fps") || !json["fps"].is_number() || !(json["fps"].get<double>() > 0)) fail();
   run.fps = json["fps"].get<double>();
   for (const Json& cloth : json["cloths"]) {
@@ -44,7 +44,9 @@ PastRun read_results_so_far(const fs::path& folder) {
               .scene = unfinished.scene.name,
               .fps = unfinished.scene.fps,
               .cloths = {},
-              .animation = {}};
+              .animation = {},
+              .frames = {}};
+  if (unfinished.options.glb) run.frames = folder / kUnfinishedName / kFramesName;
   FileNames names;
   for (const ClothSceneDesc& cloth : unfinished.scene.cloths) {
     const std::string file = names.add(cloth.name) + ".pc2";

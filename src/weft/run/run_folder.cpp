@@ -51,7 +51,6 @@ std::vector<std::string> find_caches(const fs::path& folder) {
 
 constexpr const char* kLockName = "lock";
 constexpr const char* kSceneName = "scene.toml";
-constexpr const char* kFramesName = "animation.frames";
 
 /// The folder of a run while it goes on: its lock, its scene, its checkpoint, its files so far.
 class WorkFolder {

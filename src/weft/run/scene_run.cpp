@@ -16,6 +16,7 @@
 namespace weft::engine {
 namespace {
 
+constexpr const char* kSaved = "a saved run";
 constexpr std::size_t kMaxInfeasible = 100;  // listed in a report
 
 RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const World& world) {
@@ -50,7 +51,7 @@ SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector
 SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
                    int num_frames, std::span<const std::byte> saved)
     : scene_(std::move(scene)), num_frames_(num_frames), sinks_(std::move(sinks)) {
-  Reader in(saved, "a saved run");
+  Reader in(saved, kSaved);
   std::vector<std::byte> world_bytes;
   double cpu_seconds = 0;
   members(in, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
@@ -158,6 +159,16 @@ const RunReport& SceneRun::finish() {
   report_.state_hash = to_hex(world().state_hash());
   for (FrameSink* sink : sinks_) sink->finish(*this, report_);
   return report_;
+}
+
+weft::World load_world(std::span<const std::byte> saved) {
+  Reader in(saved, kSaved);
+  RunReport report;
+  double spent = 0, cpu_seconds = 0;
+  std::vector<double> frame_ms;
+  std::vector<std::byte> world_bytes;
+  members(in, report, spent, frame_ms, cpu_seconds, world_bytes);
+  return weft::World::load(world_bytes);
 }
 
 const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame) {

@@ -84,6 +84,9 @@ class SceneRun {
   std::vector<double> frame_ms_;
 };
 
+/// The world in what SceneRun::save() returned.
+weft::World load_world(std::span<const std::byte> saved);
+
 /// Simulates frame by frame until the end, a failure, or an interruption by the caller (RunOptions::keep_going,
 /// `on_frame`), and finishes the run.
 const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame = {});
