@@ -40,7 +40,15 @@ void add_convert_command(CLI::App& app, int& exit_code) {
       ->add_option("IN", request->in,
                    "A mesh (.obj, .ply, .stl), a point cache (.pc2, .mdd), or the folder of a run")
       ->required();
-  command->add_option("OUT", request->out, "A file of the same kind: .obj or .ply; .pc2 or .mdd")->required();
+  command
+      ->add_option("OUT", request->out,
+                   "A file of the same kind: .obj or .ply; .pc2 or .mdd; of a cache also .obj or .ply, a "
+                   "file per frame")
+      ->required();
+  command
+      ->add_option("--mesh", request->options.mesh,
+                   "The mesh of a cache's points, to write .obj or .ply; a run has its own")
+      ->type_name("FILE");
   command
       ->add_option("--fps", request->options.fps,
                    "Frames per second of a cache that does not say it (default: 60)")

@@ -8,6 +8,7 @@
 
 #include "weft/collider.h"
 #include "weft/fabric.h"
+#include "weft/ids.h"
 #include "weft/mesh.h"
 #include "weft/vec.h"
 
@@ -82,11 +83,15 @@ struct ClothNotes {
   std::vector<std::string> done = {};      // requested changes: welded, sewn; as sentences
 };
 
-/// Pinned particles. They follow `motion`, or the targets of World::move_pins().
+/// Pinned particles. They follow `motion`, a collider, or the targets of World::move_pins().
 struct Pin {
   std::vector<int> particles = {};
   std::vector<KeyFrame> motion = {};  // of all of them, relative to where they were pinned; empty: fixed
   Vec3 pivot = {};                    // centre of the motion's rotation [m]
+
+  /// A collider that the particles follow, as if glued to it where they are when pinned: to the nearest
+  /// triangle of a mesh, to any other shape as a rigid body. `motion` must then be empty.
+  std::optional<ColliderId> follow = {};
 
   /// Empty: held exactly, as by a clamp. A number: stiffness of a damped spring per particle, which the cloth
   /// can stretch; `motion` must then be empty. >= 0 [N/m].

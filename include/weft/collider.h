@@ -1,12 +1,18 @@
 #pragma once
 /// Colliders: solid bodies that are fixed, move along key frames, or are moved by the program.
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "weft/export.h"
 #include "weft/mesh.h"
 #include "weft/vec.h"
+
+namespace weft::engine {
+class SkinnedMesh;
+}
 
 namespace weft {
 
@@ -48,6 +54,21 @@ struct MeshFrame {
   std::vector<Vec3> positions = {};  // (num_vertices) [m]
 };
 
+/// Vertices of a mesh as a function of time: the skins, morph targets and nodes of a glTF file (read_gltf).
+/// Copies share the data.
+class WEFT_API VertexMotion {
+ public:
+  bool is_empty() const { return source_ == nullptr; }
+  int num_vertices() const;                        // 0 if it is empty
+  double start() const;                            // first key [s]
+  double end() const;                              // last key [s]
+  std::vector<Vec3> positions(double time) const;  // (num_vertices) constant before start and after end [m]
+
+ private:
+  friend struct VertexMotionAccess;  // library internals
+  std::shared_ptr<const engine::SkinnedMesh> source_;
+};
+
 struct ColliderDesc {
   std::string name = {};  // for reports; empty: "collider", "collider 2", …
 
@@ -60,8 +81,13 @@ struct ColliderDesc {
   Pose pose = {};                      // initial pose, from the shape's own coordinates to the world
   std::vector<KeyFrame> motion = {};   // pivot: centre, plane point, middle of the axis; of meshes the origin
   std::vector<MeshFrame> frames = {};  // of a deforming mesh; empty: rigid
-  double friction = 0.3;               // Coulomb coefficient, >= 0 [1]
-  double static_friction = 0;          // while nothing slides; below `friction`: as `friction` [1]
+
+  /// Another way to deform a mesh, evaluated in every step. Its vertices are the mesh's, in their order.
+  VertexMotion deformation = {};
+  double deformation_start = 0;  // time of `deformation` at time 0 of the world, and before [s]
+
+  double friction = 0.3;       // Coulomb coefficient, >= 0 [1]
+  double static_friction = 0;  // while nothing slides; below `friction`: as `friction` [1]
 };
 
 }  // namespace weft

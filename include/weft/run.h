@@ -30,7 +30,8 @@ struct RunOptions {
   bool audit = false;              // also the energy balance of every step; slower
   bool check_passages = true;      // also the check for tunnelling within steps
   std::string folder = {};         // of the results, created if necessary; empty: no files
-  bool pc2 = true;   // CLOTH.pc2: a point cache per cloth, the vertices of its mesh in their order
+  bool pc2 = true;   // CLOTH.pc2: a point cache per cloth, the vertices of its mesh in their order; and
+                     // CLOTH.mesh.obj, that mesh at the start
   bool glb = true;   // animation.glb: cloths and colliders
   bool obj = false;  // obj/CLOTH_0000.obj: a file per cloth and frame, 0 being the start
   /// DIR@FRAME, DIR@last or DIR: a frame of an earlier run, the last one without a number. Cloths of the same

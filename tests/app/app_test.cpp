@@ -27,8 +27,8 @@ TEST_F(App, RunWritesAnimationAndReport) {
   const Finished done = shell("weft run paper/fig6_ball --frames 3 --out results");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.err, "") << "no bar where there is no terminal";
-  for (const char* file :
-       {"results/animation.glb", "results/cloth.pc2", "results/report.json", "results/run.json"})
+  for (const char* file : {"results/animation.glb", "results/cloth.pc2", "results/cloth.mesh.obj",
+                           "results/report.json", "results/run.json"})
     EXPECT_TRUE(contains(done.out, file)) << done.out;
   EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
   const nlohmann::json report = read_json("results/report.json");
@@ -38,6 +38,7 @@ TEST_F(App, RunWritesAnimationAndReport) {
   const nlohmann::json run = read_json("results/run.json");
   EXPECT_EQ(run["frames"], 3);
   EXPECT_EQ(run["cloths"][0]["positions"], "cloth.pc2");
+  EXPECT_EQ(run["cloths"][0]["mesh"], "cloth.mesh.obj");
   EXPECT_EQ(read_pc2("results/cloth.pc2").frames.size(), 4u);
 }
 
@@ -100,7 +101,7 @@ TEST_F(App, ResultsThatCannotBeWrittenLeaveTheFilesOfAnEarlierRun) {
   EXPECT_EQ(done.err, "results/animation.glb cannot be written: File too large\n");
   EXPECT_EQ(read_text("results/animation.glb"), "written before");
   EXPECT_EQ(read_text("results/report.json"), "written before");
-  EXPECT_EQ(shell("ulimit -f 16; weft run paper/fig6_ball --frames 3 --out results --no-glb").err,
+  EXPECT_EQ(shell("ulimit -f 128; weft run paper/fig6_ball --frames 12 --out results --no-glb").err,
             "results/cloth.pc2 cannot be written: File too large\n");
   EXPECT_EQ(read_text("results/animation.glb"), "written before");
   EXPECT_EQ(std::distance(fs::directory_iterator("results"), {}), 2) << "nothing is left aside";
@@ -237,7 +238,15 @@ TEST_F(App, ConvertsMeshesAndPointCaches) {
 
   expect_bad_input("weft convert part.pc2 part.mdd --frames 1:2", "has the frames 0 to 1; it has not 1 to 2");
   expect_bad_input("weft convert part.pc2 part.mdd --frames 1-2", "expected FIRST:LAST");
-  expect_bad_input("weft convert part.pc2 part.obj", "a point cache is written as .pc2 or .mdd");
+  EXPECT_EQ(shell("weft convert run sheets.obj --frames 3:3").out,
+            "sheets_lower_sheet_0003.obj\nsheets_upper_sheet_0003.obj\n");
+  EXPECT_EQ(
+      shell("weft convert run/upper_sheet.pc2 upper.ply --frames 3: --mesh run/upper_sheet.mesh.obj").out,
+      "upper_0003.ply\n");
+  EXPECT_EQ(read_mesh("upper_0003.ply").mesh.positions,
+            read_obj("sheets_upper_sheet_0003.obj").mesh.positions);
+  expect_bad_input("weft convert part.pc2 part.obj", "--mesh names the mesh of its points");
+  expect_bad_input("weft convert part.pc2 part.fbx", "a point cache is written as .pc2 or .mdd");
   expect_bad_input("weft convert '" + shirt + "' shirt.fbx", "a mesh is written as .obj or .ply");
   expect_bad_input("weft convert out out.mdd", "out holds no run: there is no run.json");
 }

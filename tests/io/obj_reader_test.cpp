@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <set>
@@ -92,6 +93,67 @@ TEST(ObjReader, TakesAnyLayoutOfLines) {
     EXPECT_EQ(mesh.positions[1], Vec3(1, 0, 0)) << text;
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << text;
   }
+}
+
+TEST(ObjReader, KeepsPolygonsWithTheirTextureCoordinates) {
+  const MeshFaces faces =
+      parse_obj("vt 0 0\nvt 1 0\nvt 1 1\n" + kFourVertices + "f 4/1 1/2 2/3 3/1\nf 1 2 3\nf 3/3 1/1 2/2\n",
+                "x.obj")
+          .faces;
+  ASSERT_EQ(faces.size(), 3u);
+  EXPECT_EQ(faces.corners, (std::vector<int>{3, 0, 1, 2, 0, 1, 2, 2, 0, 1}));
+  EXPECT_EQ(faces.ends, (std::vector<std::size_t>{4, 7, 10}));
+  ASSERT_EQ(faces.uv.size(), 10u);
+  EXPECT_EQ(faces.uv[2], Eigen::Vector2d(1, 1));
+  for (const Eigen::Vector2d& corner : faces.uv_of(1)) EXPECT_TRUE(std::isnan(corner.x()));
+  EXPECT_EQ(faces.uv_of(2)[2], Eigen::Vector2d(1, 0));
+
+  const MeshFaces bare = parse_obj("vt 0 0\n" + kFourVertices + "f 1 2 3 4\n", "x.obj").faces;
+  EXPECT_TRUE(bare.uv.empty());
+  EXPECT_TRUE(bare.uv_of(0).empty());
+}
+
+TEST(ObjReader, ReadsTextureCoordinatesOfOneToThreeNumbers) {
+  const MeshFaces faces =
+      parse_obj("vt 0.5\nvt 0.25 0.75\nvt 1 2 3\nvt x 1\n" + kFourVertices + "f 1/1 2/2 3/3 4/4\n", "x.obj")
+          .faces;
+  ASSERT_EQ(faces.uv.size(), 4u);
+  EXPECT_EQ(faces.uv[0], Eigen::Vector2d(0.5, 0));
+  EXPECT_EQ(faces.uv[1], Eigen::Vector2d(0.25, 0.75));
+  EXPECT_EQ(faces.uv[2], Eigen::Vector2d(1, 2));
+  EXPECT_TRUE(std::isnan(faces.uv[3].x()) && std::isnan(faces.uv[3].y()));
+}
+
+TEST(ObjReader, KeepsGroupsAndObjects) {
+  const auto groups_of = [](const std::string& text) {
+    return parse_obj(kFourVertices + text, "x.obj").faces.groups;
+  };
+  const std::string face = "f 1 2 3\n";
+  EXPECT_TRUE(groups_of(face).empty());
+  EXPECT_EQ(groups_of("g front\n" + face + face), (std::vector<MeshGroup>{{"front", false, {{0, 2}}}}));
+  // Several names on a line, one twice; a name that comes again; faces without a name; lines without faces.
+  EXPECT_EQ(groups_of("g none\n" + face + "g\n" + face + "g b a a\n" + face + "g none\ng a\n" + face + "g\n" +
+                      face + "g a c\n" + face + "g unused\n"),
+            (std::vector<MeshGroup>{{"none", false, {{0, 1}}},
+                                    {"b", false, {{2, 3}}},
+                                    {"a", false, {{2, 4}, {5, 6}}},
+                                    {"c", false, {{5, 6}}}}));
+  // An object goes on over lines g, and a group over lines o. Equal names of both kinds are two groups.
+  EXPECT_EQ(groups_of("g a\no a\n" + face + "g b\n" + face + "o my shirt\n" + face),
+            (std::vector<MeshGroup>{{"a", true, {{0, 2}}},
+                                    {"a", false, {{0, 1}}},
+                                    {"b", false, {{1, 3}}},
+                                    {"my shirt", true, {{2, 3}}}}));
+}
+
+TEST(ObjReader, NeedsNoMoreMemoryForGroupsThanTheFileHas) {
+  std::string text = kFourVertices + "g";
+  for (int k = 0; k < 2000; ++k) text += " name" + std::to_string(k);
+  text += '\n';
+  for (int k = 0; k < 2000; ++k) text += "f 1 2 3\n";
+  const std::vector<MeshGroup> groups = parse_obj(text, "x.obj").faces.groups;
+  ASSERT_EQ(groups.size(), 2000u);
+  for (const MeshGroup& group : groups) EXPECT_EQ(group.faces, (std::vector<FaceRange>{{0, 2000}}));
 }
 
 TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
@@ -262,11 +324,77 @@ TEST(ObjWriter, WritesWhatReadsBackToTheLastBit) {
   EXPECT_TRUE(read.warnings.empty());
 }
 
+/// What the writer writes of it, read again.
+MeshFromFile again(const MeshFromFile& mesh) {
+  return parse_obj(obj_text(mesh.mesh.positions, mesh.faces), "again.obj");
+}
+
+TEST(ObjWriter, KeepsPolygonsTextureCoordinatesAndGroupsToTheLastBit) {
+  std::mt19937 random(1);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (int trial = 0; trial < 200; ++trial) {
+    std::string text;
+    const int num_vertices = 5 + trial % 7;
+    for (int v = 0; v < num_vertices; ++v) text += "v " + std::to_string(uniform()) + " 0 1e-5\n";
+    for (int k = 0; k < 5; ++k) text += "vt 0." + std::to_string(random()) + (k == 0 ? " -0\n" : " 1e30\n");
+    const std::array<std::string, 8> lines = {"g",   "g a", "g b a",         "g c",
+                                              "o a", "o",   "o shirt  back", "g d d c"};
+    for (int f = 0; f < 20; ++f) {
+      if (random() % 3 == 0) text += lines[random() % lines.size()] + '\n';
+      text += 'f';
+      for (unsigned c = 0; c < 3 + random() % 4; ++c) {
+        text += ' ' + std::to_string(1 + random() % num_vertices);
+        if (trial % 3 > 0 && random() % 8 > 0) text += '/' + std::to_string(1 + random() % 5);
+      }
+      text += '\n';
+    }
+    const MeshFromFile read = parse_obj(text, "x.obj"), same = again(read);
+    EXPECT_EQ(same.mesh.positions, read.mesh.positions);
+    EXPECT_EQ(same.faces.corners, read.faces.corners);
+    EXPECT_EQ(same.faces.ends, read.faces.ends);
+    EXPECT_EQ(same.faces.groups, read.faces.groups) << text;
+    ASSERT_EQ(same.faces.uv.size(), read.faces.uv.size());
+    for (std::size_t c = 0; c < read.faces.uv.size(); ++c)
+      EXPECT_EQ(bits_of(same.faces.uv[c]), bits_of(read.faces.uv[c]));
+    EXPECT_EQ(same.mesh.triangles, read.mesh.triangles);
+  }
+}
+
+TEST(ObjWriter, WritesWhatAnotherProgramWouldWrite) {
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0.5 1\n"
+      "o shirt\ng front\nf 1/1 2/2 3/3 4/1\ng front hem\nf 1/1 2/2 3/3\ng\nf 1 2 3\n";
+  const MeshFromFile read = parse_obj(text, "x.obj");
+  EXPECT_EQ(obj_text(read.mesh.positions, read.faces), text);
+}
+
+TEST(ObjWriter, RefusesNamesThatAFileCannotHold) {
+  const std::string file = testing::TempDir() + "weft_names.obj";
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  MeshFaces faces = make_faces({{0, 1, 2}});
+  for (const bool is_object : {false, true}) {
+    for (const std::string name : {"", "a\nb", "a#b", "a\\", " a", "a\tb"}) {
+      faces.groups = {{name, is_object, {{0, 1}}}};
+      EXPECT_THROW(write_obj(file, positions, faces), InputError) << name;
+    }
+  }
+  faces.groups = {{"a b", false, {{0, 1}}}};
+  try {
+    write_obj(file, positions, faces);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              file + " cannot be written: an OBJ file has no name 'a b'; expected one word without # and \\");
+  }
+}
+
 TEST(ObjWriter, CountsTheVerticesOfSeveralObjectsOn) {
   const TriangleMesh mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string file = testing::TempDir() + "weft_objects.obj";
   write_obj(file, {{"a", mesh}, {"b", mesh}});
-  EXPECT_EQ(read_obj(file).mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  const MeshFromFile read = read_obj(file);
+  EXPECT_EQ(read.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(read.faces.groups, (std::vector<MeshGroup>{{"a", true, {{0, 1}}}, {"b", true, {{1, 2}}}}));
 }
 
 TEST(ObjWriter, RefusesAFolderThatDoesNotExist) {

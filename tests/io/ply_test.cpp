@@ -568,7 +568,7 @@ int random_index(Random& random, int count) {
 
 TEST_F(PlyWriter, HasTheFormatsBytes) {
   const TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, -2, 0.5}}, .triangles = {{0, 1, 2}}};
-  write_ply(file_, mesh, {}, PlyNumbers::floats);
+  write_ply(file_, mesh.positions, make_faces(mesh.triangles), PlyNumbers::floats);
   EXPECT_EQ(written(),
             "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
             "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" +
@@ -576,19 +576,28 @@ TEST_F(PlyWriter, HasTheFormatsBytes) {
                       "\0\0\x80\x3F\0\0\0\0\0\0\0\0"
                       "\0\0\0\0\0\0\0\xC0\0\0\0\x3F"
                       "\3\0\0\0\0\1\0\0\0\2\0\0\0"));
-  write_ply(file_, mesh.positions, std::vector<std::vector<int>>{{2, 1, 0}},
-            std::vector<std::vector<Eigen::Vector2d>>{{{0, 1}, {0, 0}, {-2, 0}}});
+  write_ply(file_, mesh.positions, make_faces({{2, 1, 0}}, {{Eigen::Vector2d(0, 1), {0, 0}, {-2, 0}}}));
   EXPECT_EQ(written(),
             "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
-            "property double z\nelement face 1\nproperty list uchar int vertex_indices\n"
-            "property list uchar double texcoord\nend_header\n" +
+            "property double z\nproperty double s\nproperty double t\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n" +
                 bytes("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"
+                      "\0\0\0\0\0\0\0\xC0\0\0\0\0\0\0\0\0"
                       "\0\0\0\0\0\0\xF0\x3F\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"
-                      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xC0\0\0\0\0\0\0\xE0\x3F"
-                      "\3\2\0\0\0\1\0\0\0\0\0\0\0"
-                      "\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xF0\x3F"
                       "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"
-                      "\0\0\0\0\0\0\0\xC0\0\0\0\0\0\0\0\0"));
+                      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xC0\0\0\0\0\0\0\xE0\x3F"
+                      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xF0\x3F"
+                      "\3\2\0\0\0\1\0\0\0\0\0\0\0"));
+  MeshFaces seam = make_faces({{2, 1, 0}, {0, 1, 2}});
+  seam.uv = {{0, 1}, {0, 0}, {-2, 0}, {-2, 0}, {0, 0}, {0, 3}};
+  write_ply(file_, mesh.positions, seam, PlyNumbers::floats);
+  EXPECT_TRUE(written().starts_with(
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+      "property list uchar float texcoord\nend_header\n"));
+  EXPECT_TRUE(
+      written().ends_with(bytes("\3\0\0\0\0\1\0\0\0\2\0\0\0"
+                                "\6\0\0\0\xC0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x40\x40")));
 }
 
 TEST_F(PlyWriter, KeepsEveryBitOfATriangleMesh) {
@@ -606,7 +615,7 @@ TEST_F(PlyWriter, KeepsEveryBitOfATriangleMesh) {
       }
     }
     if (trial % 2 == 0) uv.clear();
-    write_ply(file_, mesh, uv);
+    write_ply(file_, mesh.positions, make_faces(mesh.triangles, uv));
     const MeshFromFile read = read_ply(file_);
     ASSERT_EQ(read.mesh.num_vertices(), num_vertices);
     for (int v = 0; v < num_vertices; ++v)
@@ -622,13 +631,33 @@ TEST_F(PlyWriter, KeepsEveryBitOfATriangleMesh) {
   }
 }
 
+TEST_F(PlyWriter, KeepsEveryBitOfTextureCoordinatesByVertex) {
+  Random random(1);
+  std::vector<Vec3> positions = random_positions(random, 6);
+  std::vector<Eigen::Vector2d> vertex_uv;
+  for (int v = 0; v < 6; ++v) vertex_uv.emplace_back(random_number(random), random_number(random));
+  MeshFaces faces;
+  for (const std::vector<int>& polygon : {std::vector<int>{0, 1, 2, 3, 4}, {4, 3, 0}}) {  // the last is free
+    std::vector<Eigen::Vector2d> corners;
+    for (const int v : polygon) corners.push_back(vertex_uv[v]);
+    faces.add(polygon, corners);
+  }
+  write_ply(file_, positions, faces);
+  EXPECT_NE(written().find("property double t\n"), std::string::npos);
+  const MeshFaces read = read_ply(file_).faces;
+  EXPECT_EQ(read.corners, faces.corners);
+  EXPECT_EQ(read.ends, faces.ends);
+  ASSERT_EQ(read.uv.size(), faces.uv.size());
+  for (std::size_t c = 0; c < read.uv.size(); ++c) EXPECT_EQ(bits_of(read.uv[c]), bits_of(faces.uv[c]));
+}
+
 TEST_F(PlyWriter, RoundsFloats) {
   Random random(1);
   TriangleMesh mesh{.positions = {}, .triangles = {{0, 1, 2}}};
   for (int v = 0; v < 100; ++v)
     mesh.positions.emplace_back(random.uniform(-1, 1), random.uniform(-1e-30, 1e-30),
                                 random.uniform(-1e30, 1e30));
-  write_ply(file_, mesh, {}, PlyNumbers::floats);
+  write_ply(file_, mesh.positions, make_faces(mesh.triangles), PlyNumbers::floats);
   const TriangleMesh read = read_ply(file_).mesh;
   for (std::size_t v = 0; v < 100; ++v)
     EXPECT_TRUE(have_same_bits(read.positions[v], mesh.positions[v].cast<float>().cast<double>()));
@@ -640,22 +669,23 @@ TEST_F(PlyWriter, WritesPolygonsThatAreCutAsBefore) {
     MeshFromFile expected;
     for (int v = 0; v < 400; ++v)
       expected.mesh.positions.emplace_back(random.uniform(-1, 1), random.uniform(-1, 1), 0);
-    std::vector<std::vector<int>> polygons;
-    std::vector<std::vector<Eigen::Vector2d>> uv;
     for (int p = 0; p < 10; ++p) {
-      std::vector<int>& polygon = polygons.emplace_back();
-      std::vector<Eigen::Vector2d>& corners = uv.emplace_back();
+      std::vector<int> polygon;
+      std::vector<Eigen::Vector2d> corners;
       for (int c = 0; c < (p % 2 == 0 ? num_corners : 3); ++c) {
         polygon.push_back(random_index(random, 400));
         corners.emplace_back(random.uniform(0, 1), random.uniform(0, 1));
       }
       append_polygon(polygon, corners, expected);
     }
-    write_ply(file_, expected.mesh.positions, polygons, uv);
+    write_ply(file_, expected.mesh.positions, expected.faces);
     const MeshFromFile read = read_ply(file_);
     EXPECT_EQ(read.mesh.positions, expected.mesh.positions);
     EXPECT_EQ(read.mesh.triangles, expected.mesh.triangles);
     EXPECT_EQ(read.uv, expected.uv);
+    EXPECT_EQ(read.faces.corners, expected.faces.corners);
+    EXPECT_EQ(read.faces.ends, expected.faces.ends);
+    EXPECT_EQ(read.faces.uv, expected.faces.uv);
   }
 }
 
@@ -664,7 +694,7 @@ TEST_F(PlyWriter, KeepsCornersWithoutTextureCoordinates) {
   const TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                           .triangles = {{0, 1, 2}, {2, 1, 0}}};
   const Eigen::Vector2d none(kNone, kNone), given(0.1, 0.2);
-  write_ply(file_, mesh, {{none, none, none}, {none, given, given}});
+  write_ply(file_, mesh.positions, make_faces(mesh.triangles, {{none, none, none}, {none, given, given}}));
   const MeshFromFile read = read_ply(file_);
   ASSERT_EQ(read.uv.size(), 2u);
   for (const Eigen::Vector2d& corner : read.uv[0]) EXPECT_TRUE(std::isnan(corner.x()));
@@ -676,7 +706,7 @@ TEST_F(PlyWriter, FullDiskAndMissingFolderAreErrorsWithTheFilesName) {
   const TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}};
   for (const std::string file : {"/dev/full", "no_such_folder/x.ply"}) {
     try {
-      write_ply(file, mesh);
+      write_ply(file, mesh.positions, make_faces(mesh.triangles));
       ADD_FAILURE();
     } catch (const InputError& error) {
       EXPECT_TRUE(std::string(error.what()).starts_with(file + " cannot be written: ")) << error.what();

@@ -96,6 +96,7 @@ TEST(StlReader, JoinsCoincidentVerticesOfBothForms) {
   for (const std::string& bytes : {make_binary(kSquare), make_text(kSquare)}) {
     const MeshFromFile read = parse(bytes);
     EXPECT_EQ(read.mesh.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+    EXPECT_EQ(read.faces.corners, make_faces(read.mesh.triangles).corners);
     EXPECT_EQ(read.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
     EXPECT_TRUE(read.warnings.empty());
   }

@@ -128,11 +128,11 @@ def test_a_run_is_a_folder_and_is_opened_again(ball: weft.Run) -> None:
 
 def test_run_json_names_the_files(ball: weft.Run) -> None:
     contents = json.loads((ball.folder / "run.json").read_text())
-    cloth = {"name": "cloth", "positions": "cloth.pc2", "vertices": 1089, "particles": 1089}
+    cloth = {"name": "cloth", "positions": "cloth.pc2", "mesh": "cloth.mesh.obj", "vertices": 1089, "particles": 1089}
     assert contents == {"format": 1, "weft": weft.__version__, "scene": "paper/fig6_ball", "fps": 60, "frames": 12,
                         "cloths": [cloth], "animation": "animation.glb", "report": "report.json"}  # fmt: skip
     assert sorted(file.name for file in ball.folder.iterdir()) == [
-        "animation.glb", "cloth.pc2", "report.json", "run.json"
+        "animation.glb", "cloth.mesh.obj", "cloth.pc2", "report.json", "run.json"
     ]  # fmt: skip
 
 

@@ -12,7 +12,10 @@
 #include "tests/read_text.h"
 #include "tests/run/shipped.h"
 #include "weft/error.h"
+#include "weft/io/mesh_files.h"
+#include "weft/io/obj_reader.h"
 #include "weft/io/pc2.h"
+#include "weft/run/convert_files.h"
 #include "weft/run/film.h"
 #include "weft/scene/scene_access.h"
 
@@ -56,21 +59,29 @@ class RunFolder : public testing::Test {
 
 TEST_F(RunFolder, HasTheListedFiles) {
   const FinishedRun run = run_to_folder(sheets(), options(3));
-  EXPECT_EQ(names(), (std::set<std::string>{"animation.glb", "lower_sheet.pc2", "report.json", "run.json",
-                                            "upper_sheet.pc2"}));
-  EXPECT_EQ(run.files.size(), 5u);
+  EXPECT_EQ(names(),
+            (std::set<std::string>{"animation.glb", "lower_sheet.mesh.obj", "lower_sheet.pc2", "report.json",
+                                   "run.json", "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
+  EXPECT_EQ(run.files.size(), 7u);
   EXPECT_EQ(run.files.back(), folder_ / "run.json");
-  const nlohmann::json expected = {
-      {"format", 1},
-      {"weft", run.report.version},
-      {"scene", "two_layers"},
-      {"fps", 60.0},
-      {"frames", 3},
-      {"cloths",
-       {{{"name", "lower sheet"}, {"positions", "lower_sheet.pc2"}, {"vertices", 49}, {"particles", 49}},
-        {{"name", "upper sheet"}, {"positions", "upper_sheet.pc2"}, {"vertices", 63}, {"particles", 63}}}},
-      {"animation", "animation.glb"},
-      {"report", "report.json"}};
+  const nlohmann::json expected = {{"format", 1},
+                                   {"weft", run.report.version},
+                                   {"scene", "two_layers"},
+                                   {"fps", 60.0},
+                                   {"frames", 3},
+                                   {"cloths",
+                                    {{{"name", "lower sheet"},
+                                      {"positions", "lower_sheet.pc2"},
+                                      {"mesh", "lower_sheet.mesh.obj"},
+                                      {"vertices", 49},
+                                      {"particles", 49}},
+                                     {{"name", "upper sheet"},
+                                      {"positions", "upper_sheet.pc2"},
+                                      {"mesh", "upper_sheet.mesh.obj"},
+                                      {"vertices", 63},
+                                      {"particles", 63}}}},
+                                   {"animation", "animation.glb"},
+                                   {"report", "report.json"}};
   EXPECT_EQ(list(), expected);
   EXPECT_EQ(fs::file_size(folder_ / "lower_sheet.pc2"), 32u + 4 * 12 * 49);
   EXPECT_EQ(fs::file_size(folder_ / "upper_sheet.pc2"), 32u + 4 * 12 * 63);
@@ -103,17 +114,35 @@ TEST_F(RunFolder, PointCachesHaveThePositionsOfTheRun) {
   }
 }
 
-TEST_F(RunFolder, PointCachesHaveTheVerticesOfTheMeshFile) {
-  fs::create_directories(folder_);
-  const fs::path file = folder_ / "two_panels.obj";
-  std::ofstream(file) << "v 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\nv 5 5 5\n"  // the fifth has no triangle
-                         "v 1 1 0\nv 2 1 0\nv 2 1 1\nv 1 1 1\n"
-                         "f 1 4 3 2\nf 6 9 8 7\n";
-  SceneDesc scene = sheets();
-  scene.cloths.resize(1);
-  scene.cloths[0].shape = MeshSource{.file = file, .weld = true};
-  scene.cloths[0].position = {0, 0.5, 0};
-  run_to_folder(scene, options(6));
+/// Two panels with a seam between them, quads, texture coordinates by corner and groups. The fifth vertex has no
+/// triangle.
+const std::string kPanels =
+    "v 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\nv 5 5 5\nv 1 1 0\nv 2 1 0\nv 2 1 1\nv 1 1 1\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.25 0.125\n"
+    "o dress\ng left\nf 1/1 4/4 3/3 2/2\ng right hem\nf 6/5 9/4 8/3 7/2\n";
+
+class PanelsFolder : public RunFolder {
+ protected:
+  void SetUp() override {
+    RunFolder::SetUp();
+    fs::create_directories(folder_);
+    std::ofstream(file_) << kPanels;
+  }
+
+  /// One cloth of the panels, welded at the seam, half a metre higher.
+  SceneDesc panels() const {
+    SceneDesc scene = sheets();
+    scene.cloths.resize(1);
+    scene.cloths[0].shape = MeshSource{.file = file_, .weld = true};
+    scene.cloths[0].position = {0, 0.5, 0};
+    return scene;
+  }
+
+  const fs::path file_ = folder_ / "two_panels.obj";
+};
+
+TEST_F(PanelsFolder, PointCachesHaveTheVerticesOfTheMeshFile) {
+  run_to_folder(panels(), options(6));
   EXPECT_EQ(list()["cloths"][0]["vertices"], 9);
   EXPECT_EQ(list()["cloths"][0]["particles"], 6);
   const PointCache cache = read_pc2(folder_ / list()["cloths"][0]["positions"].get<std::string>());
@@ -129,6 +158,87 @@ TEST_F(RunFolder, PointCachesHaveTheVerticesOfTheMeshFile) {
     EXPECT_EQ(point(frame, 4), Vec3(5, 5.5, 5)) << "where it rested";
   }
   EXPECT_LT(point(6, 0).y(), 1.5) << "it falls";
+}
+
+void expect_equal(const MeshFaces& a, const MeshFaces& b) {
+  EXPECT_EQ(a.corners, b.corners);
+  EXPECT_EQ(a.ends, b.ends);
+  EXPECT_EQ(a.uv, b.uv);
+  EXPECT_EQ(a.groups, b.groups);
+}
+
+TEST_F(PanelsFolder, MeshesHaveTheFacesOfTheMeshFile) {
+  RunOptions with_obj = options(3);
+  with_obj.obj = true;
+  run_to_folder(panels(), with_obj);
+  const MeshFromFile source = read_obj(file_),
+                     start = read_obj(folder_ / list()["cloths"][0]["mesh"].get<std::string>());
+  expect_equal(start.faces, source.faces);
+  const PointCache cache = read_pc2(folder_ / list()["cloths"][0]["positions"].get<std::string>());
+  for (std::size_t k = 0; k <= 3; ++k) {
+    const MeshFromFile frame = read_obj(folder_ / "obj" / ("lower_sheet_000" + std::to_string(k) + ".obj"));
+    expect_equal(frame.faces, source.faces);
+    ASSERT_EQ(frame.mesh.num_vertices(), 9);
+    for (int v = 0; v < 9; ++v) {
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(static_cast<float>(frame.mesh.positions[v][axis]), cache.frames[k][3 * v + axis]);
+    }
+    if (k == 0) {
+      EXPECT_EQ(frame.mesh.positions, start.mesh.positions);
+    }
+  }
+}
+
+TEST_F(PanelsFolder, ConvertsToSequencesOfMeshes) {
+  run_to_folder(panels(), options(3));
+  const PointCache cache = read_pc2(folder_ / "lower_sheet.pc2");
+  const Converted all = convert_files(folder_, folder_ / "walk.obj", {});
+  ASSERT_EQ(all.files.size(), 4u);
+  EXPECT_EQ(all.files[3], folder_ / "walk_0003.obj");
+  const Converted some = convert_files(folder_ / "lower_sheet.pc2", folder_ / "part.ply",
+                                       {.first_frame = 1, .last_frame = 2, .mesh = file_});
+  ASSERT_EQ(some.files.size(), 2u);
+  EXPECT_EQ(some.files[0], folder_ / "part_0001.ply");
+  ASSERT_EQ(some.notes.size(), 1u);
+  EXPECT_EQ(some.notes[0], file_.string() + " has 4 groups, which are lost: only .obj holds them");
+  const MeshFaces source = read_obj(file_).faces;
+  const auto expect_frame = [&](const fs::path& file, std::size_t k) {
+    MeshFromFile read = read_mesh(file);
+    for (int v = 0; v < 9; ++v) {
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(read.mesh.positions[v][axis], cache.frames[k][3 * v + axis]);
+    }
+    if (has_ending(file, ".ply")) read.faces.groups = source.groups;
+    expect_equal(read.faces, source);
+  };
+  for (std::size_t k = 0; k <= 3; ++k) expect_frame(all.files[k], k);
+  for (std::size_t k = 1; k <= 2; ++k) expect_frame(some.files[k - 1], k);
+}
+
+TEST_F(PanelsFolder, MistakesOfAConversionNameTheirFiles) {
+  run_to_folder(panels(), options(1));
+  const fs::path cache = folder_ / "lower_sheet.pc2", out = folder_ / "x.obj";
+  const auto failure = [](const fs::path& in, const fs::path& to,
+                          const ConvertOptions& given) -> std::string {
+    try {
+      convert_files(in, to, given);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(failure(cache, out, {}),
+            out.string() + ": a point cache has no faces; --mesh names the mesh of its points");
+  std::ofstream(folder_ / "other.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(failure(cache, out, {.mesh = folder_ / "other.obj"}),
+            cache.string() + " has 9 points, but " + (folder_ / "other.obj").string() +
+                " has 3 vertices; expected the mesh of its points");
+  for (const fs::path& in : {file_, folder_})
+    EXPECT_EQ(failure(in, out, {.mesh = file_}),
+              file_.string() + ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
+  std::ofstream(folder_ / "run.json") << R"({"cloths": [{"name": "a", "positions": "lower_sheet.pc2"}]})";
+  EXPECT_EQ(failure(folder_, out, {}),
+            folder_.string() + " has no meshes of its point caches: it is of an earlier version of Weft");
 }
 
 TEST_F(RunFolder, EarlierResultsStayWhenARunThrows) {
@@ -158,27 +268,31 @@ TEST_F(RunFolder, FilesOfTheEarlierRunAreRemoved) {
   SceneDesc renamed = sheets();
   renamed.cloths[0].name = "sail";
   run_to_folder(renamed, options(1));
-  EXPECT_EQ(names(), (std::set<std::string>{"animation.glb", "mine.pc2", "report.json", "run.json",
-                                            "sail.pc2", "upper_sheet.pc2"}));
+  EXPECT_EQ(names(),
+            (std::set<std::string>{"animation.glb", "mine.pc2", "report.json", "run.json", "sail.mesh.obj",
+                                   "sail.pc2", "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
   RunOptions none = options(1);
   none.pc2 = none.glb = false;
   EXPECT_EQ(run_to_folder(renamed, none).files.size(), 2u);
   EXPECT_EQ(names(), (std::set<std::string>{"mine.pc2", "report.json", "run.json"}));
   EXPECT_TRUE(list()["cloths"][0]["positions"].is_null());
+  EXPECT_TRUE(list()["cloths"][0]["mesh"].is_null());
   EXPECT_TRUE(list()["animation"].is_null());
 }
 
 TEST_F(RunFolder, ForgedListRemovesNothing) {
   fs::create_directories(folder_ / "inner");
-  for (const char* name : {"outside.pc2", "inner/deep.pc2", "notes.txt"})
+  for (const char* name : {"outside.pc2", "inner/deep.pc2", "notes.txt", "mine.obj"})
     std::ofstream(folder_ / name) << "!";
   const fs::path absolute = fs::absolute(folder_ / "outside.pc2");
-  for (const std::string& cloths :
-       {std::string(R"([{"positions": "inner/deep.pc2"}, {"positions": "notes.txt"}, {"positions": 7}, 8])"),
-        R"([{"positions": ")" + absolute.string() + R"("}])", std::string("7"), std::string("]")}) {
+  for (
+      const std::string& cloths :
+      {std::string(
+           R"([{"positions": "inner/deep.pc2"}, {"positions": "notes.txt"}, {"positions": 7}, {"mesh": "mine.obj"}, 8])"),
+       R"([{"positions": ")" + absolute.string() + R"("}])", std::string("7"), std::string("]")}) {
     std::ofstream(folder_ / "run.json") << R"({"cloths": )" << cloths << "}";
     run_to_folder(sheets(), options(1));
-    for (const char* name : {"outside.pc2", "inner/deep.pc2", "notes.txt"})
+    for (const char* name : {"outside.pc2", "inner/deep.pc2", "notes.txt", "mine.obj"})
       EXPECT_EQ(read_text(folder_ / name), "!") << cloths;
   }
 }
@@ -223,7 +337,7 @@ TEST_F(RunFolder, PublicRunIsTheSameRun) {
   EXPECT_EQ(result.state_hash, report.state_hash);
   EXPECT_EQ(result.problems.size(), report.problems.size());
   EXPECT_EQ(result.report, read_text(folder_ / "report.json"));
-  EXPECT_EQ(result.files.size(), 5u);
+  EXPECT_EQ(result.files.size(), 7u);
   for (const std::string& written : result.files) EXPECT_TRUE(fs::exists(written)) << written;
 }
 

@@ -188,6 +188,26 @@ select = { sphere = { center = [1, 0, 0], radius = 0.2 } }
   EXPECT_EQ(std::get<Sphere>(pins[4].select).radius, 0.2);
 }
 
+TEST(SceneReader, ReadsGroupsOfAMesh) {
+  const TemporaryFile mesh("groups.obj");
+  const ClothSceneDesc cloth = parse(kScene + "[[cloth]]\nmesh = '" + mesh.path().string() + R"('
+pins = ["group:left cuff"]
+[[cloth.pin]]
+select = "group:waist"
+[[cloth.pin]]
+select = { group = "waist" }
+[[cloth.stiffen]]
+select = { group = "collar" }
+factor = 2
+)")
+                                   .cloths.at(0);
+  ASSERT_EQ(cloth.pins.size(), 3u);
+  EXPECT_EQ(cloth.pins[0].select, ParticleSelection(GroupName{"left cuff"}));
+  EXPECT_EQ(cloth.pins[1].select, ParticleSelection(GroupName{"waist"}));
+  EXPECT_EQ(cloth.pins[2].select, ParticleSelection(GroupName{"waist"}));
+  EXPECT_EQ(cloth.stiffened.at(0).select, ParticleSelection(GroupName{"collar"}));
+}
+
 TEST(SceneReader, ReadsTheMotionOfPins) {
   const PinDesc pin = parse_cloth(R"([[cloth.pin]]
 select = "corner:0,0"

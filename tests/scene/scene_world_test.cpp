@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "weft/core/angle.h"
 #include "weft/error.h"
+#include "weft/face/world_impl.h"
 #include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
+#include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/world/measures.h"
 
@@ -134,6 +137,108 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
   EXPECT_EQ(scene.world.model(scene.world.cloth(0)).topology->mesh.num_triangles(), 5);
 }
 
+/// Two pieces with a seam between them, as groups; one vertex has a face without area only.
+class GroupsOfAMesh : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "pieces.obj")
+        << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0 0\nv 0.1 0 0.1\nv 0.2 0 0.05\nv 0.3 0 0\n"
+           "o shirt\ng left\nf 1 3 4 2\ng right cuff\nf 5 6 7\ng flat\nf 8 8 8\no hem\ng right\nf 5 6 7\n";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  static std::string text(const std::string& keys) {
+    return "[scene]\nformat = 1\n[[cloth]]\nname = \"top\"\nmesh = \"pieces.obj\"\nweld = true\n"
+           "fabric = { spring_structural = 100 }\n" +
+           keys;
+  }
+  PublicScene build(const std::string& keys) const {
+    return build_scene(parse_scene(text(keys), folder_ / "scene.toml"), make_serial_jobs());
+  }
+  std::vector<int> pinned(const std::string& keys) const {
+    const PublicScene scene = build(keys);
+    return scene.world.pinned_particles(scene.world.cloth(0));
+  }
+  std::string failure(const std::string& keys) const {
+    try {
+      build(keys);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "weft_scene_world_groups";
+};
+
+TEST_F(GroupsOfAMesh, SelectTheParticlesOfTheirVertices) {
+  const PublicScene scene = build("pins = [\"group:left\"]");
+  const std::vector<int>& particles = scene.world.notes(scene.world.cloth(0)).particle_of_vertex;
+  const auto particles_of = [&](std::vector<int> vertices) {
+    std::set<int> result;
+    for (const int v : vertices) result.insert(particles[v]);
+    return std::vector<int>(result.begin(), result.end());
+  };
+  EXPECT_EQ(pinned("pins = [\"group:left\"]"), particles_of({0, 1, 2, 3}));
+  EXPECT_EQ(pinned("pins = [\"group:right\"]"), particles_of({4, 5, 6}));
+  EXPECT_EQ(pinned("pins = [\"group:cuff\"]"), particles_of({4, 5, 6}));
+  EXPECT_EQ(pinned("[[cloth.pin]]\nselect = { group = \"hem\" }"), particles_of({4, 5, 6}));
+  EXPECT_EQ(pinned("pins = [\"group:shirt\"]"), particles_of({0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(particles_of({1}), particles_of({4}));  // the seam belongs to both
+}
+
+TEST_F(GroupsOfAMesh, StiffenSprings) {
+  const PublicScene scene = build("[[cloth.stiffen]]\nselect = \"group:left\"\nfactor = 3\n");
+  const ClothId cloth = scene.world.cloth(0);
+  const std::vector<int>& particles = scene.world.notes(cloth).particle_of_vertex;
+  const ClothModel& model = WorldAccess::engine(scene.world).model(cloth);
+  for (std::size_t s = 0; s < model.topology->springs.size(); ++s) {
+    const Spring& spring = model.topology->springs[s];
+    const bool is_left = spring.i != particles[6] && spring.j != particles[6];
+    EXPECT_EQ(model.material.spring_factors[s], is_left ? 3 : 1);
+  }
+}
+
+TEST_F(GroupsOfAMesh, AreListedWhereANameIsUnknown) {
+  EXPECT_EQ(failure("pins = [\"group:lefd\"]"),
+            "cloth \"top\" (pieces.obj): there is no group \"lefd\"; did you mean \"left\"? "
+            "There are \"shirt\", \"left\", \"right\", \"cuff\", \"flat\", \"hem\"");
+  EXPECT_EQ(failure("pins = [\"group:pocket\"]"),
+            "cloth \"top\" (pieces.obj): there is no group \"pocket\"; "
+            "there are \"shirt\", \"left\", \"right\", \"cuff\", \"flat\", \"hem\"");
+  EXPECT_EQ(failure("pins = [\"group:flat\"]"),
+            "cloth \"top\": group \"flat\" cannot be selected: its faces have no area");
+  std::ofstream(folder_ / "pieces.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+  EXPECT_EQ(failure("pins = [\"group:left\"]"),
+            "cloth \"top\" (pieces.obj): there is no group \"left\"; the file names no groups (lines g or o "
+            "of an OBJ "
+            "file)");
+}
+
+TEST_F(GroupsOfAMesh, AreNotOfMeshesInMemory) {
+  SceneDesc scene = parse_scene(text("pins = [\"group:left\"]"), folder_ / "scene.toml");
+  MeshSource& source = std::get<MeshSource>(scene.cloths[0].shape);
+  source.mesh = std::make_shared<weft::TriangleMesh>(
+      weft::TriangleMesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {{0, 1, 2}}});
+  try {
+    build_scene(scene, make_serial_jobs());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "cloth \"top\": there is no group \"left\"; only meshes in files have groups, select an index, a box "
+        "or a sphere");
+  }
+}
+
+TEST(ClothFaces, FacesOfAGridAreItsCells) {
+  ClothSceneDesc cloth{.shape = Grid{.size_x = 1, .size_z = 1, .cells_x = 2, .cells_z = 1}};
+  const MeshFaces faces = read_faces(cloth);
+  EXPECT_EQ(faces.corners, (std::vector<int>{0, 3, 4, 1, 1, 4, 5, 2}));
+  EXPECT_EQ(faces.ends, (std::vector<std::size_t>{4, 8}));
+}
+
 /// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a temporary folder.
 class MeshCollider : public testing::Test {
  protected:
@@ -181,9 +286,9 @@ file = "body.obj"
 
 TEST_F(MeshCollider, AndClothAreReadFromPlyAndStlToo) {
   const TriangleMesh cloth = build_grid_mesh({.cells_x = 2, .cells_z = 2}, GridDiagonals::alternating);
-  write_mesh(folder_ / "cloth.obj", cloth);
-  write_mesh(folder_ / "cloth.PLY", cloth);
-  write_mesh(folder_ / "body.obj", box());
+  write_mesh(folder_ / "cloth.obj", cloth.positions, make_faces(cloth.triangles));
+  write_mesh(folder_ / "cloth.PLY", cloth.positions, make_faces(cloth.triangles));
+  write_obj(folder_ / "body.obj", box());
   std::ofstream stl(folder_ / "body.stl");
   stl << "solid box\n";
   for (const Triangle& t : box().triangles) {

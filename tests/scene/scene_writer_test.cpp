@@ -107,6 +107,7 @@ sew = 0.002
 fabric = { base = "denim", friction = 0.77 }
 membrane = "springs"
 warp = [1, 0, 0.5]
+pins = ['group:left "cuff"']
 [[cloth]]
 grid = { size = [1, 1], cells = [2, 2] }
 fabric = { name = "mine", density = 0.2, c11 = 500, c22 = 400, g = 30, stretch_warp = [[0.01, 5], [0.02, 12]], strain_limit = 0.2 }

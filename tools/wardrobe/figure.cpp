@@ -107,13 +107,6 @@ std::array<float, kNumBones> compute_weights(const Vec3& p) {
 
 double to_rad(double angle_deg) { return angle_deg * 0.017453292519943295; }
 
-Mat3 rotation(const Vec3& angles_deg) {
-  return (Eigen::AngleAxisd(to_rad(angles_deg.z()), Vec3::UnitZ()) *
-          Eigen::AngleAxisd(to_rad(angles_deg.y()), Vec3::UnitY()) *
-          Eigen::AngleAxisd(to_rad(angles_deg.x()), Vec3::UnitX()))
-      .toRotationMatrix();
-}
-
 /// 0 before `begin`, 1 after `end`, smooth between.
 double ramp(double time, double begin, double end) {
   const double t = std::clamp((time - begin) / (end - begin), 0.0, 1.0);
@@ -150,6 +143,22 @@ Pose walk(double time) {
   pose[kLeftArm].y() = -18 * swing;
   pose[kRightArm].y() = -18 * swing;
   pose[kChest].y() = 8 * swing;
+  return pose;
+}
+
+Pose stroll(double time) {
+  Pose pose = rest_pose();
+  const double start = ramp(time, 0, 0.8);
+  const double swing = start * std::sin(2 * 3.141592653589793 * 0.9 * time);
+  lower_arms(pose, 18 * start);
+  pose[kLeftThigh].x() = -20 * swing;
+  pose[kRightThigh].x() = 20 * swing;
+  pose[kLeftShin].x() = 6 * start + 22 * std::max(-swing, 0.0);
+  pose[kRightShin].x() = 6 * start + 22 * std::max(swing, 0.0);
+  pose[kLeftArm].y() = -10 * swing;
+  pose[kRightArm].y() = -10 * swing;
+  pose[kHips].y() = -4 * swing;
+  pose[kChest].y() = 9 * swing;
   return pose;
 }
 
@@ -220,6 +229,23 @@ Vec3 joint_of(Bone bone) {
   return Vec3::Zero();
 }
 
+std::string name_of(Bone bone) {
+  constexpr std::array<const char*, kNumBones> kNames = {
+      "hips",      "chest",     "head",          "left_arm",   "left_forearm",
+      "left_hand", "right_arm", "right_forearm", "right_hand", "left_thigh",
+      "left_shin", "left_foot", "right_thigh",   "right_shin", "right_foot"};
+  return kNames[bone];
+}
+
+Bone parent_of(Bone bone) { return kParent[bone]; }
+
+Mat3 rotation_of(const Vec3& angles_deg) {
+  return (Eigen::AngleAxisd(to_rad(angles_deg.z()), Vec3::UnitZ()) *
+          Eigen::AngleAxisd(to_rad(angles_deg.y()), Vec3::UnitY()) *
+          Eigen::AngleAxisd(to_rad(angles_deg.x()), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
 Figure make_figure(double cell) {
   std::vector<Bone> bones;
   for (int b = 0; b < kNumBones; ++b) bones.push_back(static_cast<Bone>(b));
@@ -239,7 +265,7 @@ std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose) {
   std::array<Vec3, kNumBones> shift;  // x → turn x + shift
   for (int b = 0; b < kNumBones; ++b) {
     const Vec3 joint = joint_of(static_cast<Bone>(b));
-    const Mat3 own = rotation(pose[b]);
+    const Mat3 own = rotation_of(pose[b]);
     const Mat3 before = b == kHips ? Mat3(Mat3::Identity()) : turn[kParent[b]];
     const Vec3 place = b == kHips ? joint : Vec3(before * joint + shift[kParent[b]]);
     turn[b] = before * own;
@@ -257,6 +283,7 @@ std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose) {
 
 Pose pose_at(const std::string& motion, double time) {
   if (motion == "walk") return walk(time);
+  if (motion == "stroll") return stroll(time);
   if (motion == "kick") return kick(time);
   if (motion == "fold") return fold(time);
   if (motion == "sit") return sit(time);

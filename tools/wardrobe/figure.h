@@ -42,6 +42,15 @@ Field body_field(const std::vector<Bone>& bones, double blend);
 /// Start of the bone at rest [m].
 Vec3 joint_of(Bone bone);
 
+/// "left_forearm"
+std::string name_of(Bone bone);
+
+/// The bone that it is attached to; the hips' is the hips.
+Bone parent_of(Bone bone);
+
+/// About fixed x, then y, then z.
+Mat3 rotation_of(const Vec3& angles_deg);
+
 struct Figure {
   TriangleMesh mesh;                                  // at rest; the hair comes last
   int num_skin_triangles = 0;                         // before the hair
@@ -54,7 +63,7 @@ Figure make_figure(double cell);
 /// The mesh's vertices in a pose (num_vertices) [m].
 std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose);
 
-/// A motion from rest: "stand" (arms sink a little), "walk", "kick" (the foot reaches 15 m/s), "fold" (the
+/// A motion from rest: "stand" (arms sink a little), "walk", "stroll" (a calmer walk), "kick" (the foot reaches 15 m/s), "fold" (the
 /// arms fold before the chest) or "sit". `time` [s].
 Pose pose_at(const std::string& motion, double time);
 

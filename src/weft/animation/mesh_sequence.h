@@ -27,6 +27,7 @@ class MeshSequence final : public VertexSource {
   explicit MeshSequence(std::vector<Key> keys);
 
   int num_vertices() const override { return static_cast<int>(keys_[0].positions.size()); }
+  bool is_still() const override { return keys_.size() == 1; }
   void evaluate(double time, std::vector<Vec3>& positions) const override;
   const std::vector<Key>& keys() const { return keys_; }
 

@@ -1,6 +1,8 @@
 #include "weft/animation/skinned_mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <span>
 
 namespace weft::engine {
@@ -49,29 +51,6 @@ std::vector<int> sort_nodes(const SkinnedMeshDesc& desc) {
   return order;
 }
 
-std::span<const Influence> influences_of(const SkinnedPart& part, std::size_t vertex) {
-  const std::size_t first = part.first_influence[vertex];
-  return {&part.influences[first], part.first_influence[vertex + 1] - first};
-}
-
-/// Makes the weights of every vertex sum to 1, and removes those that are 0.
-void normalise_weights(SkinnedPart& part) {
-  std::vector<Influence> influences;
-  std::vector<std::size_t> first = {0};
-  for (std::size_t v = 0; v + 1 < part.first_influence.size(); ++v) {
-    const std::span<const Influence> own = influences_of(part, v);
-    double sum = 0;
-    for (const Influence& influence : own) sum += influence.weight;
-    if (sum == 0) influences.push_back({own[0].joint, 1});
-    for (const auto& [joint, weight] : own) {
-      if (weight > 0) influences.push_back({joint, weight / sum});
-    }
-    first.push_back(influences.size());
-  }
-  part.influences = std::move(influences);
-  part.first_influence = std::move(first);
-}
-
 void add_targets(const SkinnedPart& part, std::span<const double> weights, std::span<Vec3> vertices) {
   for (std::size_t t = 0; t < weights.size(); ++t) {
     if (weights[t] == 0) continue;
@@ -87,32 +66,129 @@ std::vector<Affine> joint_transforms(const Skin& skin, const std::vector<Affine>
   return result;
 }
 
+bool is_finite(const Affine& transform) { return transform.matrix().allFinite(); }
+
+bool are_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+bool is_valid(const AnimationCurve& curve, std::size_t width) {
+  if (curve.interpolation > Interpolation::cubic_spline) return false;
+  const std::size_t values_per_key = curve.interpolation == Interpolation::cubic_spline ? 3 * width : width;
+  if (curve.values.size() != curve.times.size() * values_per_key) return false;
+  return are_finite(curve.times) && are_finite(curve.values) &&
+         std::ranges::adjacent_find(curve.times, std::greater_equal<>()) == curve.times.end();
+}
+
+bool is_valid(const AnimatedNode& node) {
+  return (!node.matrix || is_finite(*node.matrix)) && node.translation.allFinite() &&
+         node.rotation.coeffs().allFinite() && node.scale.allFinite() && is_valid(node.translations, 3) &&
+         is_valid(node.rotations, 4) && is_valid(node.scales, 3);
+}
+
+bool has_cycle(const std::vector<AnimatedNode>& nodes) {
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    std::size_t num_above = 0;
+    for (int above = nodes[n].parent; above >= 0; above = nodes[above].parent) {
+      if (++num_above == nodes.size()) return true;
+    }
+  }
+  return false;
+}
+
+bool is_below(int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) < count; }
+
+bool has_valid_influences(const SkinnedPart& part, std::size_t num_joints) {
+  const std::vector<std::size_t>& first = part.first_influence;
+  if (first.size() != part.rest.size() + 1 || first.front() != 0 || first.back() != part.influences.size())
+    return false;
+  return std::ranges::adjacent_find(first, std::greater_equal<>()) == first.end() &&
+         std::ranges::all_of(part.influences, [&](const Influence& influence) {
+           return is_below(influence.joint, num_joints) && std::isfinite(influence.weight) &&
+                  influence.weight >= 0;
+         });
+}
+
+bool is_valid(const SkinnedPart& part, const SkinnedMeshDesc& desc) {
+  if (part.rest.empty() || !is_below(part.node, desc.nodes.size())) return false;
+  if (part.skin >= 0 && (!is_below(part.skin, desc.skins.size()) ||
+                         !has_valid_influences(part, desc.skins[part.skin].joints.size())))
+    return false;
+  const AnimationCurve& curve = desc.nodes[part.node].weights;
+  if (part.weights.size() != part.targets.size() || !is_valid(curve, part.targets.size())) return false;
+  for (const std::vector<Displacement>& target : part.targets) {
+    for (const auto& [vertex, by] : target) {
+      if (!is_below(vertex, part.rest.size()) || !by.allFinite()) return false;
+    }
+  }
+  return are_finite(part.weights) &&
+         std::ranges::all_of(part.rest, [](const Vec3& p) { return p.allFinite(); });
+}
+
+}  // namespace
+
+bool is_valid(const SkinnedMeshDesc& desc) {
+  const std::size_t num_nodes = desc.nodes.size();
+  for (const AnimatedNode& node : desc.nodes) {
+    if ((node.parent >= 0 && !is_below(node.parent, num_nodes)) || !is_valid(node)) return false;
+  }
+  if (has_cycle(desc.nodes)) return false;
+  for (const Skin& skin : desc.skins) {
+    if (skin.joints.size() != skin.inverse_bind.size() ||
+        !std::ranges::all_of(skin.joints, [&](int joint) { return is_below(joint, num_nodes); }) ||
+        !std::ranges::all_of(skin.inverse_bind, is_finite))
+      return false;
+  }
+  return std::isfinite(desc.start) && std::isfinite(desc.end) && !desc.parts.empty() &&
+         std::ranges::all_of(desc.parts, [&](const SkinnedPart& part) { return is_valid(part, desc); });
+}
+
 /// Moves the vertices of a part from rest to the world. `transforms`: from nodes to the world.
-void place(const SkinnedMeshDesc& desc, const SkinnedPart& part, const std::vector<Affine>& transforms,
-           std::span<Vec3> vertices) {
+void SkinnedMesh::place(std::size_t p, const std::vector<Affine>& transforms,
+                        std::span<Vec3> vertices) const {
+  const SkinnedPart& part = desc_.parts[p];
   if (part.skin < 0) {
     for (Vec3& x : vertices) x = transforms[part.node] * x;
     return;
   }
-  const std::vector<Affine> joints = joint_transforms(desc.skins[part.skin], transforms);
+  const std::vector<Affine> joints = joint_transforms(desc_.skins[part.skin], transforms);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     Vec3 sum = Vec3::Zero();
-    for (const auto& [joint, weight] : influences_of(part, v)) sum += weight * (joints[joint] * vertices[v]);
+    for (const auto& [joint, weight] : influences_of(p, v)) sum += weight * (joints[joint] * vertices[v]);
     vertices[v] = sum;
   }
 }
 
 /// Determinant of the first vertex's transform.
-double first_determinant(const SkinnedMeshDesc& desc, const SkinnedPart& part,
-                         const std::vector<Affine>& transforms) {
+double SkinnedMesh::first_determinant(std::size_t p, const std::vector<Affine>& transforms) const {
+  const SkinnedPart& part = desc_.parts[p];
   if (part.skin < 0) return transforms[part.node].linear().determinant();
-  const std::vector<Affine> joints = joint_transforms(desc.skins[part.skin], transforms);
+  const std::vector<Affine> joints = joint_transforms(desc_.skins[part.skin], transforms);
   Mat3 sum = Mat3::Zero();
-  for (const auto& [joint, weight] : influences_of(part, 0)) sum += weight * joints[joint].linear();
+  for (const auto& [joint, weight] : influences_of(p, 0)) sum += weight * joints[joint].linear();
   return sum.determinant();
 }
 
-}  // namespace
+std::span<const Influence> SkinnedMesh::influences_of(std::size_t part, std::size_t vertex) const {
+  const std::vector<std::size_t>& first = parts_[part].first_influence;
+  return {&parts_[part].influences[first[vertex]], first[vertex + 1] - first[vertex]};
+}
+
+/// Makes the weights of every vertex sum to 1, and leaves out those that are 0.
+void SkinnedMesh::normalise_weights(const SkinnedPart& part, PartState& state) {
+  state.first_influence = {0};
+  for (std::size_t v = 0; v + 1 < part.first_influence.size(); ++v) {
+    const std::size_t first = part.first_influence[v];
+    const std::span<const Influence> given(&part.influences[first], part.first_influence[v + 1] - first);
+    double sum = 0;
+    for (const Influence& influence : given) sum += influence.weight;
+    if (sum == 0) state.influences.push_back({given[0].joint, 1});
+    for (const auto& [joint, weight] : given) {
+      if (weight > 0) state.influences.push_back({joint, weight / sum});
+    }
+    state.first_influence.push_back(state.influences.size());
+  }
+}
 
 SkinnedMesh::SkinnedMesh(SkinnedMeshDesc desc)
     : desc_(std::move(desc)),
@@ -126,21 +202,24 @@ SkinnedMesh::SkinnedMesh(SkinnedMeshDesc desc)
   }
   std::erase_if(moving_, [&](int n) { return !is_moving[n]; });
 
-  for (SkinnedPart& part : desc_.parts) {
+  for (std::size_t p = 0; p < desc_.parts.size(); ++p) {
+    const SkinnedPart& part = desc_.parts[p];
     PartState& state = parts_.emplace_back();
     state.first = rest_.size();
     rest_.insert(rest_.end(), part.rest.begin(), part.rest.end());
-    part.rest = {};
     const std::span<Vec3> vertices(rest_.begin() + static_cast<std::ptrdiff_t>(state.first), rest_.end());
-    if (part.skin >= 0) normalise_weights(part);
-    state.is_mirrored = first_determinant(desc_, part, transforms_) < 0;
+    if (part.skin >= 0) normalise_weights(part, state);
+    state.is_mirrored = first_determinant(p, transforms_) < 0;
     if (!desc_.nodes[part.node].weights.empty()) continue;
     add_targets(part, part.weights, vertices);
-    part.targets = {};
     state.is_still =
         std::ranges::none_of(placing_nodes(desc_, part), [&](int n) { return bool(is_moving[n]); });
-    if (state.is_still) place(desc_, part, transforms_, vertices);
+    if (state.is_still) place(p, transforms_, vertices);
   }
+}
+
+bool SkinnedMesh::is_still() const {
+  return std::ranges::all_of(parts_, [](const PartState& part) { return part.is_still; });
 }
 
 void SkinnedMesh::evaluate(double time, std::vector<Vec3>& positions) const {
@@ -157,7 +236,7 @@ void SkinnedMesh::evaluate(double time, std::vector<Vec3>& positions) const {
       engine::evaluate(curve, time, weights);
       add_targets(part, weights, vertices);
     }
-    place(desc_, part, transforms, vertices);
+    place(p, transforms, vertices);
   }
 }
 

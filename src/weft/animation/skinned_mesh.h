@@ -2,6 +2,7 @@
 /// Skinned meshes: vertices moved by an animated tree of nodes, joints and morph targets, as in glTF 2.0.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "weft/animation/animation_curve.h"
@@ -53,7 +54,6 @@ struct SkinnedPart {
   std::vector<std::size_t> first_influence = {};  // of a skin: (num_vertices + 1); at least one each
 };
 
-/// Sizes match, indices are in range, and the nodes have no cycles: other input is the caller's error.
 struct SkinnedMeshDesc {
   std::vector<AnimatedNode> nodes;
   std::vector<Skin> skins = {};
@@ -61,12 +61,19 @@ struct SkinnedMeshDesc {
   double start = 0, end = 0;  // first and last key of the clip [s]
 };
 
+/// Whether sizes match, indices are in range, numbers are finite, times increase, and nodes have no cycles.
+bool is_valid(const SkinnedMeshDesc& desc);
+
 /// The vertices of all parts, one part after another.
 class SkinnedMesh final : public VertexSource {
  public:
+  /// The description must be valid.
   explicit SkinnedMesh(SkinnedMeshDesc desc);
 
+  const SkinnedMeshDesc& desc() const { return desc_; }
+
   int num_vertices() const override { return static_cast<int>(rest_.size()); }
+  bool is_still() const override;
   void evaluate(double time, std::vector<Vec3>& positions) const override;
 
   double start() const { return desc_.start; }  // first and last key of the clip [s]
@@ -78,14 +85,20 @@ class SkinnedMesh final : public VertexSource {
 
  private:
   struct PartState {
-    std::size_t first = 0;  // vertex
+    std::size_t first = 0;              // vertex
+    std::vector<Influence> influences;  // of a skin, as in SkinnedPart, with weights > 0 of sum 1
+    std::vector<std::size_t> first_influence;
     bool is_still = false;  // `rest_` has its final positions
     bool is_mirrored = false;
   };
 
   std::vector<Affine> compute_transforms(double time) const;
+  static void normalise_weights(const SkinnedPart& part, PartState& state);
+  std::span<const Influence> influences_of(std::size_t part, std::size_t vertex) const;
+  void place(std::size_t part, const std::vector<Affine>& transforms, std::span<Vec3> vertices) const;
+  double first_determinant(std::size_t part, const std::vector<Affine>& transforms) const;
 
-  SkinnedMeshDesc desc_;            // without the vertices at rest
+  SkinnedMeshDesc desc_;
   std::vector<int> moving_;         // nodes that move and place parts, parents first
   std::vector<Affine> transforms_;  // from nodes to the world; those of `moving_` when the clip starts
   std::vector<PartState> parts_;

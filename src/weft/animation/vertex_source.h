@@ -14,6 +14,9 @@ class VertexSource {
 
   virtual int num_vertices() const = 0;
 
+  /// Whether no vertex moves at any time.
+  virtual bool is_still() const = 0;
+
   /// Overwrites `positions` by the (num_vertices) positions at `time` [s], in metres. The result depends on
   /// the time only, and several threads may call it.
   virtual void evaluate(double time, std::vector<Vec3>& positions) const = 0;

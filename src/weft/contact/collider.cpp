@@ -37,12 +37,23 @@ struct Mover {
     return OrientedBox{point(b.center), b.half_size, pose.rotation * b.rotation};
   }
   ColliderShape operator()(const MeshShape& m) const {
-    return MeshShape{m.mesh, pose.rotation * m.rotation, point(m.translation), m.sequence,
-                     m.sequence ? m.sequence->at(time) : m.blend};
+    MeshShape moved = m.at(time);
+    moved.rotation = pose.rotation * m.rotation;
+    moved.translation = point(m.translation);
+    return moved;
   }
 };
 
 }  // namespace
+
+MeshShape MeshShape::at(double time) const {
+  MeshShape result = *this;
+  if (!source) return result;
+  std::vector<Vec3> vertices;
+  source->evaluate(time, vertices);
+  result.deformed = std::make_shared<const std::vector<Vec3>>(std::move(vertices));
+  return result;
+}
 
 SignedDistance signed_distance(const ColliderShape& shape, const Vec3& p) {
   return std::visit([&](const auto& s) { return signed_distance(s, p); }, shape);

@@ -5,8 +5,8 @@
 #include <string>
 #include <variant>
 
-#include "weft/animation/mesh_sequence.h"
 #include "weft/animation/rigid_motion.h"
+#include "weft/animation/vertex_source.h"
 #include "weft/core/shapes.h"
 #include "weft/geometry/shape_distance.h"
 #include "weft/mesh/triangle_mesh.h"
@@ -18,15 +18,19 @@ namespace weft::engine {
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;  // never null
   Mat3 rotation = Mat3::Identity();
-  Vec3 translation = Vec3::Zero();                    // [m]
-  std::shared_ptr<const MeshSequence> sequence = {};  // vertex animation in mesh coordinates; null: static.
-                                                      // As many vertices as the mesh.
-  MeshSequence::Blend blend = {};                     // the current time of the sequence
+  Vec3 translation = Vec3::Zero();                  // [m]
+  std::shared_ptr<const VertexSource> source = {};  // vertex animation in mesh coordinates; null: static.
+                                                    // As many vertices as the mesh.
+  std::shared_ptr<const std::vector<Vec3>> deformed = {};  // vertices of the source now; null: the mesh's
 
-  /// Current position of a vertex.
-  Vec3 vertex(int v) const {
-    return rotation * (sequence ? sequence->position(blend, v) : mesh->positions[v]) + translation;
-  }
+  /// Current vertices in mesh coordinates (num_vertices) [m].
+  const std::vector<Vec3>& vertices() const { return deformed ? *deformed : mesh->positions; }
+
+  /// Current position of a vertex in the world [m].
+  Vec3 vertex(int v) const { return rotation * vertices()[v] + translation; }
+
+  /// A copy with the vertices at `time`.
+  MeshShape at(double time) const;
 };
 
 using ColliderShape = std::variant<Sphere, Plane, Capsule, OrientedBox, MeshShape>;
@@ -53,7 +57,7 @@ double support(const ColliderShape& shape, const Vec3& normal);
 /// mesh's own origin.
 Vec3 pivot(const ColliderShape& shape);
 
-/// The shape at `time`, moved by the collider's motion and its sequence, if any.
+/// The shape at `time`, moved by the collider's motion and its source of vertices, if any.
 ColliderShape shape_at(const Collider& collider, double time);
 
 }  // namespace weft::engine

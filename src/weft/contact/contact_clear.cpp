@@ -169,7 +169,7 @@ bool ContactSystem::are_bodies_far(double fall) const {
 std::pair<Vec3, Vec3> ContactSystem::Body::bounds_at(const MeshShape& shape) const {
   const Vec3 middle = shape.rotation * (0.5 * (min + max)) + shape.translation;
   Vec3 half = shape.rotation.cwiseAbs() * (0.5 * (max - min));
-  if (shape.sequence) half.setConstant(std::numeric_limits<double>::infinity());
+  if (shape.source) half.setConstant(std::numeric_limits<double>::infinity());
   return {middle - half, middle + half};
 }
 

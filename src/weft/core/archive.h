@@ -133,7 +133,10 @@ template <class Archive, class T>
 void describe(Archive& archive, std::optional<T>& value) {
   bool is_set = value.has_value();
   archive.plain(is_set);
-  if constexpr (Archive::kReads) value = is_set ? std::optional<T>(std::in_place) : std::nullopt;
+  if constexpr (Archive::kReads) {
+    value.reset();
+    if (is_set) value.emplace();
+  }
   if (value) describe(archive, *value);
 }
 

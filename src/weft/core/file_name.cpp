@@ -1,5 +1,7 @@
 #include "weft/core/file_name.h"
 
+#include <cstdio>
+
 #include <cctype>
 
 namespace weft::engine {
@@ -11,6 +13,12 @@ std::string FileNames::add(std::string name) {
   std::string unique = name;
   for (int number = 2; !taken_.insert(unique).second; ++number) unique = name + '_' + std::to_string(number);
   return unique;
+}
+
+std::string frame_ending(int frame) {
+  char text[16];
+  std::snprintf(text, sizeof text, "_%04d", frame);
+  return text;
 }
 
 }  // namespace weft::engine

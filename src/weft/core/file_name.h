@@ -17,4 +17,7 @@ class FileNames {
   std::set<std::string> taken_;
 };
 
+/// The end of the name of a frame's file, before its ending: "_0012".
+std::string frame_ending(int frame);
+
 }  // namespace weft::engine

@@ -136,6 +136,11 @@ void write_file(const fs::path& file, std::string_view content) {
   staged.replace();
 }
 
+void sync_file(const fs::path& file) {
+  observe(FileEvent::sync, file);
+  sync_to_disk(file, file);
+}
+
 void sync_folder(const fs::path& folder) {
   observe(FileEvent::sync_folder, folder);
   sync_to_disk(folder, folder.empty() ? "." : folder);

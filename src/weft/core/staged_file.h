@@ -61,6 +61,9 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 /// Throws InputError if StagedFile could not replace the file now. Does not change a file or pipe.
 void require_writable(const std::filesystem::path& file);
 
+/// Passes a file's content to the disk (fsync). Throws InputError if that fails.
+void sync_file(const std::filesystem::path& file);
+
 /// Passes the names of a folder's files to the disk (fsync), so that a rename survives a power failure.
 void sync_folder(const std::filesystem::path& folder);
 

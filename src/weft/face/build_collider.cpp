@@ -1,9 +1,14 @@
 #include "weft/face/build_collider.h"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <optional>
 
+#include "weft/animation/mesh_sequence.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
+#include "weft/face/vertex_motion.h"
 #include "weft/mesh/clean.h"
 #include "weft/mesh/solid.h"
 #include "weft/world/world_input.h"
@@ -40,6 +45,33 @@ void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
                      std::string(" flipped"));
 }
 
+/// A motion of the vertices that were given, for those of the cleaned mesh.
+class CleanedVertices final : public VertexSource {
+ public:
+  /// `start`: time of the source at time 0 and before [s].
+  CleanedVertices(std::shared_ptr<const VertexSource> source, const std::vector<int>& vertex_of_source,
+                  int num_vertices, double start)
+      : source_(std::move(source)), source_of_vertex_(static_cast<std::size_t>(num_vertices)), start_(start) {
+    for (std::size_t v = 0; v < vertex_of_source.size(); ++v) {
+      if (vertex_of_source[v] >= 0) source_of_vertex_[vertex_of_source[v]] = v;
+    }
+  }
+
+  int num_vertices() const override { return static_cast<int>(source_of_vertex_.size()); }
+  bool is_still() const override { return source_->is_still(); }
+  void evaluate(double time, std::vector<Vec3>& positions) const override {
+    std::vector<Vec3> given;
+    source_->evaluate(start_ + std::max(time, 0.0), given);
+    positions.resize(source_of_vertex_.size());
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = given[source_of_vertex_[v]];
+  }
+
+ private:
+  std::shared_ptr<const VertexSource> source_;
+  std::vector<std::size_t> source_of_vertex_;  // (num_vertices)
+  double start_ = 0;                           // [s]
+};
+
 /// Shapes transformed by the pose.
 struct ShapeBuilder {
   const ColliderDesc& desc;
@@ -66,11 +98,30 @@ struct ShapeBuilder {
     MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
                     .rotation = pose->rotation,
                     .translation = pose->translation};
-    if (!desc.frames.empty()) shape.sequence = make_sequence(shape.mesh->num_vertices());
+    if (!desc.frames.empty()) shape.source = make_sequence(shape.mesh->num_vertices());
+    if (!desc.deformation.is_empty())
+      shape.source = make_deformation(given.num_vertices(), shape.mesh->num_vertices());
     return shape;
   }
 
-  std::shared_ptr<const MeshSequence> make_sequence(int num_vertices) const {
+  std::shared_ptr<const VertexSource> make_deformation(int num_given, int num_vertices) const {
+    const VertexMotion& motion = desc.deformation;
+    if (!desc.frames.empty()) throw InputError("has both frames and a deformation; expected one of them");
+    if (motion.num_vertices() != num_given)
+      throw InputError("its deformation has " + std::to_string(motion.num_vertices()) +
+                       " vertices, the mesh " + std::to_string(num_given));
+    if (!std::isfinite(desc.deformation_start))
+      throw InputError("the start of its deformation is not finite");
+    auto source = std::make_shared<const CleanedVertices>(
+        VertexMotionAccess::source(motion), built.vertex_of_source, num_vertices, desc.deformation_start);
+    std::vector<Vec3> start;
+    source->evaluate(0, start);
+    if (!std::ranges::all_of(start, [](const Vec3& p) { return p.allFinite(); }))
+      throw InputError("its deformation has a vertex that is not finite at the start");
+    return source;
+  }
+
+  std::shared_ptr<const VertexSource> make_sequence(int num_vertices) const {
     std::vector<MeshSequence::Key> keys;
     for (const MeshFrame& frame : desc.frames) {
       keys.push_back({frame.time, {}});
@@ -103,8 +154,9 @@ BuiltCollider build_collider(const ColliderDesc& desc, const std::string& who) {
   }
   const std::string mesh_who =
       desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
-  if (!desc.frames.empty() && !std::holds_alternative<weft::TriangleMesh>(desc.shape))
-    throw InputError(who + "only a mesh can have frames");
+  if (!(desc.frames.empty() && desc.deformation.is_empty()) &&
+      !std::holds_alternative<weft::TriangleMesh>(desc.shape))
+    throw InputError(who + "only a mesh can have frames or a deformation");
   try {
     built.collider.shape = std::visit(ShapeBuilder{desc, who, built, to_engine(desc.pose)}, desc.shape);
   } catch (const InputError& error) {

@@ -1,10 +1,13 @@
 /// World::save and World::load: a world's descriptions and state as bytes.
 
 #include <algorithm>
+#include <utility>
 
+#include "weft/animation/mesh_sequence.h"
 #include "weft/core/archive.h"
 #include "weft/core/hash.h"
 #include "weft/face/convert.h"
+#include "weft/face/vertex_motion.h"
 #include "weft/face/world_impl.h"
 
 namespace weft {
@@ -102,8 +105,53 @@ void describe(Archive& archive, weft::OrientedBox& b) {
   members(archive, b.center, b.half_size, b.rotation);
 }
 template <class Archive>
+void describe(Archive& archive, AnimationCurve& c) {
+  members(archive, c.interpolation, c.times, c.values);
+}
+template <class Archive>
+void describe(Archive& archive, Affine& a) {
+  for (int e = 0; e < 12; ++e) archive.plain(a(e / 4, e % 4));
+}
+template <class Archive>
+void describe(Archive& archive, AnimatedNode& n) {
+  members(archive, n.parent, n.matrix, n.translation, n.rotation.x(), n.rotation.y(), n.rotation.z(),
+          n.rotation.w(), n.scale, n.translations, n.rotations, n.scales, n.weights);
+}
+template <class Archive>
+void describe(Archive& archive, Skin& s) {
+  members(archive, s.joints, s.inverse_bind);
+}
+template <class Archive>
+void describe(Archive& archive, Influence& i) {
+  members(archive, i.joint, i.weight);
+}
+template <class Archive>
+void describe(Archive& archive, Displacement& d) {
+  members(archive, d.vertex, d.by);
+}
+template <class Archive>
+void describe(Archive& archive, SkinnedPart& p) {
+  members(archive, p.node, p.skin, p.rest, p.targets, p.weights, p.influences, p.first_influence);
+}
+template <class Archive>
+void describe(Archive& archive, SkinnedMeshDesc& m) {
+  members(archive, m.nodes, m.skins, m.parts, m.start, m.end);
+}
+template <class Archive>
+void describe(Archive& archive, VertexMotion& motion) {
+  std::optional<SkinnedMeshDesc> desc;
+  if (!motion.is_empty()) desc = VertexMotionAccess::source(motion)->desc();
+  describe(archive, desc);
+  if constexpr (Archive::kReads) {
+    if (!desc) return;
+    if (!is_valid(*desc)) archive.fail();
+    motion = VertexMotionAccess::make(std::make_shared<const SkinnedMesh>(std::move(*desc)));
+  }
+}
+template <class Archive>
 void describe(Archive& archive, ColliderDesc& d) {
-  members(archive, d.name, d.shape, d.source, d.pose, d.motion, d.frames, d.friction, d.static_friction);
+  members(archive, d.name, d.shape, d.source, d.pose, d.motion, d.frames, d.deformation, d.deformation_start,
+          d.friction, d.static_friction);
 }
 template <class Archive>
 void describe(Archive& archive, IntegratorSettings& s) {
@@ -146,21 +194,20 @@ template <class Archive>
 void describe(Archive& archive, MeshSequence::Key& k) {
   members(archive, k.time, k.positions);
 }
-template <class Archive>
-void describe(Archive& archive, std::shared_ptr<const MeshSequence>& sequence) {
-  std::vector<MeshSequence::Key> keys;
-  if (sequence) keys = sequence->keys();
-  describe(archive, keys);
-  if constexpr (Archive::kReads)
-    sequence = keys.empty() ? nullptr : std::make_shared<const MeshSequence>(std::move(keys));
+const std::vector<MeshSequence::Key>& keys_by_hand(const World::Guide& guide) {
+  return dynamic_cast<const MeshSequence&>(*guide.source).keys();
 }
 template <class Archive>
 void describe(Archive& archive, Pin& p) {
-  members(archive, p.particles, p.motion, p.pivot);
+  members(archive, p.particles, p.motion, p.pivot, p.follow);
+}
+template <class Archive>
+void describe(Archive& archive, SurfaceAnchor& a) {
+  members(archive, a.triangle, a.weights, a.offset);
 }
 template <class Archive>
 void describe(Archive& archive, Attachment& g) {
-  members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target);
+  members(archive, g.particles, g.shares, g.offsets, g.stiffness, g.damping, g.target, g.follow, g.anchor);
 }
 template <class Archive>
 void describe(Archive& archive, PointGuide& g) {
@@ -168,11 +215,16 @@ void describe(Archive& archive, PointGuide& g) {
 }
 template <class Archive>
 void describe(Archive& archive, World::Held& h) {
-  members(archive, h.pins, h.anchors, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
+  members(archive, h.pins, h.anchors, h.on_surface, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
 }
 template <class Archive>
 void describe(Archive& archive, World::Guide& g) {
-  members(archive, g.moves_by_hand, g.deforms_by_hand, g.pose, g.vertices, g.motion, g.sequence);
+  members(archive, g.moves_by_hand, g.deforms_by_hand, g.pose, g.vertices, g.motion);
+  if (!g.deforms_by_hand) return;  // then the source is the description's
+  std::vector<MeshSequence::Key> keys;
+  if (g.source) keys = keys_by_hand(g);
+  describe(archive, keys);
+  if constexpr (Archive::kReads) g.source = std::make_shared<const MeshSequence>(std::move(keys));
 }
 template <class Archive>
 void describe(Archive& archive, World::Snapshot& s) {
@@ -187,7 +239,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 1;         // of the format
+constexpr std::uint32_t kVersion = 2;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -266,18 +318,35 @@ void check(const engine::PointGuide& guide, std::size_t count) {
   for (const auto* points : {&guide.from, &guide.to}) check(*points, guide.is_empty() ? 0 : count);
 }
 
-void check(const engine::World::Held& held, std::size_t num_particles, const std::vector<char>& is_soft) {
+using Colliders = std::vector<engine::Collider>;
+
+/// `follow`: index of a collider, or −1.
+void check(const engine::SurfaceAnchor& anchor, int follow, const Colliders& colliders) {
+  require(follow >= -1 && std::cmp_less(follow, colliders.size()));
+  require(anchor.weights.allFinite() && anchor.offset.allFinite());
+  const auto* mesh = follow < 0 ? nullptr : std::get_if<engine::MeshShape>(&colliders[follow].shape);
+  require(mesh ? anchor.triangle >= 0 && anchor.triangle < mesh->mesh->num_triangles()
+               : anchor.triangle == -1);
+}
+
+void check(const engine::World::Held& held, std::size_t num_particles, const std::vector<char>& is_soft,
+           const Colliders& colliders) {
   std::size_t pinned = 0;
   for (const engine::Pin& pin : held.pins) {
     require(pin.pivot.allFinite());
-    pinned += pin.particles.size();
+    for (std::size_t k = 0; k < pin.particles.size(); ++k, ++pinned) {
+      require(pinned < held.on_surface.size());
+      check(held.on_surface[pinned], pin.follow, colliders);
+    }
   }
+  require(held.on_surface.size() == pinned);
   check(held.anchors, pinned);
   require(static_cast<std::size_t>(std::ranges::count(is_soft, 0)) == pinned);
   require(is_soft.size() - pinned == held.attachments.size());
   for (const engine::Attachment& attachment : held.attachments) {
     require(attachment.particles.size() == 1 && attachment.target.allFinite() &&
             are_finite(attachment.offsets));
+    check(attachment.anchor, attachment.follow, colliders);
     require(std::ranges::all_of(attachment.shares, [](double share) { return std::isfinite(share); }));
   }
   check(held.pin_guide, pinned);
@@ -299,13 +368,12 @@ void check(const engine::World::Guide& guide, const engine::Collider& collider) 
     check(passage->to);
   }
   const auto* mesh = std::get_if<engine::MeshShape>(&collider.shape);
-  require(mesh || (!guide.deforms_by_hand && !guide.vertices && !guide.sequence));
+  require(mesh || (!guide.deforms_by_hand && !guide.vertices));
   if (!mesh) return;
   const auto count = mesh->mesh->positions.size();
-  require(!guide.deforms_by_hand || guide.sequence || guide.vertices);
   if (guide.vertices) check(*guide.vertices, count);
-  if (!guide.sequence) return;
-  for (const engine::MeshSequence::Key& key : guide.sequence->keys()) {
+  if (!guide.deforms_by_hand) return;
+  for (const engine::MeshSequence::Key& key : engine::keys_by_hand(guide)) {
     require(std::isfinite(key.time));
     check(key.positions, count);
   }
@@ -331,7 +399,7 @@ void check(const SavedWorld& saved, const engine::World& world) {
     const auto count =
         static_cast<std::size_t>(world.model(world.cloth(static_cast<int>(c))).num_particles());
     check(state.states[c], count);
-    check(state.held[c], count, saved.cloths[c].is_soft);
+    check(state.held[c], count, saved.cloths[c].is_soft, world.colliders());
   }
   for (std::size_t c = 0; c < saved.colliders.size(); ++c) check(state.guides[c], world.colliders()[c]);
 }
@@ -401,6 +469,10 @@ World World::load(std::span<const std::byte> bytes) {
     const ClothId id = world.impl_->add(std::move(cloth.desc));
     for (const Stiffening& s : cloth.stiffened) world.stiffen(id, s.particles, s.factor);
     world.impl_->cloths.back().is_soft = cloth.is_soft;
+  }
+  for (std::size_t c = 0; c < inside.colliders().size(); ++c) {
+    const auto* mesh = std::get_if<engine::MeshShape>(&inside.colliders()[c].shape);
+    if (mesh && !saved.state.guides[c].deforms_by_hand) saved.state.guides[c].source = mesh->source;
   }
   for (const engine::ContactRule& rule : saved.rules) apply(rule, world);
   check(saved, inside);

@@ -39,6 +39,8 @@ engine::Attachment make_soft_pin(const Pin& pin, int particle, const engine::Vec
 }
 
 void check_pin(const Pin& pin, const std::string& owner) {
+  if (pin.follow && !pin.motion.empty())
+    throw InputError(owner + "a pin that follows a collider has no motion of its own");
   if (!pin.stiffness) return;
   if (!pin.motion.empty())
     throw InputError(owner + "a pin with stiffness does not support motion; set targets before each step");
@@ -60,22 +62,30 @@ std::vector<int> list_particles(const Held& held, const std::vector<char>& is_so
 }
 
 /// A pin without targets moves along its key frames; all of a cloth's firm pins do, or none.
-void append(const Pin& pin, const std::string& owner, const engine::ClothState& state, Held& held,
-            std::vector<char>& is_soft) {
+void append(const Pin& pin, const std::string& owner, const engine::World& world,
+            const engine::ClothState& state, Held& held, std::vector<char>& is_soft) {
   check_pin(pin, owner);
-  if (!held.pin_guide.is_empty() && !pin.motion.empty())
-    throw InputError(owner + "its pins have targets, which a pin with motion cannot join");
+  const engine::PointGuide& targets = pin.stiffness ? held.attachment_guide : held.pin_guide;
+  if (!targets.is_empty() && !(pin.motion.empty() && !pin.follow))
+    throw InputError(owner + "its pins have targets, which a pin with a motion or a collider cannot join");
+  const int follow = pin.follow ? world.index(*pin.follow) : -1;
   if (!pin.stiffness)
-    held.pins.push_back({pin.particles, to_engine(pin.motion, owner), to_engine(pin.pivot)});
+    held.pins.push_back({pin.particles, to_engine(pin.motion, owner), to_engine(pin.pivot), follow});
   for (const int i : pin.particles) {
     if (i < 0 || static_cast<std::size_t>(i) >= state.x.size())
       throw InputError(owner + "there is no particle " + std::to_string(i) + " to pin; it has " +
                        std::to_string(state.x.size()));
     const engine::Vec3 position = state.position(i);
-    if (pin.stiffness)
+    engine::SurfaceAnchor anchor;
+    if (pin.follow) anchor = world.bind(follow, {position})[0];
+    if (pin.stiffness) {
       held.attachments.push_back(make_soft_pin(pin, i, position));
-    else
+      held.attachments.back().follow = follow;
+      held.attachments.back().anchor = anchor;
+    } else {
       held.anchors.push_back(position);
+      held.on_surface.push_back(anchor);
+    }
     engine::PointGuide& guide = pin.stiffness ? held.attachment_guide : held.pin_guide;
     if (!guide.is_empty()) {
       guide.from.push_back(position);
@@ -102,6 +112,7 @@ void erase_firm(Held& held, std::size_t n) {
   }
   std::erase_if(held.pins, [](const engine::Pin& pin) { return pin.particles.empty(); });
   erase_at(held.anchors, n);
+  erase_at(held.on_surface, n);
   erase_at(held.pin_guide.from, n);
   erase_at(held.pin_guide.to, n);
 }
@@ -127,7 +138,7 @@ void World::set_pins(ClothId cloth, const std::vector<Pin>& pins) {
   held.forces = impl_->world.forces(cloth);
   std::vector<char> is_soft;
   for (const Pin& pin : pins)
-    append(pin, who("cloth", own.desc.name), impl_->world.state(cloth), held, is_soft);
+    append(pin, who("cloth", own.desc.name), impl_->world, impl_->world.state(cloth), held, is_soft);
   require_no_duplicates(list_particles(held, is_soft), who("cloth", own.desc.name));
   impl_->world.hold(cloth, std::move(held));
   own.is_soft = std::move(is_soft);
@@ -137,7 +148,7 @@ void World::add_pin(ClothId cloth, const Pin& pin) {
   Impl::Cloth& own = impl_->at(cloth);
   Held held = impl_->world.held(cloth);
   std::vector<char> is_soft = own.is_soft;
-  append(pin, who("cloth", own.desc.name), impl_->world.state(cloth), held, is_soft);
+  append(pin, who("cloth", own.desc.name), impl_->world, impl_->world.state(cloth), held, is_soft);
   require_no_duplicates(list_particles(held, is_soft), who("cloth", own.desc.name));
   impl_->world.hold(cloth, std::move(held));
   own.is_soft = std::move(is_soft);

@@ -264,6 +264,7 @@ class BodyReader {
     const GltfContents contents = read_contents(file_);
     std::vector<std::vector<int>> children;
     desc_.nodes = read_nodes(file_, children);
+    scale_nodes();
     const std::vector<bool> is_in = mark_below(find_roots(contents), children);
     for (std::size_t n = 0; n < is_in.size(); ++n) {
       if (is_in[n]) add_part(static_cast<int>(n));
@@ -287,6 +288,16 @@ class BodyReader {
   }
 
  private:
+  /// Puts the nodes below a node that scales the whole.
+  void scale_nodes() {
+    if (options_.scale == 1) return;
+    const int whole = static_cast<int>(desc_.nodes.size());
+    for (AnimatedNode& node : desc_.nodes) {
+      if (node.parent < 0) node.parent = whole;
+    }
+    desc_.nodes.push_back({.scale = Vec3::Constant(options_.scale)});
+  }
+
   std::vector<int> find_roots(const GltfContents& contents) const {
     if (options_.node.empty()) return find_scene_roots(file_);
     return {find_named(file_, "node", read_names(file_, "nodes", "node"), options_.node, contents.nodes)};
@@ -594,6 +605,18 @@ GltfBody read_gltf_body(const std::filesystem::path& file, const GltfOptions& op
 GltfBody parse_gltf_body(std::span<const unsigned char> bytes, const std::string& name,
                          const GltfOptions& options) {
   return BodyReader(GltfFile({bytes.begin(), bytes.end()}, name, std::nullopt), options).read();
+}
+
+MeshFromFile mesh_at_start(const GltfBody& body) {
+  MeshFromFile result{.mesh = {.triangles = body.triangles}, .warnings = body.warnings};
+  body.vertices.evaluate(body.vertices.start(), result.mesh.positions);
+  for (const Triangle& triangle : body.triangles) {
+    if (body.uv.empty()) break;
+    CornerUv& corners = result.uv.emplace_back();
+    for (int c = 0; c < 3; ++c) corners[c] = body.uv[triangle[c]];
+  }
+  result.faces = make_faces(result.mesh.triangles, result.uv);
+  return result;
 }
 
 GltfContents list_gltf(const std::filesystem::path& file) {

@@ -8,15 +8,11 @@
 #include <vector>
 
 #include "weft/animation/skinned_mesh.h"
+#include "weft/io.h"
+#include "weft/io/mesh_from_file.h"
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft::engine {
-
-struct GltfOptions {
-  std::string node =
-      {};  // its meshes and those of its descendants are the body; "": all of the default scene
-  std::string clip = {};  // animation; "": the first one, if there is one
-};
 
 struct GltfClip {
   std::string name;           // "animation 2" if the file gives none
@@ -30,7 +26,7 @@ struct GltfContents {
   std::vector<GltfClip> clips;
 };
 
-/// A body that moves by a clip. Coordinates are the file's: y up, metres.
+/// A body that moves by a clip. Coordinates are the file's, times `scale`: y up, metres.
 struct GltfBody {
   SkinnedMesh vertices;             // a part for each node with a mesh; its primitives one after another
   std::vector<Triangle> triangles;  // counter-clockwise seen from the front. Those with equal corners, which
@@ -55,6 +51,9 @@ GltfBody read_gltf_body(const std::filesystem::path& file, const GltfOptions& op
 /// The same from the file's bytes; `name` is the file name in messages. Never reads another file.
 GltfBody parse_gltf_body(std::span<const unsigned char> bytes, const std::string& name,
                          const GltfOptions& options = {});
+
+/// The mesh at the start of the clip.
+MeshFromFile mesh_at_start(const GltfBody& body);
 
 /// Names of the nodes with meshes, and of the clips.
 GltfContents list_gltf(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #include "weft/io/mesh_files.h"
 
 #include "weft/error.h"
+#include "weft/io/gltf_body.h"
 #include "weft/io/mdd.h"
 #include "weft/io/obj_reader.h"
 #include "weft/io/pc2.h"
@@ -14,6 +15,10 @@ bool has_ending(const std::filesystem::path& file, const char* ending) {
   return to_lower(file.extension().string()) == ending;
 }
 
+bool is_gltf(const std::filesystem::path& file) {
+  return has_ending(file, ".glb") || has_ending(file, ".gltf");
+}
+
 Vec3 to_world(const Vec3& p, bool up_is_z, double scale) {
   return scale * (up_is_z ? Vec3(p.x(), p.z(), -p.y()) : p);
 }
@@ -21,13 +26,14 @@ Vec3 to_world(const Vec3& p, bool up_is_z, double scale) {
 MeshFromFile read_mesh(const std::filesystem::path& file) {
   if (has_ending(file, ".ply")) return read_ply(file);
   if (has_ending(file, ".stl")) return read_stl(file);
+  if (is_gltf(file)) return mesh_at_start(read_gltf_body(file));
   return read_obj(file);
 }
 
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
-                const std::vector<CornerUv>& uv) {
-  if (has_ending(file, ".obj")) return write_obj(file, mesh, uv);
-  if (has_ending(file, ".ply")) return write_ply(file, mesh, uv);
+void write_mesh(const std::filesystem::path& file, const std::vector<Vec3>& positions,
+                const MeshFaces& faces) {
+  if (has_ending(file, ".obj")) return write_obj(file, positions, faces);
+  if (has_ending(file, ".ply")) return write_ply(file, positions, faces);
   throw InputError(file.string() + ": a mesh is written as .obj or .ply");
 }
 

@@ -70,7 +70,21 @@ std::vector<Triangle> triangulate(const Positions& x) {
 
 }  // namespace
 
+void MeshFaces::add(std::span<const int> polygon, std::span<const Eigen::Vector2d> corner_uv) {
+  corners.insert(corners.end(), polygon.begin(), polygon.end());
+  uv.insert(uv.end(), corner_uv.begin(), corner_uv.end());
+  ends.push_back(corners.size());
+}
+
+MeshFaces make_faces(const std::vector<Triangle>& triangles, const std::vector<CornerUv>& uv) {
+  MeshFaces faces;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    faces.add(triangles[t], uv.empty() ? std::span<const Eigen::Vector2d>() : std::span(uv[t]));
+  return faces;
+}
+
 void append_polygon(std::span<const int> polygon, std::span<const Eigen::Vector2d> uv, MeshFromFile& result) {
+  result.faces.add(polygon, uv);
   Positions x;
   for (const int v : polygon) x.push_back(result.mesh.positions[v]);
   for (const auto [a, b, c] : triangulate(x)) {

@@ -7,13 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string_view>
 #include <system_error>
+#include <unordered_map>
+#include <utility>
 
+#include "weft/core/hash.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
 #include "weft/io/input_file.h"
@@ -83,6 +88,67 @@ long long parse_uv_index(std::string_view word) {
   return parse_index(word).value_or(0);
 }
 
+// ---- Groups ----
+
+/// The groups of a file, while its faces are counted. A line costs as much as it is long, whatever the number
+/// of faces behind it.
+class GroupList {
+ public:
+  /// g NAME NAME …: the groups of the faces from this one on; no names: none.
+  void set_groups(std::span<const std::string_view> names, int face) {
+    close(open_groups_, face);
+    for (const std::string_view name : names) open(name, false, face, open_groups_);
+  }
+
+  /// o NAME: the object of the faces from this one on; "": none.
+  void set_object(const std::string& name, int face) {
+    close(open_objects_, face);
+    if (!name.empty()) open(name, true, face, open_objects_);
+  }
+
+  std::vector<MeshGroup> finish(int num_faces) {
+    close(open_groups_, num_faces);
+    close(open_objects_, num_faces);
+    std::erase_if(groups_, [](const MeshGroup& group) { return group.faces.empty(); });
+    std::ranges::stable_sort(groups_, {}, [](const MeshGroup& group) {
+      return std::pair(group.faces.front().begin, !group.is_object);
+    });
+    return std::move(groups_);
+  }
+
+ private:
+  void open(std::string_view name, bool is_object, int face, std::vector<std::size_t>& opened) {
+    const auto [found, is_new] = numbers_.try_emplace({is_object, std::string(name)}, groups_.size());
+    if (is_new) groups_.push_back({std::string(name), is_object, {}});
+    std::vector<FaceRange>& faces = groups_[found->second].faces;
+    if (!faces.empty() && faces.back().end == kOpen) return;  // twice on a line
+    const bool continues = !faces.empty() && faces.back().end == face;
+    continues ? void(faces.back().end = kOpen) : faces.push_back({face, kOpen});
+    opened.push_back(found->second);
+  }
+
+  void close(std::vector<std::size_t>& opened, int face) {
+    for (const std::size_t k : opened) {
+      std::vector<FaceRange>& faces = groups_[k].faces;
+      faces.back().end = face;
+      if (faces.back().begin == face) faces.pop_back();
+    }
+    opened.clear();
+  }
+
+  static constexpr int kOpen = -1;                               // end of a range that goes on
+  std::vector<MeshGroup> groups_;                                // in the order of their first lines
+  std::map<std::pair<bool, std::string>, std::size_t> numbers_;  // by MeshGroup::is_object and name
+  std::vector<std::size_t> open_groups_, open_objects_;
+};
+
+/// The words with one blank between them: names of objects may have blanks.
+std::string join(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) (text += text.empty() ? "" : " ") += word;
+  return text;
+}
+
 // ---- The file ----
 
 class ObjParser {
@@ -96,7 +162,11 @@ class ObjParser {
     if (positions().empty()) throw InputError(name_ + ": there are no vertices; expected lines v X Y Z");
     if (faces_.empty()) throw InputError(name_ + ": there are no faces; expected lines f A B C");
     for (const Face& face : faces_) add_face(face);
-    if (!has_uv_) result_.uv.clear();
+    if (!has_uv_) {
+      result_.uv.clear();
+      result_.faces.uv.clear();
+    }
+    result_.faces.groups = groups_.finish(num_faces());
     add_warnings();
     return std::move(result_);
   }
@@ -113,6 +183,7 @@ class ObjParser {
   };
 
   std::vector<Vec3>& positions() { return result_.mesh.positions; }
+  int num_faces() const { return static_cast<int>(faces_.size()); }
 
   [[noreturn]] void fail(int line, const std::string& message) const {
     throw InputError(name_ + ":" + std::to_string(line) + ": " + message);
@@ -120,14 +191,18 @@ class ObjParser {
 
   void read_line(std::string_view keyword) {
     // vv and t occur in the garment files of Berkeley.
-    constexpr std::array<std::string_view, 11> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s", "g",
-                                                              "o",  "l",      "p",      "vv",     "t"};
+    constexpr std::array<std::string_view, 9> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s",
+                                                             "l",  "p",      "vv",     "t"};
     if (keyword == "v") {
       read_vertex();
     } else if (keyword == "vt") {
       read_uv();
     } else if (keyword == "f") {
       read_face();
+    } else if (keyword == "g") {
+      groups_.set_groups({lines_.words().begin() + 1, lines_.words().end()}, num_faces());
+    } else if (keyword == "o") {
+      groups_.set_object(join({lines_.words().begin() + 1, lines_.words().end()}), num_faces());
     } else if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) == kPassedOver.end()) {
       Unknown& unknown = unknown_[std::string(keyword)];
       if (unknown.num_lines++ == 0) unknown.first_line = lines_.line();
@@ -152,13 +227,12 @@ class ObjParser {
     positions().push_back(position);
   }
 
-  /// vt U V; a third one may follow. Words that are not numbers count as missing.
+  /// vt U V; a third one may follow, and V, then 0, be left out. Words that are no numbers count as missing.
   void read_uv() {
     const auto& words = lines_.words();
-    const auto number = [&](std::size_t k) {
-      return words.size() > k ? parse_finite(words[k]).value_or(kNotGiven) : kNotGiven;
-    };
-    uv_.emplace_back(number(1), number(2));
+    const std::optional<double> u = words.size() > 1 ? parse_finite(words[1]) : std::nullopt,
+                                v = words.size() > 2 ? parse_finite(words[2]) : 0.0;
+    uv_.push_back(u && v ? Eigen::Vector2d(*u, *v) : Eigen::Vector2d(kNotGiven, kNotGiven));
   }
 
   /// f A B C …; each index counts from 1, or from -1 backwards from the vertex read last.
@@ -206,8 +280,10 @@ class ObjParser {
 
   Eigen::Vector2d uv_at(long long index) {
     const bool is_there = index >= 0 && index < static_cast<long long>(uv_.size());
-    has_uv_ = has_uv_ || is_there;
-    return is_there ? uv_[static_cast<std::size_t>(index)] : Eigen::Vector2d(kNotGiven, kNotGiven);
+    if (!is_there) return {kNotGiven, kNotGiven};
+    const Eigen::Vector2d& uv = uv_[static_cast<std::size_t>(index)];
+    has_uv_ = has_uv_ || uv.allFinite();
+    return uv;
   }
 
   void add_warnings() {
@@ -232,6 +308,7 @@ class ObjParser {
   std::vector<Eigen::Vector2d> uv_;
   bool has_uv_ = false;  // of any triangle
   std::vector<Face> faces_;
+  GroupList groups_;
   std::map<std::string, Unknown> unknown_;
   MeshFromFile result_;
 };
@@ -245,28 +322,94 @@ void append_number(std::string& text, double value) {
   text.append(digits.data(), end);
 }
 
-/// `uv`: (num_triangles), or empty; NaN for triangles without texture coordinates.
-void append_mesh(std::string& text, const TriangleMesh& mesh, int first_vertex,
-                 const std::vector<CornerUv>& uv = {}) {
-  for (const Vec3& position : mesh.positions) {
+void append_positions(std::string& text, const std::vector<Vec3>& positions) {
+  for (const Vec3& position : positions) {
     text += 'v';
     for (const double coordinate : position) append_number(text += ' ', coordinate);
     text += '\n';
   }
-  int num_uv = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const bool has_uv = !uv.empty() && std::isfinite(uv[t][0][0]);
-    for (int corner = 0; has_uv && corner < 3; ++corner) {
-      append_number(text += "vt ", uv[t][corner][0]);
-      append_number(text += ' ', uv[t][corner][1]);
-      text += '\n';
+}
+
+struct BitsHash {
+  std::size_t operator()(const std::array<std::uint64_t, 2>& bits) const {
+    Hash hash;
+    hash.add(bits);
+    return hash.value();
+  }
+};
+
+/// Writes each texture coordinate once. The number of each corner's, from 1; 0: none. Empty without any.
+std::vector<std::size_t> append_uv(std::string& text, const std::vector<Eigen::Vector2d>& uv) {
+  std::vector<std::size_t> numbers;
+  std::unordered_map<std::array<std::uint64_t, 2>, std::size_t, BitsHash> known;
+  for (const Eigen::Vector2d& corner : uv) {
+    if (!corner.allFinite()) {
+      numbers.push_back(0);
+      continue;
     }
-    text += 'f';
-    for (const int v : mesh.triangles[t]) {
-      text += ' ' + std::to_string(first_vertex + v + 1);
-      if (has_uv) text += '/' + std::to_string(++num_uv);
-    }
+    const auto [found, is_new] = known.try_emplace(bits_of(corner), known.size() + 1);
+    numbers.push_back(found->second);
+    if (!is_new) continue;
+    append_number(text += "vt ", corner.x());
+    append_number(text += ' ', corner.y());
     text += '\n';
+  }
+  return numbers;
+}
+
+/// The lines o and g of a file, before the faces at which they change.
+class GroupLines {
+ public:
+  explicit GroupLines(const std::vector<MeshGroup>& groups) : groups_(groups) {
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      for (const auto [begin, end] : groups[k].faces) {
+        changes_[begin].push_back(k);
+        changes_[end].push_back(k);
+      }
+    }
+    next_ = changes_.begin();
+  }
+
+  void append(std::string& text, std::size_t face) {
+    if (next_ == changes_.end() || next_->first != static_cast<int>(face)) return;
+    std::array<bool, 2> has_changed = {};
+    for (const std::size_t k : next_->second) {
+      std::set<std::size_t>& open = open_[groups_[k].is_object];
+      if (open.erase(k) == 0) open.insert(k);
+      has_changed[groups_[k].is_object] = true;
+    }
+    if (has_changed[1]) append_line(text, "o", open_[1]);
+    if (has_changed[0]) append_line(text, "g", open_[0]);
+    ++next_;
+  }
+
+ private:
+  void append_line(std::string& text, const char* keyword, const std::set<std::size_t>& open) const {
+    text += keyword;
+    for (const std::size_t k : open) text += ' ' + groups_[k].name;
+    text += '\n';
+  }
+
+  const std::vector<MeshGroup>& groups_;
+  std::map<int, std::vector<std::size_t>> changes_;  // by face: the groups that begin or end there
+  std::map<int, std::vector<std::size_t>>::const_iterator next_;
+  std::array<std::set<std::size_t>, 2> open_;  // by MeshGroup::is_object
+};
+
+/// Whether the reader returns the name.
+bool is_writable(const MeshGroup& group) {
+  std::vector<std::string_view> words;
+  append_words(group.name, words);
+  const bool is_same = !words.empty() && (group.is_object ? join(words) : words[0]) == group.name;
+  return is_same && group.name.find_first_of("#\n") == group.name.npos && !group.name.ends_with('\\');
+}
+
+void require_writable(const std::filesystem::path& file, const std::vector<MeshGroup>& groups) {
+  for (const MeshGroup& group : groups) {
+    if (!is_writable(group))
+      throw InputError(file.string() + " cannot be written: an OBJ file has no name " +
+                       in_quotes(group.name) + "; expected " + (group.is_object ? "words" : "one word") +
+                       " without # and \\");
   }
 }
 
@@ -280,25 +423,44 @@ MeshFromFile parse_obj(const std::string& text, const std::string& name) {
   return ObjParser(text, name).parse();
 }
 
-void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
-  write_file(file, obj_text(mesh, uv));
+void write_obj(const std::filesystem::path& file, const std::vector<Vec3>& positions,
+               const MeshFaces& faces) {
+  require_writable(file, faces.groups);
+  write_file(file, obj_text(positions, faces));
 }
 
-std::string obj_text(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
+std::string obj_text(const std::vector<Vec3>& positions, const MeshFaces& faces) {
   std::string text;
-  append_mesh(text, mesh, 0, uv);
+  append_positions(text, positions);
+  const std::vector<std::size_t> uv = append_uv(text, faces.uv);
+  GroupLines groups(faces.groups);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    groups.append(text, f);
+    text += 'f';
+    for (std::size_t c = faces.begin_of(f); c < faces.ends[f]; ++c) {
+      text += ' ' + std::to_string(faces.corners[c] + 1);
+      if (!uv.empty() && uv[c] > 0) text += '/' + std::to_string(uv[c]);
+    }
+    text += '\n';
+  }
   return text;
 }
 
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
+  write_obj(file, mesh.positions, make_faces(mesh.triangles, uv));
+}
+
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects) {
-  std::string text;
-  int first_vertex = 0;
+  std::vector<Vec3> positions;
+  MeshFaces faces;
   for (const auto& [name, mesh] : objects) {
-    text += "o " + name + '\n';
-    append_mesh(text, mesh, first_vertex);
-    first_vertex += mesh.num_vertices();
+    const int first_vertex = static_cast<int>(positions.size()), first_face = static_cast<int>(faces.size());
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const auto& [a, b, c] : mesh.triangles)
+      faces.add(std::array{first_vertex + a, first_vertex + b, first_vertex + c});
+    faces.groups.push_back({name, true, {{first_face, static_cast<int>(faces.size())}}});
   }
-  write_file(file, text);
+  write_obj(file, positions, faces);
 }
 
 }  // namespace weft::engine

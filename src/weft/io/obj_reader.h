@@ -11,7 +11,7 @@ namespace weft::engine {
 
 /// Reads the vertices and faces of an OBJ file. Quads and polygons, concave ones too, are triangulated.
 /// Vertices keep the file's order and are never split or merged, because texture coordinates are stored by
-/// corner. Normals, materials, texture maps, lines, points and unknown keywords are ignored.
+/// corner. Groups (`g`, several names on a line) and objects (`o`) are kept, those without faces left out. Normals, materials, texture maps, lines, points and unknown keywords are ignored.
 ///
 /// Throws InputError ("FILE:LINE: mistake, expected value") for
 /// - a file that cannot be read, or has no vertices or no faces,
@@ -23,17 +23,21 @@ MeshFromFile read_obj(const std::filesystem::path& file);
 MeshFromFile parse_obj(const std::string& text, const std::string& name);
 
 struct ObjObject {
-  std::string name;  // one word
+  std::string name;
   TriangleMesh mesh;
 };
 
-/// Writes vertices and triangles, with enough digits to read the same doubles back. `uv` as in MeshFromFile.
-/// Throws InputError if the file cannot be written.
-void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
-               const std::vector<CornerUv>& uv = {});
+/// Writes vertices and faces, with enough digits to read the same doubles back: polygons, texture coordinates
+/// (each once), groups and objects. Throws InputError if the file cannot be written, and for a group's name
+/// that is not one word, or that has # or ends in a backslash.
+void write_obj(const std::filesystem::path& file, const std::vector<Vec3>& positions, const MeshFaces& faces);
 
 /// What write_obj() writes.
-std::string obj_text(const TriangleMesh& mesh, const std::vector<CornerUv>& uv = {});
+std::string obj_text(const std::vector<Vec3>& positions, const MeshFaces& faces);
+
+/// The same of triangles. `uv` as in MeshFromFile.
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh,
+               const std::vector<CornerUv>& uv = {});
 
 /// The same for several meshes, each as a separate object.
 void write_obj(const std::filesystem::path& file, const std::vector<ObjObject>& objects);

@@ -112,7 +112,10 @@ class PlyParser {
     warn_of_rest();
     read_vertices();
     read_faces();
-    if (std::none_of(result_.uv.begin(), result_.uv.end(), has_any)) result_.uv.clear();
+    if (std::none_of(result_.uv.begin(), result_.uv.end(), has_any)) {
+      result_.uv.clear();
+      result_.faces.uv.clear();
+    }
     return std::move(result_);
   }
 
@@ -413,44 +416,59 @@ class PlyParser {
 
 // ---- Out ----
 
-/// Faces and texture coordinates are ranges of ranges: triangles and polygons.
-template <class Number, class Faces, class Uv>
-std::string make_bytes(const std::vector<Vec3>& positions, const Faces& faces, const Uv& uv) {
+/// Texture coordinates of the vertices (num_vertices), if each has the same at all corners; 0 where no face
+/// uses it. Empty if some vertex has several, or a corner has none.
+std::vector<Eigen::Vector2d> find_vertex_uv(std::size_t num_vertices, const MeshFaces& faces) {
+  std::vector<Eigen::Vector2d> result(num_vertices, Eigen::Vector2d::Zero());
+  std::vector<char> is_set(num_vertices, 0);
+  for (std::size_t c = 0; c < faces.uv.size(); ++c) {
+    const Eigen::Vector2d& uv = faces.uv[c];
+    Eigen::Vector2d& own = result[faces.corners[c]];
+    char& has_own = is_set[faces.corners[c]];
+    if (!uv.allFinite() || (has_own && bits_of(own) != bits_of(uv))) return {};
+    own = uv;
+    has_own = 1;
+  }
+  return result;
+}
+
+template <class Number>
+std::string make_bytes(const std::vector<Vec3>& positions, const MeshFaces& faces) {
   std::size_t num_corners = 0;  // of the largest face
-  for (const auto& face : faces) num_corners = std::max(num_corners, face.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) num_corners = std::max(num_corners, faces[f].size());
   const bool is_short = 2 * num_corners <= std::numeric_limits<std::uint8_t>::max();
   const std::string number = std::is_same_v<Number, float> ? "float" : "double";
   const std::string list = std::string("property list ") + (is_short ? "uchar" : "int");
+  std::vector<Eigen::Vector2d> vertex_uv;
+  if (!faces.uv.empty()) vertex_uv = find_vertex_uv(positions.size(), faces);
+  const bool has_face_uv = !faces.uv.empty() && vertex_uv.empty();
 
-  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                      std::to_string(positions.size()) + "\nproperty " + number + " x\nproperty " + number +
-                      " y\nproperty " + number + " z\nelement face " + std::to_string(faces.size()) + '\n' +
-                      list + " int vertex_indices\n" +
-                      (uv.empty() ? "" : list + ' ' + number + " texcoord\n") + "end_header\n";
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(positions.size()) + '\n';
+  for (const char* name : {"x", "y", "z", "s", "t"}) {
+    if (*name >= 'x' || !vertex_uv.empty()) bytes += "property " + number + ' ' + name + '\n';
+  }
+  bytes += "element face " + std::to_string(faces.size()) + '\n' + list + " int vertex_indices\n" +
+           (has_face_uv ? list + ' ' + number + " texcoord\n" : "") + "end_header\n";
   const auto append = [&](auto value) { append_bytes(value, std::endian::little, bytes); };
+  const auto append_numbers = [&](const auto& values) {
+    for (const double value : values) append(static_cast<Number>(value));
+  };
   const auto append_count = [&](std::size_t count) {
     is_short ? append(static_cast<std::uint8_t>(count)) : append(static_cast<std::int32_t>(count));
   };
-  for (const Vec3& position : positions) {
-    for (const double coordinate : position) append(static_cast<Number>(coordinate));
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    append_numbers(positions[v]);
+    if (!vertex_uv.empty()) append_numbers(vertex_uv[v]);
   }
   for (std::size_t f = 0; f < faces.size(); ++f) {
     append_count(faces[f].size());
     for (const std::int32_t v : faces[f]) append(v);
-    if (uv.empty()) continue;
-    append_count(2 * uv[f].size());
-    for (const Eigen::Vector2d& corner : uv[f]) {
-      for (const double coordinate : corner) append(static_cast<Number>(coordinate));
-    }
+    if (!has_face_uv) continue;
+    append_count(2 * faces[f].size());
+    for (const Eigen::Vector2d& corner : faces.uv_of(f)) append_numbers(corner);
   }
   return bytes;
-}
-
-template <class Faces, class Uv>
-void write(const std::filesystem::path& file, const std::vector<Vec3>& positions, const Faces& faces,
-           const Uv& uv, PlyNumbers numbers) {
-  write_file(file, numbers == PlyNumbers::floats ? make_bytes<float>(positions, faces, uv)
-                                                 : make_bytes<double>(positions, faces, uv));
 }
 
 }  // namespace
@@ -463,15 +481,10 @@ MeshFromFile parse_ply(std::string_view bytes, const std::string& name) {
   return PlyParser(bytes, name).parse();
 }
 
-void write_ply(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<CornerUv>& uv,
+void write_ply(const std::filesystem::path& file, const std::vector<Vec3>& positions, const MeshFaces& faces,
                PlyNumbers numbers) {
-  write(file, mesh.positions, mesh.triangles, uv, numbers);
-}
-
-void write_ply(const std::filesystem::path& file, const std::vector<Vec3>& positions,
-               std::span<const std::vector<int>> polygons, std::span<const std::vector<Eigen::Vector2d>> uv,
-               PlyNumbers numbers) {
-  write(file, positions, polygons, uv, numbers);
+  write_file(file, numbers == PlyNumbers::floats ? make_bytes<float>(positions, faces)
+                                                 : make_bytes<double>(positions, faces));
 }
 
 }  // namespace weft::engine

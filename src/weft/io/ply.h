@@ -2,7 +2,6 @@
 /// Reader and writer for PLY 1.0: text and binary files of either byte order.
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,15 +33,10 @@ MeshFromFile parse_ply(std::string_view bytes, const std::string& name);
 /// Type of the coordinates in a written file. `doubles` are read back as the same bits.
 enum class PlyNumbers { doubles, floats };
 
-/// Writes vertices and triangles as little-endian binary. `uv` as in MeshFromFile. Throws InputError if the
-/// file cannot be written.
-void write_ply(const std::filesystem::path& file, const TriangleMesh& mesh,
-               const std::vector<CornerUv>& uv = {}, PlyNumbers numbers = PlyNumbers::doubles);
-
-/// The same for polygons: vertex indices and texture coordinates of the corners of each; `uv` may be empty.
-void write_ply(const std::filesystem::path& file, const std::vector<Vec3>& positions,
-               std::span<const std::vector<int>> polygons,
-               std::span<const std::vector<Eigen::Vector2d>> uv = {},
+/// Writes vertices and polygons as little-endian binary. Where every vertex has one pair of texture
+/// coordinates, they are its properties s and t, else the faces' list texcoord. Groups are not written: PLY has
+/// none. Throws InputError if the file cannot be written.
+void write_ply(const std::filesystem::path& file, const std::vector<Vec3>& positions, const MeshFaces& faces,
                PlyNumbers numbers = PlyNumbers::doubles);
 
 }  // namespace weft::engine

@@ -50,6 +50,7 @@ class FacetMesh {
       result_.warnings.push_back(name + ": " + std::to_string(num_flat_) +
                                  " facets without area were dropped; the first is facet " +
                                  std::to_string(first_flat_));
+    result_.faces = make_faces(result_.mesh.triangles);
     return std::move(result_);
   }
 

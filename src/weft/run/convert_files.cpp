@@ -30,6 +30,15 @@ void check_size(const fs::path& in, const Eigen::AlignedBox3d& box, std::vector<
   notes.push_back(in.string() + text);
 }
 
+/// A sentence for groups, which only OBJ files have.
+void note_groups(const fs::path& in, const MeshFaces& faces, const fs::path& out,
+                 std::vector<std::string>& notes) {
+  if (faces.groups.empty() || has_ending(out, ".obj")) return;
+  notes.push_back(in.string() + " has " + std::to_string(faces.groups.size()) +
+                  (faces.groups.size() == 1 ? " group" : " groups") +
+                  ", which are lost: only .obj holds them");
+}
+
 void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
   MeshFromFile read = read_mesh(in);
   done.notes = read.warnings;
@@ -39,7 +48,8 @@ void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions&
     box.extend(p);
   }
   check_size(in, box, done.notes);
-  write_mesh(out, read.mesh, read.uv);
+  note_groups(in, read.faces, out, done.notes);
+  write_mesh(out, read.mesh.positions, read.faces);
   done.files.push_back(out);
 }
 
@@ -57,6 +67,7 @@ class Frames {
 
   int num_points() const { return cache_->num_points(); }
   int count() const { return count_; }
+  int number(int k) const { return first_ + k; }  // in the cache
 
   std::vector<float> at(int k, std::vector<std::string>& notes) {
     std::vector<float> frame = cache_->frame(first_ + k);
@@ -111,6 +122,38 @@ void convert_cache(const fs::path& in, const fs::path& out, const ConvertOptions
   done.files.push_back(out);
 }
 
+/// A sequence of meshes with the positions of a point cache.
+void convert_to_meshes(const fs::path& in, const fs::path& mesh, const fs::path& out,
+                       const ConvertOptions& options, Converted& done) {
+  const MeshFromFile read = read_mesh(mesh);
+  done.notes.insert(done.notes.end(), read.warnings.begin(), read.warnings.end());
+  Frames frames(in, options);
+  if (frames.num_points() != read.mesh.num_vertices())
+    throw InputError(in.string() + " has " + std::to_string(frames.num_points()) + " points, but " +
+                     mesh.string() + " has " + std::to_string(read.mesh.num_vertices()) +
+                     " vertices; expected the mesh of its points");
+  note_groups(mesh, read.faces, out, done.notes);
+  for (int k = 0; k < frames.count(); ++k) {
+    const std::vector<float> frame = frames.at(k, done.notes);
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < frame.size(); i += 3)
+      positions.emplace_back(frame[i], frame[i + 1], frame[i + 2]);
+    fs::path file = out;
+    file.replace_filename(out.stem().string() + frame_ending(frames.number(k)) + out.extension().string());
+    write_mesh(file, positions, read.faces);
+    done.files.push_back(file);
+  }
+}
+
+void convert_sequence(const fs::path& in, const fs::path& out, const ConvertOptions& options,
+                      Converted& done) {
+  if (options.mesh.empty())
+    throw InputError(out.string() + ": a point cache has no faces; --mesh names the mesh of its points");
+  convert_to_meshes(in, options.mesh, out, options, done);
+}
+
+bool is_mesh(const fs::path& file) { return has_ending(file, ".obj") || has_ending(file, ".ply"); }
+
 void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
   const PastRun run = read_past_run(in);
   FileNames names;
@@ -119,7 +162,11 @@ void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& 
     fs::path own = out;
     if (run.cloths.size() > 1)
       own.replace_filename(out.stem().string() + '_' + names.add(cloth.name) + out.extension().string());
-    convert_cache(cloth.cache, own, options, run.fps, done);
+    if (is_mesh(out) && cloth.mesh.empty())
+      throw InputError(in.string() +
+                       " has no meshes of its point caches: it is of an earlier version of Weft");
+    is_mesh(out) ? convert_to_meshes(cloth.cache, cloth.mesh, own, options, done)
+                 : convert_cache(cloth.cache, own, options, run.fps, done);
   }
 }
 
@@ -127,11 +174,15 @@ void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& 
 
 Converted convert_files(const fs::path& in, const fs::path& out, const ConvertOptions& options) {
   Converted done;
+  const bool is_cache = has_ending(in, ".pc2") || has_ending(in, ".mdd");
+  if (!options.mesh.empty() && !(is_cache && is_mesh(out)))
+    throw InputError(options.mesh.string() +
+                     ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
   if (!out.parent_path().empty()) make_folder(out.parent_path());
   if (fs::is_directory(in))
     convert_run(in, out, options, done);
-  else if (has_ending(in, ".pc2") || has_ending(in, ".mdd"))
-    convert_cache(in, out, options, {}, done);
+  else if (is_cache)
+    is_mesh(out) ? convert_sequence(in, out, options, done) : convert_cache(in, out, options, {}, done);
   else
     convert_mesh(in, out, options, done);
   return done;

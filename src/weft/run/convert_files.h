@@ -14,6 +14,7 @@ struct ConvertOptions {
   double scale = 1;                // length of the input's unit, > 0 [m]
   int first_frame = 0;             // of a point cache, >= 0
   std::optional<int> last_frame = {};
+  std::filesystem::path mesh = {};  // of a point cache's points, to write meshes: OBJ, PLY or STL
 };
 
 struct Converted {
@@ -23,8 +24,9 @@ struct Converted {
 
 /// `in` is a mesh (OBJ, PLY, STL), a point cache (PC2, MDD), or the folder of a run; `out` a file of the same
 /// kind (OBJ, PLY; PC2, MDD), by its ending. Of a run with several cloths each has its own file: `walk.mdd`
-/// becomes `walk_skirt.mdd`. Frames are read and written one by one. Throws InputError for files that cannot be
-/// read, written or converted; an earlier `out` then stays as it was.
+/// becomes `walk_skirt.mdd`. Point caches also become a sequence of meshes, `walk_0000.obj` being frame 0. A
+/// run has their mesh, another cache needs `mesh`. Frames are read and written one by one. Throws InputError
+/// for files that cannot be read, written or converted; an earlier file of that name then stays as it was.
 Converted convert_files(const std::filesystem::path& in, const std::filesystem::path& out,
                         const ConvertOptions& options);
 

@@ -1,12 +1,12 @@
 #include "weft/run/file_sinks.h"
 
-#include <cstdio>
-
 #include "weft/core/file_name.h"
+#include "weft/face/convert.h"
 #include "weft/io/glb_writer.h"
 #include "weft/io/obj_reader.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
+#include "weft/scene/cloth_faces.h"
 
 namespace weft::engine {
 namespace {
@@ -21,11 +21,18 @@ std::vector<std::string> file_names(const World& world) {
 
 constexpr std::size_t kMostFrames = 1000;  // of a .glb without a warning
 
-/// The vertices of the cloth's mesh as it was given: (num_vertices) x, y, z [m].
-std::vector<float> vertex_positions(const weft::World& world, int cloth) {
+/// The vertices of cloth `c`'s mesh as it was given (num_vertices) [m].
+std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
+  const weft::World& world = run.public_world();
+  return to_engine(world.vertex_positions(world.cloth(static_cast<int>(c))));
+}
+
+/// x, y, z of each point.
+std::vector<float> to_floats(const std::vector<Vec3>& points) {
   std::vector<float> numbers;
-  for (const weft::Vec3& p : world.vertex_positions(world.cloth(cloth))) {
-    for (const double x : {p.x, p.y, p.z}) numbers.push_back(static_cast<float>(x));
+  numbers.reserve(3 * points.size());
+  for (const Vec3& p : points) {
+    for (const double x : p) numbers.push_back(static_cast<float>(x));
   }
   return numbers;
 }
@@ -76,64 +83,86 @@ void GlbSink::finish(const SceneRun&, RunReport&) {
 
 void Pc2Sink::begin(SceneRun& run, RunReport& report) {
   open(run, 0);
+  for (std::size_t c = 0; c < meshes_.size(); ++c) {
+    meshes_[c]->out() << obj_text(vertices_of(run, c), read_faces(run.scene().cloths[c]));
+    meshes_[c]->finish();
+  }
   add_frame(run, report);
 }
 
 void Pc2Sink::resume(SceneRun& run, RunReport&, Reader&) {
   for (const std::string& name : file_names(run.world())) {
-    const std::string file = name + ".pc2";  // in its results, if the run has already ended once
-    if (!std::filesystem::exists(part_ / file)) std::filesystem::copy_file(folder_ / file, part_ / file);
+    for (const std::string& file : {name + kCacheEnding, name + kMeshEnding}) {
+      // In its results, if the run has already ended once.
+      if (!std::filesystem::exists(part_ / file)) std::filesystem::copy_file(folder_ / file, part_ / file);
+    }
   }
   open(run, run.frame() + 1);
 }
 
+/// `num_frames` are there: 0 in a new run.
 void Pc2Sink::open(const SceneRun& run, int num_frames) {
-  names_ = file_names(run.world());
-  for (std::string& name : names_) {
-    name += ".pc2";
-    require_writable(folder_ / name);
-    const ClothId cloth = run.public_world().cloth(static_cast<int>(files_.size()));
+  for (const std::string& name : file_names(run.world())) {
+    const Names& own = names_.emplace_back(Names{name + kCacheEnding, name + kMeshEnding});
+    for (const std::string& file : {own.cache, own.mesh}) require_writable(folder_ / file);
+    const ClothId cloth = run.public_world().cloth(static_cast<int>(caches_.size()));
     const std::size_t num_points = run.public_world().notes(cloth).particle_of_vertex.size();
-    files_.push_back(
-        std::make_unique<File>(folder_ / name, part_ / name, static_cast<int>(num_points), num_frames));
+    caches_.push_back(std::make_unique<Cache>(folder_ / own.cache, part_ / own.cache,
+                                              static_cast<int>(num_points), num_frames));
+    const std::uintmax_t kept = num_frames > 0 ? std::filesystem::file_size(part_ / own.mesh) : 0;
+    meshes_.push_back(std::make_unique<StagedFile>(folder_ / own.mesh, part_ / own.mesh, kept));
   }
 }
 
 void Pc2Sink::add_frame(const SceneRun& run, RunReport&) {
-  for (std::size_t c = 0; c < files_.size(); ++c)
-    files_[c]->writer.add_frame(vertex_positions(run.public_world(), static_cast<int>(c)));
+  for (std::size_t c = 0; c < caches_.size(); ++c)
+    caches_[c]->writer.add_frame(to_floats(vertices_of(run, c)));
 }
 
 void Pc2Sink::sync() {
-  for (const auto& file : files_) file->staged.sync();
+  for (const auto& cache : caches_) cache->staged.sync();
 }
 
 void Pc2Sink::finish(const SceneRun&, RunReport&) {
-  for (const auto& file : files_) file->writer.finish();
+  for (const auto& cache : caches_) cache->writer.finish();
 }
 
 void Pc2Sink::replace() {
-  for (const auto& file : files_) file->staged.replace();
+  for (const auto& cache : caches_) cache->staged.replace();
+  for (const auto& mesh : meshes_) mesh->replace();
 }
 
 void ObjSink::begin(SceneRun& run, RunReport&) {
-  names_ = file_names(run.world());
+  open(run);
   write(run);
 }
 
-void ObjSink::resume(SceneRun& run, RunReport&, Reader&) { names_ = file_names(run.world()); }
+void ObjSink::resume(SceneRun& run, RunReport&, Reader&) { open(run); }
+
+void ObjSink::open(const SceneRun& run) {
+  names_ = file_names(run.world());
+  for (const ClothSceneDesc& cloth : run.scene().cloths) faces_.push_back(read_faces(cloth));
+}
 
 void ObjSink::add_frame(const SceneRun& run, RunReport&) { write(run); }
 
-void ObjSink::write(const SceneRun& run) const {
-  const World& world = run.world();
-  for (int c = 0; c < world.num_cloths(); ++c) {
-    const TriangleMesh mesh{.positions = positions_of(world.state(world.cloth(c))),
-                            .triangles = world.model(world.cloth(c)).topology->mesh.triangles};
-    char number[24];
-    std::snprintf(number, sizeof number, "_%04d.obj", run.frame());
-    write_obj(folder_ / (names_[c] + number), mesh);
+void ObjSink::write(const SceneRun& run) {
+  for (std::size_t c = 0; c < names_.size(); ++c) {
+    const std::filesystem::path file = folder_ / (names_[c] + frame_ending(run.frame()) + ".obj");
+    StagedFile staged(file, file);  // in place: the frames after the last sync() do not count
+    staged.out() << obj_text(vertices_of(run, c), faces_[c]);
+    staged.flush();
+    not_synced_.push_back(file);
   }
 }
+
+void ObjSink::sync() {
+  if (not_synced_.empty()) return;
+  for (const std::filesystem::path& file : not_synced_) sync_file(file);
+  sync_folder(folder_);
+  not_synced_.clear();
+}
+
+void ObjSink::finish(const SceneRun&, RunReport&) { sync(); }
 
 }  // namespace weft::engine

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "weft/core/staged_file.h"
+#include "weft/io/mesh_from_file.h"
 #include "weft/io/pc2.h"
 #include "weft/run/frame_log.h"
 #include "weft/run/frame_sink.h"
@@ -41,9 +42,13 @@ class GlbSink : public FrameSink {
   std::optional<StagedFile> glb_;
 };
 
-/// Writes a PC2 point cache per cloth: `FOLDER/sheet.pc2` of cloth "sheet". Frame 0 is the start. Points are the
+inline constexpr const char* kCacheEnding = ".pc2";
+inline constexpr const char* kMeshEnding = ".mesh.obj";
+
+/// Writes for each cloth a PC2 point cache and the mesh of its points: `FOLDER/sheet.pc2` and
+/// `FOLDER/sheet.mesh.obj` of cloth "sheet". Frame 0 is the start, and the mesh is at the start. Points are the
 /// vertices of the cloth's mesh as it was given, in their order (World::vertex_positions), in world
-/// coordinates [m].
+/// coordinates [m]; the mesh has the polygons, texture coordinates and groups of its file.
 class Pc2Sink : public FrameSink {
  public:
   /// The files are in `part` during the run; replace() moves them into `folder`. Both must exist.
@@ -59,11 +64,16 @@ class Pc2Sink : public FrameSink {
   /// StagedFile::replace() of every file, after finish().
   void replace();
 
-  const std::vector<std::string>& names() const { return names_; }
+  /// Of the files of a cloth.
+  struct Names {
+    std::string cache, mesh;
+  };
+  const std::vector<Names>& names() const { return names_; }  // (cloths)
 
  private:
-  struct File {
-    File(const std::filesystem::path& path, const std::filesystem::path& part, int num_points, int num_frames)
+  struct Cache {
+    Cache(const std::filesystem::path& path, const std::filesystem::path& part, int num_points,
+          int num_frames)
         : staged(path, part, num_frames > 0 ? Pc2Writer::size_of(num_points, num_frames) : 0),
           writer(staged, num_points, num_frames) {}
     StagedFile staged;
@@ -73,12 +83,14 @@ class Pc2Sink : public FrameSink {
   void open(const SceneRun& run, int num_frames);
 
   std::filesystem::path folder_, part_;
-  std::vector<std::string> names_;            // (cloths) of files
-  std::vector<std::unique_ptr<File>> files_;  // (cloths)
+  std::vector<Names> names_;
+  std::vector<std::unique_ptr<Cache>> caches_;       // (cloths)
+  std::vector<std::unique_ptr<StagedFile>> meshes_;  // (cloths)
 };
 
 /// Writes a sequence of OBJ files, one per cloth and frame: `FOLDER/sheet_0000.obj` is the start of cloth
-/// "sheet". Vertices are the cloth's particles, in their order.
+/// "sheet". Each has the vertices of the cloth's mesh as it was given, in their order, with the polygons, texture
+/// coordinates and groups of its file; a grid has its cells. A file is on the disk after sync() or finish().
 class ObjSink : public FrameSink {
  public:
   /// The folder must exist.
@@ -86,13 +98,18 @@ class ObjSink : public FrameSink {
 
   void begin(SceneRun& run, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
+  void finish(const SceneRun& run, RunReport& report) override;
+  void sync() override;
   void resume(SceneRun& run, RunReport& report, Reader& saved) override;
 
  private:
-  void write(const SceneRun& run) const;
+  void open(const SceneRun& run);
+  void write(const SceneRun& run);
 
   std::filesystem::path folder_;
-  std::vector<std::string> names_;  // (cloths) of files
+  std::vector<std::string> names_;                 // (cloths) of files
+  std::vector<MeshFaces> faces_;                   // (cloths)
+  std::vector<std::filesystem::path> not_synced_;  // written since sync()
 };
 
 }  // namespace weft::engine

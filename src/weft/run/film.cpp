@@ -55,8 +55,7 @@ AnimatedBody show(const Collider& collider) {
 
 /// A deforming collider's vertices at a time, around its pivot and before its motion.
 std::vector<float> positions(const MeshShape& shape, double time) {
-  MeshShape now = shape;
-  now.blend = shape.sequence->at(time);
+  const MeshShape now = shape.at(time);
   std::vector<float> values;
   for (int v = 0; v < shape.mesh->num_vertices(); ++v) {
     for (const double c : Vec3(now.vertex(v) - shape.translation)) values.push_back(static_cast<float>(c));
@@ -103,8 +102,8 @@ AnimationFrame capture_frame(const World& world) {
   for (int c = 0; c < world.num_cloths(); ++c) frame.cloths.push_back(positions(world.state(world.cloth(c))));
   for (const Collider& collider : world.colliders()) {
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
-    frame.body_vertices.push_back(mesh && mesh->sequence ? positions(*mesh, world.time())
-                                                         : std::vector<float>());
+    frame.body_vertices.push_back(mesh && mesh->source ? positions(*mesh, world.time())
+                                                       : std::vector<float>());
     const Pose pose = collider.motion.at(world.time());
     frame.poses.push_back({pivot(collider.shape) + pose.translation, Eigen::Quaterniond(pose.rotation)});
   }

@@ -6,6 +6,7 @@
 #include "weft/core/file_name.h"
 #include "weft/error.h"
 #include "weft/io/pc2.h"
+#include "weft/run/file_sinks.h"
 #include "weft/run/run_folder.h"
 
 namespace weft::engine {
@@ -23,34 +24,34 @@ PastRun read_results(const fs::path& folder) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
   };
+  const auto file = [&](const Json& object, const char* key) {
+    const fs::path name = fs::path(text(object, key)).filename();
+    return name.empty() ? name : folder / name;
+  };
   if (!json.is_object() || !json.contains("cloths") || !json["cloths"].is_array() || json["cloths"].empty())
     fail();
-  PastRun run{.folder = folder, .scene = text(json, "scene"), .cloths = {}, .animation = {}, .frames = {}};
+  PastRun run{.folder = folder, .cloths = {}, .animation = {}, .frames = {}};
   if (!json.contains("fps") || !json["fps"].is_number() || !(json["fps"].get<double>() > 0)) fail();
   run.fps = json["fps"].get<double>();
   for (const Json& cloth : json["cloths"]) {
     if (!cloth.is_object() || text(cloth, "name").empty()) fail();
-    const fs::path cache = fs::path(text(cloth, "positions")).filename();
-    run.cloths.push_back({text(cloth, "name"), cache.empty() ? cache : folder / cache});
+    run.cloths.push_back({text(cloth, "name"), file(cloth, "positions"), file(cloth, "mesh")});
   }
-  const fs::path animation = fs::path(text(json, "animation")).filename();
-  if (!animation.empty()) run.animation = folder / animation;
+  run.animation = file(json, "animation");
   return run;
 }
 
 PastRun read_results_so_far(const fs::path& folder) {
   const UnfinishedRun unfinished = read_unfinished_run(folder);
-  PastRun run{.folder = folder,
-              .scene = unfinished.scene.name,
-              .fps = unfinished.scene.fps,
-              .cloths = {},
-              .animation = {},
-              .frames = {}};
+  PastRun run{.folder = folder, .fps = unfinished.scene.fps, .cloths = {}, .animation = {}, .frames = {}};
   if (unfinished.options.glb) run.frames = folder / kUnfinishedName / kFramesName;
   FileNames names;
   for (const ClothSceneDesc& cloth : unfinished.scene.cloths) {
-    const std::string file = names.add(cloth.name) + ".pc2";
-    run.cloths.push_back({cloth.name, unfinished.options.pc2 ? folder / kUnfinishedName / file : fs::path()});
+    const std::string name = names.add(cloth.name);
+    PastCloth& past = run.cloths.emplace_back(PastCloth{cloth.name, {}, {}});
+    if (!unfinished.options.pc2) continue;
+    past.cache = folder / kUnfinishedName / (name + kCacheEnding);
+    past.mesh = folder / kUnfinishedName / (name + kMeshEnding);
   }
   return run;
 }

@@ -13,11 +13,11 @@ namespace weft::engine {
 struct PastCloth {
   std::string name;
   std::filesystem::path cache;  // its point cache; empty: none
+  std::filesystem::path mesh;   // of the cache's points; empty: none
 };
 
 struct PastRun {
   std::filesystem::path folder;
-  std::string scene;                // its name
   double fps = 60;                  // frames per second, > 0
   std::vector<PastCloth> cloths;    // at least one
   std::filesystem::path animation;  // empty: none

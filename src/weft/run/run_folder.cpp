@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
+#include <utility>
 
 #include "weft/core/folder_lock.h"
 #include "weft/core/make_folder.h"
@@ -35,16 +36,19 @@ std::optional<int> obj_frame(const fs::path& file) {
   return std::stoi(match[1]);
 }
 
-/// Point caches of an earlier run: the names in its run.json that are files of this folder.
-std::vector<std::string> find_caches(const fs::path& folder) {
+/// Files of the cloths of an earlier run: the names in its run.json that are files of this folder.
+std::vector<std::string> find_cloth_files(const fs::path& folder) {
   std::vector<std::string> names;
   std::ifstream in(folder / kRunName);
   const Json run = Json::parse(in, nullptr, false);
   if (!run.is_object() || !run.contains("cloths")) return names;
   for (const Json& cloth : run["cloths"]) {
-    if (!cloth.is_object() || !cloth.contains("positions") || !cloth["positions"].is_string()) continue;
-    const fs::path name = cloth["positions"].get<std::string>();
-    if (name == name.filename() && name.extension() == ".pc2") names.push_back(name.string());
+    if (!cloth.is_object()) continue;
+    for (const auto& [key, ending] : {std::pair("positions", ".pc2"), std::pair("mesh", ".mesh.obj")}) {
+      if (!cloth.contains(key) || !cloth[key].is_string()) continue;
+      const fs::path name = cloth[key].get<std::string>();
+      if (name == name.filename() && name.string().ends_with(ending)) names.push_back(name.string());
+    }
   }
   return names;
 }
@@ -208,7 +212,7 @@ class RunFiles : public FrameSink {
     run_file.finish();
     std::error_code ignored;
     glb_ ? glb_->replace() : void(fs::remove(folder_ / kAnimationName, ignored));
-    replace_caches();
+    replace_cloth_files();
     if (obj_) replace_obj_frames();
     report_file.replace();
     run_file.replace();
@@ -217,7 +221,7 @@ class RunFiles : public FrameSink {
   std::vector<fs::path> files() const {
     std::vector<fs::path> files;
     if (glb_) files.push_back(folder_ / kAnimationName);
-    for (const std::string& name : cache_names()) files.push_back(folder_ / name);
+    for (const std::string& name : cloth_files()) files.push_back(folder_ / name);
     if (obj_) files.push_back(folder_ / "obj");
     files.insert(files.end(), {folder_ / kReportName, folder_ / kRunName});
     return files;
@@ -229,7 +233,8 @@ class RunFiles : public FrameSink {
     for (int c = 0; c < world.num_cloths(); ++c) {
       const ClothId cloth = world.cloth(c);
       cloths_.push_back({{"name", world.name(cloth)},
-                         {"positions", pc2_ ? Json(pc2_->names()[c]) : Json(nullptr)},
+                         {"positions", pc2_ ? Json(pc2_->names()[c].cache) : Json(nullptr)},
+                         {"mesh", pc2_ ? Json(pc2_->names()[c].mesh) : Json(nullptr)},
                          {"vertices", world.notes(cloth).particle_of_vertex.size()},
                          {"particles", world.num_particles(cloth)}});
     }
@@ -257,10 +262,15 @@ class RunFiles : public FrameSink {
             {"report", kReportName}};
   }
 
-  std::vector<std::string> cache_names() const { return pc2_ ? pc2_->names() : std::vector<std::string>(); }
+  std::vector<std::string> cloth_files() const {
+    std::vector<std::string> names;
+    if (!pc2_) return names;
+    for (const auto& [cache, mesh] : pc2_->names()) names.insert(names.end(), {cache, mesh});
+    return names;
+  }
 
-  void replace_caches() {
-    const std::vector<std::string> old = find_caches(folder_), now = cache_names();
+  void replace_cloth_files() {
+    const std::vector<std::string> old = find_cloth_files(folder_), now = cloth_files();
     if (pc2_) pc2_->replace();
     std::error_code ignored;
     for (const std::string& name : old) {

@@ -1,8 +1,9 @@
 #pragma once
 /// The folder of a run's results:
 ///
-///     run.json        list of the others: scene, frames, cloths with their point caches
+///     run.json        list of the others: scene, frames, cloths with their files
 ///     CLOTH.pc2       positions of a cloth's vertices at every frame         io/pc2.h
+///     CLOTH.mesh.obj  the mesh of these vertices, as its file has it         io/obj_reader.h
 ///     animation.glb   cloths and colliders                                   io/glb_writer.h
 ///     obj/            an OBJ file per cloth and frame
 ///     report.json     the report                                             report.h

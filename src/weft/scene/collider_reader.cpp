@@ -2,6 +2,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "weft/io/mesh_files.h"
 #include "weft/scene/scene_sections.h"
 
 namespace weft::engine {
@@ -13,8 +14,8 @@ constexpr double kUnit = 1e-15;  // deviation of |n|² from 1 at which the direc
 
 /// Keys of a mesh on any other shape: refused with the reason, not as unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
-  for (const std::string_view key :
-       {"file", "frames", "frame_rate", "rest", "up", "scale", "position", "rotation"}) {
+  for (const std::string_view key : {"file", "node", "clip", "start_time", "frames", "frame_rate", "rest",
+                                     "up", "scale", "position", "rotation"}) {
     const bool is_own = has_rotation && key == "rotation";
     if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
   }
@@ -80,6 +81,23 @@ void read_frames(TomlTable& collider, const std::filesystem::path& folder, Place
   mesh.source.file = mesh.frames[0];
 }
 
+void read_gltf_keys(TomlTable& collider, PlacedMesh& mesh) {
+  if (is_gltf(mesh.source.file)) {
+    constexpr const char* kWhy = "a glTF file moves by its clip";
+    collider.read("node", mesh.node);
+    collider.read("clip", mesh.clip);
+    double start = 0;
+    const TomlValue time = collider.get("start_time", make_note(any_number("s")));
+    if (time && time.read(start, any_number("s"))) mesh.start_time = start;
+    collider.refuse("rest", kWhy);
+    collider.refuse("frames", kWhy);
+    collider.refuse("up", "a glTF file has its y axis up");
+  } else {
+    for (const std::string_view key : {"node", "clip", "start_time"})
+      collider.refuse(key, "only a glTF file (.glb, .gltf) has it");
+  }
+}
+
 PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   PlacedMesh mesh;
   collider.require(
@@ -91,6 +109,7 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   } else {
     collider.refuse("frame_rate", "only a mesh with \"frames\" has it");
   }
+  read_gltf_keys(collider, mesh);
   mesh.rest = read_file_name(collider, "rest", folder);
   mesh.source.weld = true;
   mesh.source.weld_distance = 0;

@@ -42,7 +42,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.velocity", "", "Velocity of all particles at the start."},
     {"cloth.color", "", "Linear red, green and blue of the cloth in pictures and files."},
     {"cloth.pins", "",
-     "Particles that are held still, as in [\"corner:0,0\", \"index:12\"]; only grids have corners."},
+     "Particles that are held still, as in [\"corner:0,0\", \"index:12\", \"group:waist\"]. Only grids have "
+     "corners, only meshes groups."},
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
     {"cloth.grid", "grid", "A rectangle of square or rectangular cells, horizontal before its rotation."},
@@ -135,12 +136,25 @@ constexpr ParameterText kTexts[] = {
      "Coulomb coefficient of a cloth of springs on cloth. Higher: layers stick sooner."},
 
     {"cloth.pin.select", "",
-     "The particles: a corner or index as in `pins`, or a table with indices, a box or a sphere."},
+     "The particles: a corner, index or group as in `pins`, or a table with indices, a group, a box or a "
+     "sphere."},
     {"cloth.pin.motion", "",
      "Key frames of the pinned particles: displacement from the start, linear between keys."},
     {"cloth.pin.pivot", "", "Centre of the rotation of the pins' motion, in the world."},
+    {"cloth.pin.group", "", "Short for `select = { group = … }`."},
+    {"cloth.pin.follow", "",
+     "Name of a collider that the particles follow, as if glued to its surface where they are at the start. "
+     "A "
+     "waistband stays on a walking body."},
+    {"cloth.pin.stiffness", "",
+     "Stiffness of a spring per particle that holds it. Not given: held exactly. Higher: it follows more "
+     "closely."},
+    {"cloth.pin.damping", "",
+     "Damping coefficient of that spring, on the particle's own velocity. Higher: it lags more."},
     {"cloth.pin.select.index", "",
      "Indices of particles: on a grid j (cells_x + 1) + i, on a mesh the file's vertices from 0."},
+    {"cloth.pin.select.group", "",
+     "Name of a group (`g`) or an object (`o`) of the mesh's OBJ file: all vertices of its faces."},
     {"cloth.pin.select.box", "", "All particles in a box of the world at the start."},
     {"cloth.pin.select.sphere", "", "All particles in a sphere of the world at the start."},
     {"cloth.pin.select.box.min", "", "Corner of the box with the smallest coordinates."},
@@ -176,13 +190,20 @@ constexpr ParameterText kTexts[] = {
     {"collider.half_size", "box", "Half of the edge lengths, along the box's own axes."},
     {"collider.rotation", "box", "Rotation of the box at the start: angles about fixed x, then y, then z."},
     {"collider.file", "mesh",
-     "OBJ, PLY or STL file of a rigid body, closed and facing outwards. Coincident vertices are merged."},
+     "OBJ, PLY or STL file of a rigid body, closed and facing outwards, or a glTF file (.glb, .gltf), whose "
+     "animation moves it. Coincident vertices are merged."},
+    {"collider.node", "mesh",
+     "Node of a glTF file: its meshes and those below it are the body. Not given: all of the scene."},
+    {"collider.clip", "mesh", "Animation of a glTF file that moves the body. Not given: the first one."},
+    {"collider.start_time", "mesh",
+     "Time of the clip at time 0 of the scene. Not given: its first key. Before and after its keys the body "
+     "stands still."},
     {"collider.up", "mesh", "Axis of the file of the body that points upwards."},
     {"collider.scale", "mesh", "Length of the unit of the body's file. Larger: a larger body."},
     {"collider.frame_rate", "mesh", "Frames per second of a deforming body. Higher: it moves faster."},
     {"collider.frames", "mesh",
-     "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have the same "
-     "triangles."},
+     "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have "
+     "the same triangles."},
     {"collider.rest", "mesh",
      "OBJ, PLY or STL file of the pose from which the body moves to its first one during `settle`."},
     {"collider.position", "mesh", "Displacement of the body at the start, after its rotation."},

@@ -51,6 +51,9 @@ mesh = 0
 spring_structural = 1
 [[cloth.pin]]
 select = { sphere = {} }
+[[collider]]
+shape = "mesh"
+file = "body.glb"
 )"};
 
 class Collector {

@@ -9,12 +9,13 @@ namespace {
 /// Valid selections for pins; a shape that could not be read allows all.
 struct Pinnable {
   bool has_corners = true;
+  bool is_grid = false;  // certainly
   IntegerRule index = {.least = 0};
 
   explicit Pinnable(const std::variant<Grid, MeshSource>* shape) {
     if (!shape) return;
     const Grid* grid = std::get_if<Grid>(shape);
-    has_corners = grid != nullptr;
+    has_corners = is_grid = grid != nullptr;
     if (grid) index.most = grid->num_particles() - 1;
   }
 };
@@ -51,12 +52,31 @@ std::string describe_index(const IntegerRule& rule) {
 std::optional<ParticleSelection> read_corner(const TomlValue& value, std::string_view text,
                                              const Pinnable& pinnable) {
   if (!pinnable.has_corners) {
-    value.mistake("a mesh has no corners; pin an index, a box or a sphere");
+    value.mistake("a mesh has no corners; pin an index, a group, a box or a sphere");
     return {};
   }
   const std::optional<ParticleSelection> selection = parse_corner(text);
   if (!selection) value.expected("\"corner:0,0\", \"corner:1,0\", \"corner:0,1\" or \"corner:1,1\"");
   return selection;
+}
+
+std::optional<ParticleSelection> read_group(const TomlValue& value, std::string_view name,
+                                            const Pinnable& pinnable) {
+  if (pinnable.is_grid) {
+    value.mistake("a grid has no groups; pin a corner, an index, a box or a sphere");
+    return {};
+  }
+  if (name.empty()) {
+    value.expected("the name of a group of the mesh's file");
+    return {};
+  }
+  return GroupName{std::string(name)};
+}
+
+std::optional<ParticleSelection> read_group(const TomlValue& value, const Pinnable& pinnable) {
+  std::string name;
+  if (!value.read(name)) return {};
+  return read_group(value, name, pinnable);
 }
 
 std::optional<ParticleSelection> read_name(const TomlValue& value, const Pinnable& pinnable) {
@@ -68,8 +88,10 @@ std::optional<ParticleSelection> read_name(const TomlValue& value, const Pinnabl
   } else if (text.starts_with("index:")) {
     selection = parse_index(text.substr(6), pinnable.index);
     if (!selection) value.expected(describe_index(pinnable.index));
+  } else if (text.starts_with("group:")) {
+    selection = read_group(value, std::string_view(text).substr(6), pinnable);
   } else {
-    value.expected("\"corner:0,0\" or \"index:12\"");
+    value.expected("\"corner:0,0\", \"index:12\" or \"group:waist\"");
   }
   return selection;
 }
@@ -102,10 +124,12 @@ std::optional<ParticleSelection> read_indices(const TomlValue& value, const Pinn
 }
 
 std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pinnable) {
-  table.require({"index", "box", "sphere"}, "one of them");
-  const TomlValue index = table.get("index", make_note(IntegerRule{.least = 0}, 0)), box = table.get("box"),
+  table.require({"index", "group", "box", "sphere"}, "one of them");
+  const TomlValue index = table.get("index", make_note(IntegerRule{.least = 0}, 0)),
+                  group = table.get("group", {.kind = ParameterKind::text}), box = table.get("box"),
                   sphere = table.get("sphere");
   if (index) return read_indices(index, pinnable);
+  if (group) return read_group(group, pinnable);
   if (box) return read_box(table.table("box"));
   if (sphere) return read_ball(table.table("sphere"));
   return {};
@@ -113,7 +137,8 @@ std::optional<ParticleSelection> read_region(TomlTable table, const Pinnable& pi
 
 std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pinnable) {
   constexpr std::string_view kForms =
-      "\"corner:0,0\", \"index:12\", { index = [1, 2] }, { box = … } or { sphere = … }";
+      "\"corner:0,0\", \"index:12\", \"group:waist\", { index = [1, 2] }, { group = \"waist\" }, "
+      "{ box = … } or { sphere = … }";
   pin.require({"select"}, kForms);
   const TomlValue select = pin.get("select", {.kind = ParameterKind::table});
   if (!select) return {};
@@ -123,26 +148,49 @@ std::optional<ParticleSelection> read_select(TomlTable& pin, const Pinnable& pin
   return {};
 }
 
+/// The key "select", or its short form "group".
+std::optional<ParticleSelection> read_pin_select(TomlTable& pin, const Pinnable& pinnable) {
+  const TomlValue group = pin.get("group", {.kind = ParameterKind::text});
+  if (!group) return read_select(pin, pinnable);
+  pin.refuse("select", "has the same meaning as group; expected one of the two");
+  return read_group(group, pinnable);
+}
+
+PinDesc read_pin(TomlTable table, const Pinnable& pinnable) {
+  PinDesc pin;
+  if (const auto selection = read_pin_select(table, pinnable)) pin.select = *selection;
+  pin.motion = read_motion(table);
+  table.read("pivot", pin.pivot, any_number("m"));
+  table.read("follow", pin.follow);
+  double stiffness = 0;
+  const TomlValue spring = table.get("stiffness", make_note(not_negative("N/m")));
+  if (spring && spring.read(stiffness, not_negative("N/m"))) pin.stiffness = stiffness;
+  table.read("damping", pin.damping, not_negative("N·s/m"));
+  if (table.has("damping") && !spring) table.get("damping").mistake("requires stiffness");
+  if (pin.motion.empty()) return pin;
+  if (spring) spring.mistake("a pin with a motion is held exactly");
+  if (!pin.follow.empty())
+    table.get("follow").mistake("a pin that follows a collider has no motion of its own");
+  return pin;
+}
+
 }  // namespace
 
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<PinDesc> pins;
   if (const TomlValue names = cloth.get("pins", {.kind = ParameterKind::texts})) {
-    constexpr std::string_view kForm = "an array of strings, as in [\"corner:0,0\", \"index:12\"]";
+    constexpr std::string_view kForm =
+        "an array of strings or tables, as in [\"corner:0,0\", { group = \"waist\", follow = \"body\" }]";
     for (const TomlValue& name : names.elements(kForm)) {
-      const auto selection = read_name(name, pinnable);
-      if (selection) pins.push_back({.select = *selection, .motion = {}});
+      if (name.is_table()) {
+        pins.push_back(read_pin(cloth.element("pin", name), pinnable));
+      } else if (const auto selection = read_name(name, pinnable)) {
+        pins.push_back({.select = *selection, .motion = {}});
+      }
     }
   }
-  for (TomlTable& table : cloth.tables("pin")) {
-    PinDesc pin;
-    const auto selection = read_select(table, pinnable);
-    pin.motion = read_motion(table);
-    table.read("pivot", pin.pivot, any_number("m"));
-    if (selection) pin.select = *selection;
-    pins.push_back(std::move(pin));
-  }
+  for (const TomlTable& table : cloth.tables("pin")) pins.push_back(read_pin(table, pinnable));
   return pins;
 }
 

@@ -31,13 +31,21 @@ struct ParticleIndices {
   bool operator==(const ParticleIndices&) const = default;
 };
 
+struct GroupName {
+  std::string name;  // of a group or an object of the mesh's file: the vertices of its faces
+  bool operator==(const GroupName&) const = default;
+};
+
 using ParticleSelection =
-    std::variant<GridCorner, ParticleIndices, Box, Sphere>;  // regions: initial position, world
+    std::variant<GridCorner, ParticleIndices, GroupName, Box, Sphere>;  // regions: initial position, world
 
 struct PinDesc {
   ParticleSelection select;
-  std::vector<KeyFrame> motion;  // empty: held still
-  Vec3 pivot = Vec3::Zero();     // centre of the rotation of `motion` [m]
+  std::vector<KeyFrame> motion;     // empty: held still
+  Vec3 pivot = Vec3::Zero();        // centre of the rotation of `motion` [m]
+  std::string follow;               // name of the collider whose surface they follow; "": none
+  std::optional<double> stiffness;  // of a spring per particle; empty: held exactly [N/m]
+  double damping = 0;               // of that spring [N·s/m]
   bool operator==(const PinDesc&) const = default;
 };
 
@@ -66,6 +74,8 @@ struct PlacedMesh {
   std::vector<std::filesystem::path> frames;       // of a sequence, in order, with the first one; empty: none
   std::vector<std::vector<Vec3>> frame_positions;  // the same in memory, (num_vertices) each; in the
                                                    // source's unit and axes [m]
+  std::string node, clip;                          // of a glTF file, as in GltfOptions
+  std::optional<double> start_time;                // of the clip, at time 0; empty: its first key [s]
   std::filesystem::path rest;                      // pose before SceneDesc::settle; empty: that of the start
   double frame_rate = 30;                          // of a sequence, > 0 [1/s]
   Vec3 position = Vec3::Zero();                    // added after the rotation [m]

@@ -1,22 +1,17 @@
 #include "weft/scene/scene_meshes.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "weft/error.h"
 #include "weft/face/convert.h"
+#include "weft/io.h"
 #include "weft/io/mesh_files.h"
 #include "weft/mesh/solid.h"
+#include "weft/scene/cloth_faces.h"
 
 namespace weft::engine {
 namespace {
-
-MeshFromFile read(const std::filesystem::path& file, const std::string& owner) {
-  try {
-    return engine::read_mesh(file);
-  } catch (const InputError& error) {  // names the file and the line
-    throw InputError(owner + ": " + error.what());
-  }
-}
 
 /// In metres, y up.
 Vec3 to_world(const Vec3& p, const MeshSource& source) {
@@ -25,7 +20,7 @@ Vec3 to_world(const Vec3& p, const MeshSource& source) {
 
 MeshFromFile read_in_metres(const std::filesystem::path& file, const MeshSource& source,
                             const std::string& owner) {
-  MeshFromFile obj = read(file, owner);
+  MeshFromFile obj = read_mesh_of(file, owner);
   for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
   return obj;
 }
@@ -120,12 +115,45 @@ struct ShapeDescriber {
                                    from_engine(rotation_from_angles_deg(b.rotation_deg))};
   }
   void operator()(const PlacedMesh& placed) const {
+    if (is_gltf(placed.source.file)) return describe_gltf(placed);
     weft::TriangleMesh mesh = read_mesh(placed.source, owner, warnings);
     desc.frames = read_frames(placed, mesh, owner);
     if (!placed.rest.empty()) prepend_rest(placed, settle, mesh, owner, desc.frames);
     desc.pose = make_pose(placed.position, placed.rotation_deg);
     desc.source = placed.source.file.filename().string();
     desc.shape = std::move(mesh);
+  }
+
+  void describe_gltf(const PlacedMesh& placed) const {
+    const std::string file = placed.source.file.filename().string();
+    BodyFromFile body = read_gltf(placed);
+    for (const std::string& warning : body.warnings) warnings.push_back(owner + ": " + warning);
+    desc.deformation_start = placed.start_time.value_or(body.motion.start());
+    if (!body.motion.is_empty()) body.mesh.positions = body.motion.positions(desc.deformation_start);
+    if (placed.start_time &&
+        !(body.motion.start() <= *placed.start_time && *placed.start_time <= body.motion.end()))
+      warnings.push_back(owner + " (" + file + "): start_time = " + to_text(*placed.start_time) +
+                         " is outside the clip, which lasts from " + to_text(body.motion.start()) + " to " +
+                         to_text(body.motion.end()) + " s");
+    desc.deformation = std::move(body.motion);
+    desc.pose = make_pose(placed.position, placed.rotation_deg);
+    desc.source = file;
+    desc.shape = std::move(body.mesh);
+  }
+
+  BodyFromFile read_gltf(const PlacedMesh& placed) const {
+    try {
+      return weft::read_gltf(placed.source.file.string(),
+                             {.node = placed.node, .clip = placed.clip, .scale = placed.source.scale});
+    } catch (const InputError& error) {
+      throw InputError(owner + ": " + error.what());
+    }
+  }
+
+  static std::string to_text(double seconds) {
+    std::ostringstream text;
+    text << seconds;
+    return text.str();
   }
 };
 

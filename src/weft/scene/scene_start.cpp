@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "weft/error.h"
+#include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
 
 namespace weft::engine {
@@ -22,8 +23,8 @@ void set_start(const ClothStart& start, const std::string& source, ClothId cloth
                      " vertices in the scene, but " + std::to_string(start.positions.size()) + " in " +
                      source + "; a start requires the same mesh");
   const RestShape& rest = WorldAccess::rest(world, cloth);
-  WorldAccess::engine(world).set_positions(cloth, to_particles(start.positions, rest, notes));
-  WorldAccess::engine(world).set_velocities(cloth, to_particles(start.velocities, rest, notes));
+  world.set_positions(cloth, from_engine(to_particles(start.positions, rest, notes)));
+  world.set_velocities(cloth, from_engine(to_particles(start.velocities, rest, notes)));
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <optional>
 
+#include "weft/core/nearest_name.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
+#include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_meshes.h"
 #include "weft/scene/scene_start.h"
 
@@ -61,6 +63,18 @@ struct Selector {
     return selected;
   }
 
+  std::vector<int> operator()(const GroupName& group) const {
+    std::vector<int> selected;
+    for (const int vertex : find_group(cloth, group.name)) {
+      const int particle = particle_of_vertex[vertex];
+      if (particle >= 0) selected.push_back(particle);
+    }
+    if (selected.empty())
+      throw InputError("cloth \"" + cloth.name + "\": group \"" + group.name +
+                       "\" cannot be selected: its faces have no area");
+    return selected;
+  }
+
   std::vector<int> operator()(const Box& box) const {
     return select_inside(positions, [&](const Vec3& p) { return box.contains(p); });
   }
@@ -81,6 +95,21 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
       " contains no particle; regions are in world coordinates [m], after position and rotation");
 }
 
+/// The collider of the name; empty for a pin that follows none.
+std::optional<ColliderId> find_followed(const ClothSceneDesc& cloth, const PinDesc& pin,
+                                        const weft::World& world) {
+  if (pin.follow.empty()) return {};
+  std::vector<std::string> names;
+  for (int c = 0; c < world.num_colliders(); ++c) {
+    names.push_back(world.name(world.collider(c)));
+    if (names.back() == pin.follow) return world.collider(c);
+  }
+  const std::string nearest = find_nearest(pin.follow, names);
+  throw InputError("cloth \"" + cloth.name + "\": a pin follows \"" + pin.follow +
+                   "\", but there is no collider of this name" +
+                   (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+}
+
 /// Pins and stiffened regions, selected by initial particle positions.
 void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   const std::vector<Vec3> positions =
@@ -92,7 +121,10 @@ void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   for (const PinDesc& pin : desc.pins)
     pins.push_back({.particles = select(selector, pin.select, "a pin's region"),
                     .motion = from_engine(pin.motion),
-                    .pivot = from_engine(pin.pivot)});
+                    .pivot = from_engine(pin.pivot),
+                    .follow = find_followed(desc, pin, built),
+                    .stiffness = pin.stiffness,
+                    .damping = pin.damping});
   built.set_pins(id, pins);
 }
 

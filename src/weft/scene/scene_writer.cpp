@@ -112,6 +112,11 @@ class MeshNames {
   virtual std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) = 0;
 };
 
+/// Faces of a mesh in memory.
+MeshFaces faces_of(const MeshSource& source) {
+  return make_faces(source.mesh->triangles, to_engine(source.mesh->uv));
+}
+
 /// Hashes of contents instead of names; a mesh in memory has that of the file that MeshFiles writes.
 class MeshHashes : public MeshNames {
  public:
@@ -119,18 +124,15 @@ class MeshHashes : public MeshNames {
 
   std::string name_of(const MeshSource& source, const std::string&) override {
     if (!source.mesh) return relative(source.file);
-    return hash(obj_text(to_engine(*source.mesh), to_engine(source.mesh->uv)));
+    return hash(obj_text(to_engine(*source.mesh).positions, faces_of(source)));
   }
 
   std::string name_of_frames(const PlacedMesh& mesh, const std::string&) override {
     std::string all;
     for (const fs::path& file : mesh.frames) all += hash(read(file));
     if (!mesh.frame_positions.empty()) {
-      TriangleMesh moved = to_engine(*mesh.source.mesh);
-      for (const std::vector<Vec3>& positions : mesh.frame_positions) {
-        moved.positions = positions;
-        all += hash(obj_text(moved, to_engine(mesh.source.mesh->uv)));
-      }
+      const MeshFaces faces = faces_of(mesh.source);
+      for (const std::vector<Vec3>& positions : mesh.frame_positions) all += hash(obj_text(positions, faces));
     }
     return hash(all);
   }
@@ -158,7 +160,7 @@ class MeshFiles : public MeshNames {
   std::string name_of(const MeshSource& source, const std::string& owner) override {
     if (!source.mesh) return relative(source.file);
     const std::string name = names_.add(stem_ + "_" + owner) + ".obj";
-    write_obj(folder_ / name, to_engine(*source.mesh), to_engine(source.mesh->uv));
+    write_obj(folder_ / name, to_engine(*source.mesh).positions, faces_of(source));
     return name;
   }
 
@@ -166,12 +168,11 @@ class MeshFiles : public MeshNames {
   std::string name_of_frames(const PlacedMesh& mesh, const std::string& owner) override {
     if (mesh.frame_positions.empty()) return relative(pattern_of(mesh.frames, owner));
     const std::string begin = names_.add(stem_ + "_" + owner) + "_";
-    TriangleMesh moved = to_engine(*mesh.source.mesh);
+    const MeshFaces faces = faces_of(mesh.source);
     for (std::size_t k = 0; k < mesh.frame_positions.size(); ++k) {
-      moved.positions = mesh.frame_positions[k];
       char number[32];
       std::snprintf(number, sizeof number, "%06zu.obj", k);
-      write_obj(folder_ / (begin + number), moved, to_engine(mesh.source.mesh->uv));
+      write_obj(folder_ / (begin + number), mesh.frame_positions[k], faces);
     }
     return begin + "*.obj";
   }
@@ -226,6 +227,7 @@ std::string selection_text(const ParticleSelection& selection) {
     return toml("corner:" + std::to_string(corner->i) + "," + std::to_string(corner->j));
   if (const auto* indices = std::get_if<ParticleIndices>(&selection))
     return "{ index = " + toml_array(indices->indices) + " }";
+  if (const auto* group = std::get_if<GroupName>(&selection)) return "{ group = " + toml(group->name) + " }";
   if (const auto* box = std::get_if<Box>(&selection))
     return "{ box = " + Table().add("min", box->min).add("max", box->max).in_line() + " }";
   const Sphere& ball = std::get<Sphere>(selection);
@@ -311,7 +313,10 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
     Table own;
     own.add_text("select", selection_text(pin.select));
     if (!pin.motion.empty()) own.add_text("motion", motion_text(pin.motion));
-    text += "\n[[cloth.pin]]\n" + own.add("pivot", pin.pivot, PinDesc().pivot).lines();
+    own.add("pivot", pin.pivot, PinDesc().pivot);
+    if (!pin.follow.empty()) own.add("follow", pin.follow);
+    if (pin.stiffness) own.add("stiffness", *pin.stiffness).add("damping", pin.damping, PinDesc().damping);
+    text += "\n[[cloth.pin]]\n" + own.lines();
   }
   for (const StiffenDesc& part : cloth.stiffened)
     text += "\n[[cloth.stiffen]]\n" +
@@ -346,6 +351,9 @@ struct ShapeKeys {
       table.add("file", files.name_of(m.source, owner));
     else
       table.add("frames", files.name_of_frames(m, owner)).add("frame_rate", m.frame_rate);
+    if (!m.node.empty()) table.add("node", m.node);
+    if (!m.clip.empty()) table.add("clip", m.clip);
+    if (m.start_time) table.add("start_time", *m.start_time);
     if (!m.rest.empty()) table.add("rest", files.relative(m.rest));
     add_mesh_keys(m.source, table);
     table.add("position", m.position, PlacedMesh().position)

@@ -139,6 +139,10 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   return tables;
 }
 
+TomlTable TomlTable::element(std::string_view key, const TomlValue& element) {
+  return {*document_, element.node().as_table(), path_of(key)};
+}
+
 void TomlTable::require_any(std::initializer_list<std::string_view> keys, std::string_view expected) {
   section_->required.push_back({{keys.begin(), keys.end()}, std::string(expected)});
 }

@@ -152,6 +152,9 @@ class TomlTable {
   /// The tables of an array, written [[key]] or key = [{ … }, …].
   std::vector<TomlTable> tables(std::string_view key);
 
+  /// A table that is an element of some array, to be read like one of tables(key).
+  TomlTable element(std::string_view key, const TomlValue& element);
+
   /// At least one of the keys must be present (a mistake if not, unless one of them is misspelt).
   void require_any(std::initializer_list<std::string_view> keys, std::string_view expected);
 

@@ -17,6 +17,7 @@
 
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
+#include "weft/world/surface_anchor.h"
 
 namespace weft::engine {
 
@@ -27,6 +28,8 @@ struct Attachment {
   double stiffness = 0;        // k, >= 0 [N/m]
   double damping = 0;          // c, against motion of the patch, >= 0 [N·s/m]
   Vec3 target = Vec3::Zero();  // target of the held point [m]
+  int follow = -1;             // collider that the target follows; -1: none
+  SurfaceAnchor anchor;        // of the target on it
 };
 
 /// Attachment at the point of a triangle with the given corner weights (sum 1), with its surroundings: smooth

@@ -84,7 +84,7 @@ double compute_attachment_work(const std::vector<Attachment>& attachments, const
 /// vertex.
 Vec3 displacement_at(const ContactPoint& contact, const MovingShape& shape) {
   const MeshShape* mesh = std::get_if<MeshShape>(&shape.after);
-  if (mesh && mesh->sequence)
+  if (mesh && mesh->source)
     return mesh->vertex(contact.other_vertex) -
            std::get<MeshShape>(shape.before).vertex(contact.other_vertex);
   return contact.position - shape.at_start(contact.position);

@@ -9,8 +9,8 @@
 /// The state with fewer intersections, start or end, is kept.
 
 #include <algorithm>
-#include <cmath>
 
+#include "weft/animation/mesh_sequence.h"
 #include "weft/contact/shrink.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
@@ -44,7 +44,7 @@ Collider still(const Collider& collider, double time) {
 /// A mesh that grows from thinner vertices.
 MeshShape growing_from(const std::vector<Vec3>& thin, const MeshShape& full, int steps) {
   MeshShape shape = full;
-  shape.sequence = std::make_shared<const MeshSequence>(
+  shape.source = std::make_shared<const MeshSequence>(
       std::vector<MeshSequence::Key>{{0, thin}, {steps * kStep, full.mesh->positions}});
   return shape;
 }
@@ -95,8 +95,10 @@ World World::make_stage() const {
   return stage;
 }
 
-/// Replaces the meshes that cloth is in by thinner ones, which grow back from the stage's start.
-void World::thin_colliders(const Intersections& crossed, World& stage) const {
+/// Replaces the meshes that cloth is in by thinner ones, which grow back from the stage's start. Returns the
+/// number of steps that they take.
+int World::thin_colliders(const Intersections& crossed, World& stage) const {
+  int most_steps = 0;
   const std::vector<double> depths = compute_depths(crossed, colliders_.size());
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     MeshShape* shape = std::get_if<MeshShape>(&stage.colliders_[c].shape);
@@ -105,12 +107,15 @@ void World::thin_colliders(const Intersections& crossed, World& stage) const {
     const MeshShape full = *shape;
     const std::vector<double> radii = compute_inner_radii(*full.mesh);
     double depth = kMoreThanDeep * depths[c] + kRoom;
+    int steps = 0;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
-      const int steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
+      steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
       *shape = growing_from(weft::engine::shrink(*full.mesh, radii, depth), full, steps);
       if (compute_depths(stage.find_intersections(), colliders_.size())[c] == 0) break;
     }
+    most_steps = std::max(most_steps, steps);
   }
+  return most_steps;
 }
 
 /// Sets all velocities to zero.
@@ -127,20 +132,14 @@ UntangleReport World::untangle() {
   if (crossed.empty()) return report;
   report.crossed = report.left = describe(crossed);
   World stage = make_stage();
-  thin_colliders(crossed, stage);
+  const int growing = thin_colliders(crossed, stage);
   stage.show_contact_cloths();
   report.rounds = stage.contact_system_
                       .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_})
                       .rounds;
-  double growth = 0;  // its duration [s]
-  for (const Collider& collider : stage.colliders_) {
-    const MeshShape* shape = std::get_if<MeshShape>(&collider.shape);
-    if (shape && shape->sequence) growth = std::max(growth, shape->sequence->keys().back().time);
-  }
   const auto is_relaxed = [](const Cloth& cloth) {
     return compute_largest_strain(*cloth.model, cloth.state) <= kRelaxed;
   };
-  const int growing = static_cast<int>(std::lround(growth / kStep));
   for (int s = 0; s < growing + kMaxSettling; ++s) {
     if (s > growing && std::ranges::all_of(stage.cloths_, is_relaxed)) break;
     stage.halt();

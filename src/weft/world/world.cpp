@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "weft/animation/mesh_sequence.h"
 #include "weft/core/hash.h"
 #include "weft/world/infeasible_pairs.h"
 #include "weft/world/world_input.h"
@@ -61,17 +62,8 @@ std::size_t index_of_id(const Entries& entries, Id id, std::uint32_t world, std:
                    ") refers to a removed body");
 }
 
-std::shared_ptr<const MeshSequence> make_sequence(std::vector<MeshSequence::Key> keys) {
+std::shared_ptr<const VertexSource> make_sequence(std::vector<MeshSequence::Key> keys) {
   return std::make_shared<const MeshSequence>(std::move(keys));
-}
-
-/// Vertices of a mesh collider, in mesh coordinates [m].
-std::vector<Vec3> vertices_at(const MeshShape& shape, double time) {
-  if (!shape.sequence) return shape.mesh->positions;
-  const MeshSequence::Blend blend = shape.sequence->at(time);
-  std::vector<Vec3> vertices;
-  for (int v = 0; v < shape.mesh->num_vertices(); ++v) vertices.push_back(shape.sequence->position(blend, v));
-  return vertices;
 }
 
 void require_points(const std::vector<Vec3>& values, std::size_t count, const std::string& what) {
@@ -189,9 +181,21 @@ void World::remove(ColliderId id) {
   const int index = static_cast<int>(index_of(id));
   std::erase_if(rules_, [&](const ContactRule& r) { return r.collider == index; });
   for (ContactRule& r : rules_) r.collider -= r.collider > index;
+  for (Cloth& cloth : cloths_) release_followers(index, cloth);
   colliders_.erase(colliders_.begin() + index);
   guides_.erase(guides_.begin() + index);
   contact_system_ = {};
+}
+
+/// Pins and attachments that follow a collider, which is being removed, stay where they are.
+void World::release_followers(int collider, Cloth& cloth) {
+  for (PinnedParticle& p : cloth.pinned) {
+    if (cloth.pins[p.pin].follow == collider) p.anchor = cloth.state.position(p.particle);
+  }
+  for (Pin& pin : cloth.pins) pin.follow = pin.follow == collider ? -1 : pin.follow - (pin.follow > collider);
+  std::vector<Attachment> attachments = cloth.attachments.attachments();
+  for (Attachment& a : attachments) a.follow = a.follow == collider ? -1 : a.follow - (a.follow > collider);
+  cloth.attachments.set(std::move(attachments));
 }
 
 Pose World::pose(ColliderId id) const { return colliders_[index_of(id)].motion.at(time_); }
@@ -226,15 +230,16 @@ MeshShape& World::mesh_of(ColliderId id, const std::vector<Vec3>& positions) {
 }
 
 void World::move_vertices(ColliderId id, std::vector<Vec3> at_end) {
-  mesh_of(id, at_end);
+  MeshShape& shape = mesh_of(id, at_end);
   Guide& guide = guides_[index_of(id)];
+  if (!guide.deforms_by_hand) shape.source = make_sequence({{time_, shape.at(time_).vertices()}});
   guide.deforms_by_hand = true;
   guide.vertices = std::move(at_end);
 }
 
 void World::place_vertices(ColliderId id, std::vector<Vec3> positions) {
   MeshShape& shape = mesh_of(id, positions);
-  shape.sequence = make_sequence({{time_, std::move(positions)}});
+  shape.source = make_sequence({{time_, std::move(positions)}});
   guides_[index_of(id)].deforms_by_hand = true;
   guides_[index_of(id)].vertices.reset();
   contact_system_ = {};
@@ -261,10 +266,10 @@ void World::guide_colliders(double dt) {
     }
     if (guide.deforms_by_hand) {
       MeshShape& shape = std::get<MeshShape>(colliders_[c].shape);
-      if (!guide.vertices && shape.sequence->keys().size() == 1) continue;
-      std::vector<MeshSequence::Key> keys = {{time_, vertices_at(shape, time_)}};
+      if (!guide.vertices && shape.source->is_still()) continue;
+      std::vector<MeshSequence::Key> keys = {{time_, shape.at(time_).vertices()}};
       if (guide.vertices) keys.push_back({end, std::move(*guide.vertices)});
-      shape.sequence = make_sequence(std::move(keys));
+      shape.source = make_sequence(std::move(keys));
       guide.vertices.reset();
     }
   }
@@ -313,8 +318,9 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
       require(!is_pinned[i],
               "cloth \"" + cloth.name + "\": particle " + std::to_string(i) + " is pinned twice");
       is_pinned[i] = 1;
-      pinned.push_back({i, p, cloth.state.position(i), static_cast<int>(pinned.size())});
+      pinned.push_back({i, p, cloth.state.position(i), static_cast<int>(pinned.size()), {}});
     }
+    bind_pin(cloth, pins[p], pinned);
   }
   std::sort(pinned.begin(), pinned.end(),
             [](const auto& a, const auto& b) { return a.particle < b.particle; });
@@ -322,6 +328,26 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
   cloth.pinned = std::move(pinned);
   cloth.is_pinned = std::move(is_pinned);
   cloth.pin_guide = {};
+}
+
+/// Binds the particles of a pin that follows a collider; they are the last ones of `pinned`.
+void World::bind_pin(const Cloth& cloth, const Pin& pin, std::vector<PinnedParticle>& pinned) const {
+  if (pin.follow < 0) return;
+  require(pin.follow < num_colliders() && pin.motion.is_still(),
+          "cloth \"" + cloth.name + "\": a pin follows a collider of the world, without a motion of its own");
+  const auto first = pinned.end() - static_cast<std::ptrdiff_t>(pin.particles.size());
+  std::vector<Vec3> points;
+  for (auto p = first; p != pinned.end(); ++p) points.push_back(p->anchor);
+  const std::vector<SurfaceAnchor> anchors = bind(pin.follow, points);
+  for (std::size_t k = 0; k < anchors.size(); ++k)
+    first[static_cast<std::ptrdiff_t>(k)].on_surface = anchors[k];
+}
+
+std::vector<SurfaceAnchor> World::bind(int collider, const std::vector<Vec3>& points) const {
+  const PlacedCollider body = place(colliders_[collider], time_);
+  std::vector<SurfaceAnchor> anchors;
+  for (const Vec3& p : points) anchors.push_back(bind_point(body, p));
+  return anchors;
 }
 
 void World::move_pins(ClothId id, const std::vector<Vec3>& at_end) {
@@ -382,6 +408,7 @@ void World::set_attachments(ClothId id, std::vector<Attachment> attachments) {
     require(attachment.shares.size() == attachment.particles.size() &&
                 attachment.offsets.size() == attachment.particles.size(),
             "a grab requires one share and one offset per particle");
+    require(attachment.follow < num_colliders(), "a grab follows a collider that is not in the world");
     require(std::isfinite(attachment.stiffness) && attachment.stiffness >= 0 &&
                 std::isfinite(attachment.damping) && attachment.damping >= 0,
             "a grab's stiffness and damping must be 0 or more");
@@ -401,6 +428,7 @@ void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
   for (PinnedParticle& p : cloth.pinned) {
     const Pin& pin = cloth.pins[p.pin];
     p.anchor = apply_inverse(pin.motion.at(time_), pin.pivot, positions[p.particle]);
+    if (pin.follow >= 0) p.on_surface = bind(pin.follow, {p.anchor})[0];
     if (!cloth.pin_guide.is_empty())
       cloth.pin_guide.from[p.order] = cloth.pin_guide.to[p.order] = positions[p.particle];
   }
@@ -527,6 +555,18 @@ void World::set_integrator(const IntegratorSettings& settings) {
   for (Cloth& cloth : cloths_) cloth.state.history.step = 0;
 }
 
+/// Places the colliders that pins or attachments follow.
+void World::place_followed(double time) {
+  followed_.assign(colliders_.size(), std::nullopt);
+  const auto add = [&](int collider) {
+    if (collider >= 0 && !followed_[collider]) followed_[collider] = place(colliders_[collider], time);
+  };
+  for (const Cloth& cloth : cloths_) {
+    for (const Pin& pin : cloth.pins) add(pin.follow);
+    for (const Attachment& attachment : cloth.attachments.attachments()) add(attachment.follow);
+  }
+}
+
 void World::set_environment(Cloth& cloth, double time) {
   Environment& environment = cloth.environment;
   environment.gravity = gravity_;
@@ -537,10 +577,11 @@ void World::set_environment(Cloth& cloth, double time) {
   poses_.clear();
   for (const Pin& pin : cloth.pins) poses_.push_back(pin.motion.at(time));
   for (const PinnedParticle& p : cloth.pinned) {
+    const Pin& pin = cloth.pins[p.pin];
     environment.pins.particle.push_back(p.particle);
-    environment.pins.position.push_back(cloth.pin_guide.is_empty()
-                                            ? apply(poses_[p.pin], cloth.pins[p.pin].pivot, p.anchor)
-                                            : cloth.pin_guide.at(p.order, time));
+    environment.pins.position.push_back(!cloth.pin_guide.is_empty() ? cloth.pin_guide.at(p.order, time)
+                                        : pin.follow >= 0 ? position_of(p.on_surface, *followed_[pin.follow])
+                                                          : apply(poses_[p.pin], pin.pivot, p.anchor));
   }
 }
 
@@ -576,9 +617,15 @@ void World::begin_contact(double time, double dt) {
 /// Advances all cloths by one substep, to `time`.
 void World::advance(double time, double dt, StepReport& report) {
   // Kinematics.
+  place_followed(time);
   for (Cloth& cloth : cloths_) set_environment(cloth, time);
   // Attachments.
   for (Cloth& cloth : cloths_) {
+    for (int g = 0; g < cloth.attachments.size(); ++g) {
+      const Attachment& attachment = cloth.attachments.attachments()[g];
+      if (attachment.follow >= 0)
+        cloth.attachments.set_target(g, position_of(attachment.anchor, *followed_[attachment.follow]));
+    }
     for (std::size_t g = 0; g < cloth.attachment_guide.to.size(); ++g)
       cloth.attachments.set_target(static_cast<int>(g), cloth.attachment_guide.at(g, time));
     cloth.held_model = &cloth.attachments.begin(cloth.model, cloth.is_pinned, gravity_, dt, cloth.state);
@@ -617,7 +664,19 @@ void World::run_ccd_fail_safe(StepReport& report) {
   const CcdFailSafeReport stopped = contact_system_.run_ccd_fail_safe(*jobs_);
   report.hits += stopped.hits;
   report.zones += stopped.zones;
-  for (const Infeasible& pair : stopped.infeasible) add_once(describe(pair), report.infeasible);
+  for (const Infeasible& pair : stopped.infeasible) {
+    const InfeasiblePair described = describe(pair);
+    if (!is_attached(described)) add_once(described, report.infeasible);
+  }
+}
+
+/// Whether the particle is pinned to the collider that it meets: no contact can change that.
+bool World::is_attached(const InfeasiblePair& pair) const {
+  if (pair.cloth < 0 || pair.collider < 0) return false;
+  const Cloth& cloth = cloths_[pair.cloth];
+  return std::ranges::any_of(cloth.pinned, [&](const PinnedParticle& p) {
+    return p.particle == pair.particle && cloth.pins[p.pin].follow == pair.collider;
+  });
 }
 
 std::string World::name_of(const ContactSystem::Place& place) const {
@@ -690,7 +749,7 @@ bool World::is_driven() const {
   if (wind_.drag > 0 || wind_.air.density > 0) return true;
   const auto is_deforming = [](const Collider& c) {
     const auto* mesh = std::get_if<MeshShape>(&c.shape);
-    return mesh && mesh->sequence && mesh->sequence->keys().size() > 1;
+    return mesh && mesh->source && !mesh->source->is_still();
   };
   return std::any_of(colliders_.begin(), colliders_.end(), moves) ||
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
@@ -848,7 +907,7 @@ World::Snapshot World::snapshot() const {
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     snapshot.guides[c].motion = colliders_[c].motion;
     if (const MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
-      snapshot.guides[c].sequence = shape->sequence;
+      snapshot.guides[c].source = shape->source;
   }
   return snapshot;
 }
@@ -857,18 +916,25 @@ World::Held World::held(ClothId id) const {
   const Cloth& cloth = at(id);
   Held held{.pins = cloth.pins,
             .anchors = std::vector<Vec3>(cloth.pinned.size()),
+            .on_surface = std::vector<SurfaceAnchor>(cloth.pinned.size()),
             .attachments = cloth.attachments.attachments(),
             .pin_guide = cloth.pin_guide,
             .attachment_guide = cloth.attachment_guide,
             .forces = cloth.forces};
-  for (const PinnedParticle& p : cloth.pinned) held.anchors[p.order] = p.anchor;
+  for (const PinnedParticle& p : cloth.pinned) {
+    held.anchors[p.order] = p.anchor;
+    held.on_surface[p.order] = p.on_surface;
+  }
   return held;
 }
 
 void World::hold(ClothId id, Held held) {
   Cloth& cloth = at(id);
   set_pins(id, std::move(held.pins));
-  for (PinnedParticle& p : cloth.pinned) p.anchor = held.anchors[p.order];
+  for (PinnedParticle& p : cloth.pinned) {
+    p.anchor = held.anchors[p.order];
+    p.on_surface = held.on_surface[p.order];
+  }
   set_attachments(id, std::move(held.attachments));
   cloth.pin_guide = std::move(held.pin_guide);
   cloth.attachment_guide = std::move(held.attachment_guide);
@@ -898,8 +964,7 @@ void World::restore(const Snapshot& snapshot) {
     guides_[c] = snapshot.guides[c];
     guides_[c].number = number;
     colliders_[c].motion = guides_[c].motion;
-    if (MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape))
-      shape->sequence = guides_[c].sequence;
+    if (MeshShape* shape = std::get_if<MeshShape>(&colliders_[c].shape)) shape->source = guides_[c].source;
   }
 }
 

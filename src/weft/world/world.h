@@ -20,6 +20,7 @@
 #include "weft/report.h"
 #include "weft/world/attachment.h"
 #include "weft/world/step_check.h"
+#include "weft/world/surface_anchor.h"
 
 namespace weft::engine {
 
@@ -32,11 +33,13 @@ struct ClothParts {
   Vec3 velocity = Vec3::Zero();                   // of all particles at the start [m/s]
 };
 
-/// Particles with prescribed motion: static, or along key frames from their positions when pinned.
+/// Particles with prescribed motion: static, along key frames from their positions when pinned, or bound to a
+/// collider.
 struct Pin {
   std::vector<int> particles;
   RigidMotion motion;
   Vec3 pivot = Vec3::Zero();  // centre of rotation [m]
+  int follow = -1;            // index of the collider that they follow, without motion; -1: none
 };
 
 /// Result of World::untangle.
@@ -209,13 +212,14 @@ class World {
     std::optional<Pose> pose;                             // at the end of the next step, if set
     std::optional<std::vector<Vec3>> vertices;            // likewise [m]
     RigidMotion motion;                                   // in a snapshot
-    std::shared_ptr<const MeshSequence> sequence;         // likewise
+    std::shared_ptr<const VertexSource> source;           // likewise
   };
 
   /// Pins, attachments and forces of a cloth.
   struct Held {
     std::vector<Pin> pins;
-    std::vector<Vec3> anchors;  // of each pinned particle, in the order of the pins' lists [m]
+    std::vector<Vec3> anchors;              // of each pinned particle, in the order of the pins' lists [m]
+    std::vector<SurfaceAnchor> on_surface;  // likewise, of pins that follow a collider
     std::vector<Attachment> attachments;
     PointGuide pin_guide, attachment_guide;
     std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
@@ -225,6 +229,9 @@ class World {
   /// set_attachments() do.
   Held held(ClothId cloth) const;
   void hold(ClothId cloth, Held held);
+
+  /// Binds points to the collider as it is now, for pins and attachments that follow it.
+  std::vector<SurfaceAnchor> bind(int collider, const std::vector<Vec3>& points) const;
 
   /// The complete dynamic state; restoring it and stepping again gives bit-identical results.
   struct Snapshot {
@@ -246,8 +253,9 @@ class World {
  private:
   struct PinnedParticle {
     int particle, pin;
-    Vec3 anchor;    // its position when pinned [m]
-    int order = 0;  // in the pins' lists
+    Vec3 anchor;               // its position when pinned [m]
+    int order = 0;             // in the pins' lists
+    SurfaceAnchor on_surface;  // of a pin that follows a collider
   };
 
   struct Cloth {
@@ -290,7 +298,7 @@ class World {
   std::vector<std::string> describe(const Intersections& intersections) const;
   Intersections find_intersections();
   World make_stage() const;
-  void thin_colliders(const Intersections& crossed, World& stage) const;
+  int thin_colliders(const Intersections& crossed, World& stage) const;
   void halt();
   std::string name_of(const ContactSystem::Place& place) const;
   ContactSystem::Place find_place(const std::string& name) const;
@@ -299,6 +307,10 @@ class World {
   void set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
                        double static_friction);
   void save(Snapshot& snapshot) const;
+  void bind_pin(const Cloth& cloth, const Pin& pin, std::vector<PinnedParticle>& pinned) const;
+  static void release_followers(int collider, Cloth& cloth);
+  bool is_attached(const InfeasiblePair& pair) const;
+  void place_followed(double time);
   void set_environment(Cloth& cloth, double time);
   void solve(double dt, StepReport& report);
 
@@ -329,6 +341,7 @@ class World {
   std::vector<Vec3> pin_positions_;  // of all cloths
   std::vector<char> is_diverged_;    // (cloths)
   std::vector<Pose> poses_;
+  std::vector<std::optional<PlacedCollider>> followed_;  // (colliders) those that pins or attachments follow
   Snapshot before_step_, before_part_;
   double last_step_ = 0;  // step after before_step_; 0: none, or cloth was changed from outside since [s]
   std::vector<CheckedCloth> checked_;

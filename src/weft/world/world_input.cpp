@@ -70,8 +70,8 @@ struct ShapeChecker {
     }
     rotation(m.rotation);
     finite(m.translation, "its translation");
-    require(!m.sequence || m.sequence->num_vertices() == m.mesh->num_vertices(),
-            who + "its sequence and its mesh have different numbers of vertices");
+    require(!m.source || m.source->num_vertices() == m.mesh->num_vertices(),
+            who + "its motion and its mesh have different numbers of vertices");
   }
 };
 
