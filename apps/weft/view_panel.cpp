@@ -90,7 +90,8 @@ void draw_frames(Viewer& viewer) {
   ImGui::SameLine(kWidth * 0.52f * scale());
   ImGui::TextUnformatted(fmt::format("time {:.2f} s", head.frame() / head.frames_per_second).c_str());
   ImGui::TextUnformatted(
-      fmt::format("{} frames, {:.4g} per second", side.num_frames(), head.frames_per_second).c_str());
+      fmt::format("frames 0 to {}, {:.4g} per second", side.num_frames() - 1, head.frames_per_second)
+          .c_str());
 }
 
 void draw_integrator(Viewer& viewer, int s) {

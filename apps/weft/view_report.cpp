@@ -36,9 +36,9 @@ Json to_json(ViewSide& side) {
   const PlayHead& head = *side.head();
   return {{"playing", head.is_playing},
           {"loops", head.loops},
-          {"frame", head.frame()},
+          {"frame", side.frame()},
           {"frames", side.num_frames()},
-          {"time", head.frame() / head.frames_per_second},
+          {"time", side.frame() / head.frames_per_second},
           {"center", to_json(side.center())}};
 }
 

@@ -107,9 +107,9 @@ bool RunSide::update() {
   const bool was_playing = head_.is_playing;
   if (updated_) head_.advance(std::chrono::duration<double>(now - *updated_).count(), num_frames());
   updated_ = now;
-  if (head_.frame() == shown_) return was_playing != head_.is_playing;
-  shown_ = head_.frame();
-  replace_frames(playback_.read(shown_), animation_);
+  if (head_.frame() == frame_) return was_playing != head_.is_playing;
+  frame_ = head_.frame();
+  replace_frames(playback_.read(frame_), animation_);
   return true;
 }
 

@@ -35,6 +35,7 @@ class ViewSide {
   virtual const LiveStatus* status() const { return nullptr; }  // of live()
   virtual PlayHead* head() { return nullptr; }                  // null: a simulation
   virtual int num_frames() { return 0; }                        // of a run, with the start
+  virtual int frame() const { return 0; }                       // of a run: the current one
 
   /// The current picture: cloth, or its springs; and the attachment, drawn towards `target`.
   Picture draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const;
@@ -95,6 +96,7 @@ class RunSide : public ViewSide {
   bool is_going() const override { return head_.is_playing; }
   PlayHead* head() override { return &head_; }
   int num_frames() override { return playback_.num_frames(); }
+  int frame() const override { return frame_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -103,7 +105,7 @@ class RunSide : public ViewSide {
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;
-  int shown_ = 0;  // frame
+  int frame_ = 0;  // in animation_
   std::optional<Clock::time_point> updated_;
 };
 

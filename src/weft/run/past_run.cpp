@@ -31,8 +31,10 @@ PastRun read_results(const fs::path& folder) {
   if (!json.is_object() || !json.contains("cloths") || !json["cloths"].is_array() || json["cloths"].empty())
     fail();
   PastRun run{.folder = folder, .cloths = {}, .animation = {}, .frames = {}};
-  if (!json.contains("fps") || !json["fps"].is_number() || !(json["fps"].get<double>() > 0)) fail();
-  run.fps = json["fps"].get<double>();
+  if (const auto fps = json.find("fps"); fps != json.end()) {
+    if (!fps->is_number() || !(fps->get<double>() > 0)) fail();
+    run.fps = fps->get<double>();
+  }
   for (const Json& cloth : json["cloths"]) {
     if (!cloth.is_object() || text(cloth, "name").empty()) fail();
     run.cloths.push_back({text(cloth, "name"), file(cloth, "positions"), file(cloth, "mesh")});
