@@ -37,13 +37,14 @@ void add_convert_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("convert", "Convert a mesh, a point cache, or the point caches of a run");
   command
-      ->add_option("IN", request->in,
-                   "A mesh (.obj, .ply, .stl), a point cache (.pc2, .mdd), or the folder of a run")
+      ->add_option(
+          "IN", request->in,
+          "A mesh (.obj, .ply, .stl, .glb, .gltf), a point cache (.pc2, .mdd), or the folder of a run")
       ->required();
   command
       ->add_option("OUT", request->out,
                    "A file of the same kind: .obj or .ply; .pc2 or .mdd; of a cache also .obj or .ply, a "
-                   "file per frame")
+                   "file per frame; of a glTF file also .pc2 or .mdd")
       ->required();
   command
       ->add_option("--mesh", request->options.mesh,

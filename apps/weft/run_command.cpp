@@ -88,6 +88,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
                     "Also report the work and the unexplained energy of every frame; slower");
   command->add_flag("!--no-passages", request->options.check_passages,
                     "Do not check for tunnelling within steps");
+  command
+      ->add_option(
+          "--start-from", request->options.start_from,
+          "Begin with the cloths of a frame of an earlier run, by their names (FRAME: a number or last)")
+      ->type_name("DIR@FRAME");
   CLI::Option* resume = command->add_option(
       "--resume", request->resume, "Continue the unfinished run in this folder from its last checkpoint");
   resume->type_name("DIR")->excludes("--out");
@@ -102,7 +107,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--report", request->report, "Also write the report to this file")->type_name("FILE");
   // A resumed run has its own; with a scene they are compared with these.
   for (const char* option :
-       {"--frames", "--no-glb", "--no-pc2", "--obj", "--audit", "--no-passages", "--set"})
+       {"--frames", "--no-glb", "--no-pc2", "--obj", "--audit", "--no-passages", "--start-from", "--set"})
     command->get_option(option)->needs(scene);
   command->callback([request, scene, &exit_code] {
     if (scene->empty() && request->resume.empty()) throw CLI::RequiredError("SCENE");

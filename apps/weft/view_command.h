@@ -11,7 +11,7 @@
 namespace weft::engine::app {
 
 struct ViewRequest {
-  std::string scene;
+  std::string scene;  // or the folder of a run, or its .glb
   std::string size = "1280x720";
   std::vector<std::string> compare;  // integrators, none or two
   int threads = 0;                   // of each simulation; 0: the processors, except one for drawing
@@ -20,7 +20,7 @@ struct ViewRequest {
   Overrides overrides;
 };
 
-/// Shows a scene in a window until it is closed. Throws InputError, or GraphicsError without graphics.
+/// Shows a scene or a run in a window until it is closed. Throws InputError, or GraphicsError without graphics.
 void view(const ViewRequest& request);
 
 /// Whether a user can see a window: a display, and a terminal as standard input.

@@ -70,8 +70,32 @@ void draw_play_buttons(Viewer& viewer) {
   if (draw_button(viewer, "Reset", "reset", 1)) viewer.reset();
 }
 
+/// Of a run.
+void draw_frames(Viewer& viewer) {
+  ViewSide& side = viewer.side(0);
+  const PlayHead& head = *side.head();
+  if (draw_button(viewer, viewer.is_playing() ? "Pause" : "Play", "play", 1 / 2.0f)) viewer.toggle_play();
+  ImGui::SameLine();
+  if (draw_button(viewer, "<", "back", 1 / 2.0f)) viewer.step_frame(true);
+  ImGui::SameLine();
+  if (draw_button(viewer, ">", "on", 1)) viewer.step_frame(false);
+  int frame = head.frame();
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderInt("##frame", &frame, 0, side.num_frames() - 1, "frame %d", ImGuiSliderFlags_AlwaysClamp))
+    viewer.seek(frame);
+  note(viewer, "frame");
+  bool loops = head.loops;
+  if (ImGui::Checkbox("loop", &loops)) viewer.toggle_loop();
+  note(viewer, "loop");
+  ImGui::SameLine(kWidth * 0.52f * scale());
+  ImGui::TextUnformatted(fmt::format("time {:.2f} s", head.frame() / head.frames_per_second).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("frames 0 to {}, {:.4g} per second", side.num_frames() - 1, head.frames_per_second)
+          .c_str());
+}
+
 void draw_integrator(Viewer& viewer, int s) {
-  const std::string now = viewer.side(s).status().integrator;
+  const std::string now = viewer.side(s).status()->integrator;
   ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
   if (ImGui::BeginCombo("integrator", now.c_str())) {
     for (const std::string_view name : integrator_names()) {
@@ -102,7 +126,7 @@ void draw_status(const LiveStatus& s) {
 }
 
 void draw_model(Viewer& viewer) {
-  const std::string now = viewer.side(0).status().model;
+  const std::string now = viewer.side(0).status()->model;
   ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
   if (ImGui::BeginCombo("springs", now.c_str())) {
     for (const SpringModel model : kModels) {
@@ -116,7 +140,7 @@ void draw_model(Viewer& viewer) {
 }
 
 void draw_wind(Viewer& viewer) {
-  const Vec3 now = viewer.wind().value_or(viewer.side(0).status().wind.velocity);
+  const Vec3 now = viewer.wind().value_or(viewer.side(0).status()->wind.velocity);
   Eigen::Vector3f wind = now.cast<float>();
   bool has_changed = false;
   const char* names[] = {"wind x", "wind y", "wind z"};
@@ -131,10 +155,12 @@ void draw_wind(Viewer& viewer) {
 }
 
 void draw_view(Viewer& viewer) {
-  bool springs = viewer.shows_springs();
-  if (ImGui::Checkbox("show springs", &springs)) viewer.toggle_springs();
-  note(viewer, "springs");
-  ImGui::SameLine(kWidth * 0.62f * scale());
+  if (viewer.is_simulation()) {
+    bool springs = viewer.shows_springs();
+    if (ImGui::Checkbox("show springs", &springs)) viewer.toggle_springs();
+    note(viewer, "springs");
+    ImGui::SameLine(kWidth * 0.62f * scale());
+  }
   if (ImGui::SmallButton("help (H)")) viewer.toggle_help();
   note(viewer, "help");
 }
@@ -153,23 +179,28 @@ void draw_side_box(Viewer& viewer, int s) {
   begin_box(("side " + std::to_string(s)).c_str(), x, static_cast<float>(part.size.height) - kMargin,
             kWidth * scale(), {0.5f, 1});
   draw_integrator(viewer, s);
-  draw_status(viewer.side(s).status());
+  draw_status(*viewer.side(s).status());
   ImGui::End();
 }
 
-void draw_main_box(Viewer& viewer) {
-  begin_box("weft", kMargin, kMargin, kWidth * scale());
-  ImGui::TextUnformatted(viewer.side(0).live().scene().name.c_str());
-  ImGui::Separator();
+/// Of a simulation.
+void draw_controls(Viewer& viewer) {
   draw_play_buttons(viewer);
   if (viewer.num_sides() == 1) {
-    draw_status(viewer.side(0).status());
+    draw_status(*viewer.side(0).status());
     ImGui::Separator();
     draw_integrator(viewer, 0);
   }
   draw_model(viewer);
   ImGui::Separator();
   draw_wind(viewer);
+}
+
+void draw_main_box(Viewer& viewer) {
+  begin_box("weft", kMargin, kMargin, kWidth * scale());
+  ImGui::TextUnformatted(viewer.side(0).title().c_str());
+  ImGui::Separator();
+  viewer.is_simulation() ? draw_controls(viewer) : draw_frames(viewer);
   ImGui::Separator();
   draw_view(viewer);
   say(kPale, fmt::format("{:.0f} ms per picture{}", viewer.picture_ms(),
@@ -178,18 +209,28 @@ void draw_main_box(Viewer& viewer) {
   ImGui::End();
 }
 
-constexpr const char* kHelp[][2] = {
-    {"left drag on cloth", "grab, pull, release"},
+enum class KeyOf { both, simulation, run };
+
+struct KeyHelp {
+  const char* key;
+  const char* meaning;
+  KeyOf of = KeyOf::both;
+};
+
+constexpr KeyHelp kHelp[] = {
+    {"left drag on cloth", "grab, pull, release", KeyOf::simulation},
     {"left or right drag", "rotate the view"},
     {"middle or shift drag", "pan the view"},
     {"wheel", "zoom"},
     {"space", "play, pause"},
-    {". or S", "one step"},
-    {"right arrow, shift+S", "one frame"},
+    {". or S", "one step", KeyOf::simulation},
+    {"right arrow, shift+S", "one frame", KeyOf::simulation},
+    {"right, left arrow", "one frame on, back", KeyOf::run},
     {"R", "restart"},
-    {"I, shift+I", "next, previous integrator"},
-    {"M", "next spring model"},
-    {"G", "cloth or springs"},
+    {"L", "loop, or stop at the end", KeyOf::run},
+    {"I, shift+I", "next, previous integrator", KeyOf::simulation},
+    {"M", "next spring model", KeyOf::simulation},
+    {"G", "cloth or springs", KeyOf::simulation},
     {"C", "reset the view"},
     {"P", "save the picture as PNG"},
     {"J", "write the report (--report)"},
@@ -197,12 +238,13 @@ constexpr const char* kHelp[][2] = {
     {"Q, Esc", "close"},
 };
 
-void draw_help() {
+void draw_help(bool is_simulation) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::Begin("keys", nullptr, kBox);
   if (ImGui::BeginTable("keyboard shortcuts", 2, ImGuiTableFlags_SizingFixedFit)) {
-    for (const auto& [key, meaning] : kHelp) {
+    for (const auto& [key, meaning, of] : kHelp) {
+      if (of == (is_simulation ? KeyOf::run : KeyOf::simulation)) continue;
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(key);
@@ -252,7 +294,7 @@ void draw_panel(Viewer& viewer) {
   draw_divider(viewer);
   draw_main_box(viewer);
   for (int s = 0; viewer.num_sides() > 1 && s < viewer.num_sides(); ++s) draw_side_box(viewer, s);
-  if (viewer.shows_help()) draw_help();
+  if (viewer.shows_help()) draw_help(viewer.is_simulation());
 }
 
 }  // namespace weft::engine::app

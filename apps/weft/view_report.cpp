@@ -12,8 +12,7 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json to_json(const ViewSide& side) {
-  const LiveStatus& s = side.status();
+Json to_json(const LiveStatus& s, const Vec3& center) {
   return {{"integrator", s.integrator},
           {"model", s.model},
           {"playing", s.playing},
@@ -22,7 +21,7 @@ Json to_json(const ViewSide& side) {
           {"time", s.time},
           {"wind", {{"velocity", to_json(s.wind.velocity)}, {"drag", s.wind.drag}}},
           {"held", s.held ? to_json(*s.held) : Json()},
-          {"center", to_json(side.center())},
+          {"center", to_json(center)},
           {"ms_per_step", {{"p50", s.ms_per_step}, {"p95", s.ms_per_step_p95}}},
           {"steps_per_second", s.steps_per_second},
           {"simulated_per_second", s.simulated_per_second},
@@ -30,6 +29,17 @@ Json to_json(const ViewSide& side) {
           {"failure", s.failure.empty() ? Json() : Json(s.failure)},
           {"troubles", s.step_warnings},
           {"warnings", s.warnings}};
+}
+
+Json to_json(ViewSide& side) {
+  if (side.status()) return to_json(*side.status(), side.center());
+  const PlayHead& head = *side.head();
+  return {{"playing", head.is_playing},
+          {"loops", head.loops},
+          {"frame", side.frame()},
+          {"frames", side.num_frames()},
+          {"time", side.frame() / head.frames_per_second},
+          {"center", to_json(side.center())}};
 }
 
 Json to_json(const Camera& c) {
@@ -42,7 +52,7 @@ Json to_json(const Camera& c) {
 }  // namespace
 
 void write_view_report(const std::filesystem::path& file, const Viewer& viewer) {
-  Json json = {{"scene", viewer.side(0).live().scene().name},
+  Json json = {{"scene", viewer.side(0).title()},
                {"playing", viewer.is_playing()},
                {"view", viewer.shows_springs() ? "springs" : "cloth"},
                {"help", viewer.shows_help()},

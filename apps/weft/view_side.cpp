@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kGroundBelow = 0.1;  // below all expected positions, as a share of their extent [1]
 constexpr Color kHand = {0.95, 0.35, 0.02};
+constexpr int kSampled = 60;  // frames of a run, evenly spaced, that the first view contains
 
 double find_ground(const std::vector<Vec3>& reach) {
   Eigen::AlignedBox3d box;
@@ -14,31 +15,45 @@ double find_ground(const std::vector<Vec3>& reach) {
   return box.min().y() - kGroundBelow * box.diagonal().norm();
 }
 
+void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& points) {
+  for (int k = 0; k < 8; ++k) points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k)));
+}
+
+/// Corners of boxes around all meshes but planes, in frames over the whole run.
+std::vector<Vec3> find_reach(Playback& run) {
+  std::vector<Vec3> points;
+  Animation sample = run.meshes();
+  const int last = run.num_frames() - 1, count = std::min(last + 1, kSampled);
+  for (int n = 0; n < count; ++n) {
+    replace_frames(run.read(count == 1 ? 0 : n * last / (count - 1)), sample);
+    for (const AnimatedCloth& cloth : sample.cloths) {
+      Eigen::AlignedBox3d box;
+      for (std::size_t k = 0; k < cloth.frames[0].size(); k += 3)
+        box.extend(Eigen::Map<const Eigen::Vector3f>(&cloth.frames[0][k]).cast<double>());
+      add_corners(box, points);
+    }
+    for (const AnimatedBody& body : sample.bodies) {
+      if (body.shape && std::holds_alternative<Plane>(*body.shape)) continue;
+      Eigen::AlignedBox3d box;
+      for (std::size_t v = 0; v < body.mesh.positions.size(); ++v)
+        box.extend(body.poses[0].rotation * body.vertex(v, 0) + body.poses[0].translation);
+      add_corners(box, points);
+    }
+  }
+  return points;
+}
+
 }  // namespace
-
-ViewSide::ViewSide(const SceneDesc& scene, int threads)
-    : live_(scene, {.threads = threads, .playing = false}),
-      animation_(live_.start()),
-      ground_(find_ground(live_.reach())) {
-  update();
-}
-
-bool ViewSide::update() {
-  if (!live_.take_newest(frame_)) return false;
-  replace_frames(frame_.meshes, animation_);
-  for (std::size_t c = 0; c < frame_.topologies.size(); ++c)
-    animation_.cloths[c].triangles = frame_.topologies[c]->mesh.triangles;
-  return true;
-}
 
 Picture ViewSide::draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const {
   SceneStyle style{.ground = ground_};
-  for (int c = 0; springs && c < static_cast<int>(frame_.topologies.size()); ++c)
-    style.springs.push_back({c, frame_.topologies[c]});
+  for (int c = 0; springs && c < static_cast<int>(topologies_.size()); ++c)
+    style.springs.push_back({c, topologies_[c]});
   Picture picture = ScenePictures(animation_, std::move(style)).at(0, camera);
-  if (const std::optional<Vec3>& held = status().held) {
-    picture.dots.push_back({.positions = {*held}, .color = kHand, .diameter = 11});
-    if (target) picture.lines.push_back({.ends = {*held, *target}, .color = kHand, .width = 2.5});
+  if (status() && status()->held) {
+    const Vec3 held = *status()->held;
+    picture.dots.push_back({.positions = {held}, .color = kHand, .diameter = 11});
+    if (target) picture.lines.push_back({.ends = {held, *target}, .color = kHand, .width = 2.5});
   }
   return picture;
 }
@@ -47,15 +62,55 @@ std::optional<ViewSide::ClothHit> ViewSide::pick(const Ray& ray) const {
   // Cloths come first among the meshes.
   const Picture picture = ScenePictures(animation_, {.ground = ground_}).at(0, {});
   const std::optional<Hit> hit = find_first_hit(picture.meshes, ray);
-  if (!hit || hit->mesh >= static_cast<int>(frame_.meshes.cloths.size())) return std::nullopt;
+  if (!hit || hit->mesh >= static_cast<int>(animation_.cloths.size())) return std::nullopt;
   return ClothHit{{hit->mesh, hit->triangle, hit->weights}, hit->point};
 }
 
 Vec3 ViewSide::center() const {
-  const std::vector<float>& positions = frame_.meshes.cloths[0];
+  const std::vector<float>& positions = animation_.cloths[0].frames[0];
   const Eigen::Map<const Eigen::Matrix3Xf> points(positions.data(), 3,
                                                   static_cast<Eigen::Index>(positions.size() / 3));
   return points.cast<double>().rowwise().mean();
+}
+
+LiveSide::LiveSide(const SceneDesc& scene, int threads)
+    : live_(scene, {.threads = threads, .playing = false}) {
+  animation_ = live_.start();
+  ground_ = find_ground(live_.reach());
+  update();
+}
+
+void LiveSide::step_frame(bool backwards) {
+  if (!backwards) step(live_.scene().steps_per_frame);
+}
+
+bool LiveSide::update() {
+  if (!live_.take_newest(frame_)) return false;
+  replace_frames(frame_.meshes, animation_);
+  topologies_ = frame_.topologies;
+  for (std::size_t c = 0; c < topologies_.size(); ++c)
+    animation_.cloths[c].triangles = topologies_[c]->mesh.triangles;
+  return true;
+}
+
+RunSide::RunSide(const std::filesystem::path& path)
+    : playback_(path),
+      title_(playback_.meshes().title.empty() ? path.string() : playback_.meshes().title),
+      reach_(find_reach(playback_)),
+      head_{.frames_per_second = playback_.meshes().frames_per_second, .is_playing = false} {
+  animation_ = playback_.meshes();
+  ground_ = find_ground(reach_);
+}
+
+bool RunSide::update() {
+  const Clock::time_point now = Clock::now();
+  const bool was_playing = head_.is_playing;
+  if (updated_) head_.advance(std::chrono::duration<double>(now - *updated_).count(), num_frames());
+  updated_ = now;
+  if (head_.frame() == frame_) return was_playing != head_.is_playing;
+  frame_ = head_.frame();
+  replace_frames(playback_.read(frame_), animation_);
+  return true;
 }
 
 }  // namespace weft::engine::app

@@ -1,21 +1,41 @@
 #pragma once
-/// One simulation in the window: the only one, or one of two.
+/// What the window, or one of its two halves, shows: a simulation, or the frames of a run.
+
+#include <chrono>
 
 #include "weft/pictures/scene_picture.h"
 #include "weft/render/pick.h"
 #include "weft/run/live.h"
+#include "weft/run/playback.h"
 
 namespace weft::engine::app {
 
 class ViewSide {
  public:
-  ViewSide(const SceneDesc& scene, int threads);
+  virtual ~ViewSide() = default;
+  ViewSide(const ViewSide&) = delete;
+  ViewSide& operator=(const ViewSide&) = delete;
 
-  LiveSimulation& live() { return live_; }
-  const LiveStatus& status() const { return frame_.status; }
+  virtual const std::string& title() const = 0;
+  virtual std::vector<Vec3> reach() const = 0;  // points to be in the picture [m]
 
-  /// Fetches the newest frame; false if there is none since the last call.
-  bool update();
+  virtual void play() = 0;
+  virtual void pause() = 0;
+  virtual void step(int count) = 0;             // pauses, then makes so many steps; of a run frames
+  virtual void step_frame(bool backwards) = 0;  // likewise a frame; a simulation has no way back
+  virtual void reset() = 0;                     // to the start
+
+  /// Takes the newest frame; false if there is none since the last call.
+  virtual bool update() = 0;
+
+  /// Whether it goes on by itself: false after a failed step, and at the end of a run that does not loop.
+  virtual bool is_going() const = 0;
+
+  virtual LiveSimulation* live() { return nullptr; }            // null: frames of a run
+  virtual const LiveStatus* status() const { return nullptr; }  // of live()
+  virtual PlayHead* head() { return nullptr; }                  // null: a simulation
+  virtual int num_frames() { return 0; }                        // of a run, with the start
+  virtual int frame() const { return 0; }                       // of a run: the current one
 
   /// The current picture: cloth, or its springs; and the attachment, drawn towards `target`.
   Picture draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const;
@@ -29,11 +49,64 @@ class ViewSide {
 
   Vec3 center() const;  // of the first cloth's particles [m]
 
+ protected:
+  ViewSide() = default;
+
+  Animation animation_;                                           // one frame: the current one
+  std::vector<std::shared_ptr<const ClothTopology>> topologies_;  // (num_cloths) of live()
+  double ground_ = 0;  // height of the ground in scenes without a floor [m]
+};
+
+/// A simulation in real time.
+class LiveSide : public ViewSide {
+ public:
+  LiveSide(const SceneDesc& scene, int threads);
+
+  const std::string& title() const override { return live_.scene().name; }
+  std::vector<Vec3> reach() const override { return live_.reach(); }
+  void play() override { live_.play(); }
+  void pause() override { live_.pause(); }
+  void step(int count) override { live_.step(count); }
+  void step_frame(bool backwards) override;
+  void reset() override { live_.reset(); }
+  bool update() override;
+  bool is_going() const override { return frame_.status.failure.empty(); }
+  LiveSimulation* live() override { return &live_; }
+  const LiveStatus* status() const override { return &frame_.status; }
+
  private:
   LiveSimulation live_;
   LiveFrame frame_;
-  Animation animation_;  // one frame: the current one
-  double ground_;        // height of the ground in scenes without a floor [m]
+};
+
+/// The frames of a run, in their time.
+class RunSide : public ViewSide {
+ public:
+  /// Throws InputError like Playback.
+  explicit RunSide(const std::filesystem::path& path);
+
+  const std::string& title() const override { return title_; }
+  std::vector<Vec3> reach() const override { return reach_; }
+  void play() override { head_.play(num_frames()); }
+  void pause() override { head_.is_playing = false; }
+  void step(int count) override { head_.step(count, num_frames()); }
+  void step_frame(bool backwards) override { step(backwards ? -1 : 1); }
+  void reset() override { head_.seek(0, num_frames()); }
+  bool update() override;
+  bool is_going() const override { return head_.is_playing; }
+  PlayHead* head() override { return &head_; }
+  int num_frames() override { return playback_.num_frames(); }
+  int frame() const override { return frame_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Playback playback_;
+  std::string title_;
+  std::vector<Vec3> reach_;
+  PlayHead head_;
+  int frame_ = 0;  // in animation_
+  std::optional<Clock::time_point> updated_;
 };
 
 }  // namespace weft::engine::app

@@ -29,7 +29,7 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 Viewer::Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options)
     : sides_(std::move(sides)),
       options_(options),
-      window_({.title = "Weft: " + sides_[0]->live().scene().name, .size = options.size}),
+      window_({.title = "Weft: " + sides_[0]->title(), .size = options.size}),
       renderer_(window_.make_device()),
       quality_(window_.is_software()) {
   set_panel_style(window_.scale());
@@ -38,7 +38,7 @@ Viewer::Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& 
 
 void Viewer::run() {
   const WindowEvents events = make_events();
-  for (const auto& side : sides_) side->live().play();
+  for (const auto& side : sides_) side->play();
   drawn_at_ = second_began_ = Clock::now();
   while (!window_.is_closing() && !interrupted()) {
     wait();
@@ -52,13 +52,13 @@ void Viewer::run() {
 
 /// A side whose step has failed pauses itself; the other one then pauses too.
 void Viewer::update() {
-  bool has_failed = false;
+  bool has_stopped = false;
   for (const auto& side : sides_) {
     if (!side->update()) continue;
     has_news_ = true;
-    has_failed |= !side->status().failure.empty();
+    has_stopped |= !side->is_going();
   }
-  if (has_failed && is_playing_) toggle_play();
+  if (has_stopped && is_playing_) toggle_play();
 }
 
 // ---- User input -----------------------------------------------------------------------------------------
@@ -66,41 +66,54 @@ void Viewer::update() {
 void Viewer::toggle_play() {
   is_playing_ = !is_playing_;
   for (const auto& side : sides_) {
-    if (is_playing_)
-      side->live().play();
-    else
-      side->live().pause();
+    is_playing_ ? side->play() : side->pause();
   }
 }
 
 void Viewer::step(int count) {
   is_playing_ = false;
-  for (const auto& side : sides_) side->live().step(count);
+  for (const auto& side : sides_) side->step(count);
 }
 
-void Viewer::step_frame() { step(sides_[0]->live().scene().steps_per_frame); }
+void Viewer::step_frame(bool backwards) {
+  if (backwards && is_simulation()) return;
+  is_playing_ = false;
+  for (const auto& side : sides_) side->step_frame(backwards);
+}
 
 void Viewer::reset() {
-  for (const auto& side : sides_) side->live().reset();
+  for (const auto& side : sides_) side->reset();
 }
 
-void Viewer::set_integrator(int side, const std::string& name) { sides_[side]->live().set_integrator(name); }
+void Viewer::seek(int frame) {
+  for (const auto& side : sides_) side->head()->seek(frame, side->num_frames());
+}
+
+void Viewer::toggle_loop() {
+  for (const auto& side : sides_) {
+    if (PlayHead* head = side->head()) head->loops = !head->loops;
+  }
+}
+
+void Viewer::set_integrator(int side, const std::string& name) { sides_[side]->live()->set_integrator(name); }
 
 void Viewer::cycle_integrator(bool backwards) {
+  if (!is_simulation()) return;
   const int s = side_at(mouse_x_);
   const auto& names = integrator_names();
-  const auto now = std::find(names.begin(), names.end(), sides_[s]->status().integrator) - names.begin();
+  const auto now = std::find(names.begin(), names.end(), sides_[s]->status()->integrator) - names.begin();
   const auto count = static_cast<std::ptrdiff_t>(names.size());
   set_integrator(s, std::string(names[(now + (backwards ? count - 1 : 1)) % count]));
 }
 
 void Viewer::set_model(SpringModel model) {
   model_ = model;
-  for (const auto& side : sides_) side->live().set_model(model);
+  for (const auto& side : sides_) side->live()->set_model(model);
 }
 
 void Viewer::cycle_model() {
-  const std::string now = model_ ? std::string(to_string(*model_)) : sides_[0]->status().model;
+  if (!is_simulation()) return;
+  const std::string now = model_ ? std::string(to_string(*model_)) : sides_[0]->status()->model;
   const auto known = std::find_if(std::begin(kModels), std::end(kModels),
                                   [&](SpringModel m) { return to_string(m) == now; });
   if (known == std::end(kModels)) return say("mesh cloth: its edges are the only spring model");
@@ -109,11 +122,15 @@ void Viewer::cycle_model() {
 
 void Viewer::set_wind(const std::optional<Vec3>& velocity) {
   wind_ = velocity;
-  for (const auto& side : sides_) side->live().set_wind(velocity);
+  for (const auto& side : sides_) side->live()->set_wind(velocity);
+}
+
+void Viewer::toggle_springs() {
+  if (is_simulation()) shows_springs_ = !shows_springs_;
 }
 
 void Viewer::frame_scene() {
-  camera_ = frame_points({}, sides_[0]->live().reach(), part(0).size.aspect());
+  camera_ = frame_points({}, sides_[0]->reach(), part(0).size.aspect());
   camera_.zoom(kRoom);
 }
 
@@ -142,9 +159,13 @@ void Viewer::on_key(int key, bool shift) {
     case '.':
       return step(1);
     case 'S':
-      return shift ? step_frame() : step(1);
+      return shift ? step_frame(false) : step(1);
     case kKeyRight:
-      return step_frame();
+      return step_frame(false);
+    case kKeyLeft:
+      return step_frame(true);
+    case 'L':
+      return toggle_loop();
     case 'R':
       return reset();
     case 'I':
@@ -199,12 +220,13 @@ void Viewer::on_move(double x, double y) {
 
 /// Grabs the same point of the cloth on both sides.
 bool Viewer::grab(double x, double y) {
+  if (!is_simulation()) return false;
   grab_side_ = side_at(x);
   const auto hit = sides_[grab_side_]->pick(ray_at(grab_side_, x, y));
   if (!hit) return false;
   grab_place_ = hit->place;
   grab_target_ = hit->place;
-  for (const auto& side : sides_) side->live().grab(hit->point);
+  for (const auto& side : sides_) side->live()->grab(hit->point);
   return true;
 }
 
@@ -214,12 +236,12 @@ void Viewer::drag_grab(double x, double y) {
   const double along = ray.direction.dot(camera_.forward());
   const double t = (grab_place_ - ray.origin).dot(camera_.forward()) / along;
   grab_target_ = ray.origin + t * ray.direction;
-  for (const auto& side : sides_) side->live().move_grab(*grab_target_);
+  for (const auto& side : sides_) side->live()->move_grab(*grab_target_);
 }
 
 void Viewer::release() {
   if (drag_ == Drag::grab) {
-    for (const auto& side : sides_) side->live().release();
+    for (const auto& side : sides_) side->live()->release();
   }
   grab_target_.reset();
   drag_ = Drag::none;

@@ -24,7 +24,8 @@ struct ViewOptions {
 
 class Viewer {
  public:
-  /// `sides`: one or two simulations of one scene, at rest until run(). Throws GraphicsError.
+  /// `sides`: one or two simulations of one scene, or the frames of a run; at rest until run(). Throws
+  /// GraphicsError.
   Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options);
 
   /// Runs until the window is closed.
@@ -33,14 +34,16 @@ class Viewer {
   // Actions of the keys, the mouse and the panel.
   void toggle_play();
   void step(int count);
-  void step_frame();
+  void step_frame(bool backwards);
+  void seek(int frame);  // of a run
+  void toggle_loop();    // of a run
   void reset();
   void set_integrator(int side, const std::string& name);
   void cycle_integrator(bool backwards);  // of the side under the mouse
   void set_model(SpringModel model);
   void cycle_model();
   void set_wind(const std::optional<Vec3>& velocity);  // empty: the scene's
-  void toggle_springs() { shows_springs_ = !shows_springs_; }
+  void toggle_springs();
   void toggle_help() { shows_help_ = !shows_help_; }
   void frame_scene();  // the initial camera
   void save_picture() { wants_picture_ = true; }
@@ -49,6 +52,7 @@ class Viewer {
   // Data for the panel and the report.
   int num_sides() const { return static_cast<int>(sides_.size()); }
   ViewSide& side(int s) const { return *sides_[s]; }
+  bool is_simulation() const { return sides_[0]->live() != nullptr; }  // else frames of a run
   bool is_playing() const { return is_playing_; }
   bool shows_springs() const { return shows_springs_; }
   bool shows_help() const { return shows_help_; }

@@ -141,8 +141,8 @@ struct Converted {
   std::vector<std::string> notes = {};  // what a format could not say or hold, and absurd sizes, as sentences
 };
 
-/// `in` is a mesh (OBJ, PLY, STL), a point cache (PC2, MDD), or the folder of a run. `out` is a file of the
-/// same kind (OBJ, PLY; PC2, MDD), by its ending. Of a run with several cloths each has its own file:
+/// `in` is a mesh (OBJ, PLY, STL, glTF), a point cache (PC2, MDD), or the folder of a run. `out` is a file of the
+/// same kind (OBJ, PLY; PC2, MDD), by its ending; the meshes of a glTF file also become a point cache. Of a run with several cloths each has its own file:
 /// `walk.mdd` becomes `walk_skirt.mdd`. Point caches also become a sequence of meshes, `walk_0000.obj` being
 /// frame 0. A run has their mesh, another cache needs `mesh`. Frames are read and written one by one. Throws
 /// InputError for files that cannot be read, written or converted; an earlier file of that name then stays as

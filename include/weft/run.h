@@ -34,6 +34,10 @@ struct RunOptions {
                      // CLOTH.mesh.obj, that mesh at the start
   bool glb = true;   // animation.glb: cloths and colliders
   bool obj = false;  // obj/CLOTH_0000.obj: a file per cloth and frame, 0 being the start
+  /// DIR@FRAME, DIR@last or DIR: a frame of an earlier run, the last one without a number. Cloths of the same
+  /// name begin with its positions. Their velocities are differences of its frames: an approximation, while a
+  /// resumed run continues exactly. Empty: all cloths begin as the scene says.
+  std::string start_from = {};
   Unfinished unfinished = Unfinished::refuse;
   double checkpoint_seconds = 30;  // of simulation and output, between checkpoints in the folder; >= 0 [s]
   std::optional<int> checkpoint_every = {};  // instead: frames between them, >= 1 [1]

@@ -66,7 +66,8 @@ void bind_scene_class(nb::module_& m) {
 
 nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, bool audit,
                    bool check_passages, const std::string& folder, bool glb, bool obj,
-                   const std::string& unfinished, std::optional<int> checkpoint_every, nb::object on_frame) {
+                   const std::string& start_from, const std::string& unfinished,
+                   std::optional<int> checkpoint_every, nb::object on_frame) {
   std::optional<nb::python_error> raised;  // ends the run, which keeps its frames, and is thrown then
   RunOptions options{.frames = frames,
                      .threads = threads,
@@ -76,6 +77,7 @@ nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, b
                      .pc2 = true,
                      .glb = glb,
                      .obj = obj,
+                     .start_from = start_from,
                      .unfinished = value_of<Unfinished>(unfinished),
                      .checkpoint_every = checkpoint_every};
   options.keep_going = [&] {
@@ -194,6 +196,26 @@ void bind_files(nb::module_& m, const std::string& name) {
                     .c_str()));
 }
 
+void bind_gltf(nb::module_& m) {
+  m.def(
+      "read_gltf",
+      [](const std::string& file, const std::string& node, const std::string& clip, double scale) {
+        std::optional<BodyFromFile> read;
+        {
+          const nb::gil_scoped_release release;
+          read.emplace(read_gltf(file, {.node = node, .clip = clip, .scale = scale}));
+        }
+        BodyFromFile& body = *read;
+        return nb::make_tuple(
+            make_array(std::move(body.mesh.positions)), make_array<int>(std::move(body.mesh.triangles), {3}),
+            make_array<double>(std::move(body.mesh.uv), {3, 2}),
+            body.motion.is_empty() ? nb::object(nb::none()) : nb::cast(std::move(body.motion)),
+            std::move(body.clip), std::move(body.warnings));
+      },
+      nb::sig("def read_gltf(file: str, node: str, clip: str, scale: float) -> tuple[NDArray[numpy.float64], "
+              "NDArray[numpy.int32], NDArray[numpy.float64], VertexMotion | None, str, list[str]]"));
+}
+
 void bind_meshes(nb::module_& m) {
   bind_files<read_obj, write_obj, write_obj>(m, "obj");
   bind_files<read_mesh, write_mesh, write_mesh>(m, "mesh");
@@ -258,15 +280,16 @@ void bind_convert(nb::module_& m) {
 void bind_scene(nb::module_& m) {
   bind_errors(m);
   bind_scene_class(m);
+  bind_gltf(m);
   bind_meshes(m);
   bind_point_caches(m);
   bind_convert(m);
   m.def("run", run_scene, nb::arg("scene"), nb::arg("frames").none(), nb::arg("threads"), nb::arg("audit"),
-        nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("unfinished"),
-        nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),
+        nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("start_from"),
+        nb::arg("unfinished"), nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),
         nb::sig("def run(scene: Scene, frames: int | None, threads: int, audit: bool, check_passages: bool, "
                 "folder: str, "
-                "glb: bool, obj: bool, unfinished: str, checkpoint_every: int | None, "
+                "glb: bool, obj: bool, start_from: str, unfinished: str, checkpoint_every: int | None, "
                 "on_frame: collections.abc.Callable[[int, int, float, float], object] "
                 "| None) -> dict[str, typing.Any]"));
 }

@@ -167,11 +167,14 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
   c.def("add_collider",
         [](LockedWorld& own, const std::string& name, nb::handle shape, const std::string& source,
            const Vec3& position, const Matrix& rotation, std::vector<KeyFrame> motion, nb::handle frames,
-           double friction, double static_friction) {
+           std::optional<VertexMotion> deformation, double deformation_start, double friction,
+           double static_friction) {
           ColliderDesc desc{.name = name,
                             .source = source,
                             .pose = to_pose(position, rotation),
                             .motion = std::move(motion),
+                            .deformation = deformation.value_or(VertexMotion()),
+                            .deformation_start = deformation_start,
                             .friction = friction,
                             .static_friction = static_friction};
           if (nb::isinstance<Sphere>(shape))
@@ -267,16 +270,17 @@ void bind_motion(nb::class_<LockedWorld>& c) {
     const std::vector<Vec3> places = to_vectors(positions);
     with(own, [&](World& w) { w.place_vertices(id, places); });
   });
-  c.def("add_pin",
-        [](LockedWorld& own, const ClothId& id, const Indices& particles, std::vector<KeyFrame> motion,
-           const Vec3& pivot, std::optional<double> stiffness, double damping) {
-          const Pin pin{.particles = to_indices(particles),
-                        .motion = std::move(motion),
-                        .pivot = pivot,
-                        .stiffness = stiffness,
-                        .damping = damping};
-          with(own, [&](World& w) { w.add_pin(id, pin); });
-        });
+  c.def("add_pin", [](LockedWorld& own, const ClothId& id, const Indices& particles,
+                      std::vector<KeyFrame> motion, const Vec3& pivot, std::optional<ColliderId> follow,
+                      std::optional<double> stiffness, double damping) {
+    const Pin pin{.particles = to_indices(particles),
+                  .motion = std::move(motion),
+                  .pivot = pivot,
+                  .follow = follow,
+                  .stiffness = stiffness,
+                  .damping = damping};
+    with(own, [&](World& w) { w.add_pin(id, pin); });
+  });
   c.def("unpin", [](LockedWorld& own, const ClothId& id, const Indices& particles) {
     const std::vector<int> released = to_indices(particles);
     with(own, [&](World& w) { w.unpin(id, released); });
@@ -568,7 +572,24 @@ void bind_batch(nb::module_& m) {
 
 }  // namespace
 
+/// Bound before functions that take it.
+void bind_vertex_motion(nb::module_& m) {
+  nb::class_<VertexMotion>(
+      m, "VertexMotion",
+      "Vertices of a mesh as a function of time: skins, morph targets and nodes of a glTF "
+      "file. From `read_gltf`.")
+      .def_prop_ro("num_vertices", &VertexMotion::num_vertices, "The number of vertices.")
+      .def_prop_ro("start", &VertexMotion::start, "Time of the first key [s].")
+      .def_prop_ro("end", &VertexMotion::end, "Time of the last key [s].")
+      .def(
+          "positions",
+          [](const VertexMotion& motion, double time) { return make_array(motion.positions(time)); },
+          nb::arg("time"), nb::sig("def positions(self, time: float) -> NDArray[numpy.float64]"),
+          "Positions at a time [s]: (num_vertices, 3), constant before `start` and after `end` [m].");
+}
+
 void bind_world(nb::module_& m) {
+  bind_vertex_motion(m);
   bind_ids(m);
   nb::class_<Snapshot>(m, "Snapshot").attr("__doc__") = "State of a world at a time, from `World.snapshot`.";
   nb::class_<LockedWorld> c(m, "World");

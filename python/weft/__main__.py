@@ -26,7 +26,7 @@ def _run(options: argparse.Namespace) -> int:
     folder = options.out or os.path.join("out", scene.name)
     result = run(
         scene, frames=options.frames, threads=options.threads, out=folder, progress=True, glb=options.glb,
-        obj=options.obj, audit=options.audit, unfinished=options.unfinished,
+        obj=options.obj, audit=options.audit, start_from=options.start_from, unfinished=options.unfinished,
     )  # fmt: skip
     print(f"{scene.name}: {result.num_frames} frames, state hash {result.report['state_hash']}, {folder}")
     for problem in result.problems:
@@ -108,6 +108,7 @@ def _parser() -> argparse.ArgumentParser:
         verb.add_argument("--no-glb", dest="glb", action="store_false", help="do not write animation.glb")
         verb.add_argument("--obj", action="store_true", help="also write an OBJ file per cloth and frame")
         verb.add_argument("--audit", action="store_true", help="also report the energy balance; slower")
+        verb.add_argument("--start-from", metavar="DIR@FRAME", help="begin with the cloths of a frame of an earlier run")
         kept = verb.add_mutually_exclusive_group()
         kept.add_argument("--resume", dest="unfinished", action="store_const", const="resume", default="refuse",
                           help="continue an unfinished run in the folder")  # fmt: skip

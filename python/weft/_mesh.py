@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arguments import faces as as_faces
-from ._arguments import numbers, vectors, whole_numbers
+from ._arguments import numbers, real, vectors, whole_numbers
 from ._errors import tell_of_file
 
 
@@ -94,6 +94,7 @@ class Mesh:
     vertices: (num_vertices, 3) [m]. faces: (num_triangles, 3), counter-clockwise seen from the front.
     uv: texture coordinates by vertex (num_vertices, 2) or by corner (num_triangles, 3, 2); warp runs along u.
     polygons: of a mesh that was read, the faces of the file, which writing keeps; set it to None to write triangles.
+    deformation: the motion of its vertices, of a mesh from `read_gltf`; None: rigid.
 
     >>> square = Mesh([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)], [(0, 2, 1), (0, 3, 2)])
     >>> square
@@ -105,6 +106,7 @@ class Mesh:
         self.faces: NDArray[np.int32] = as_faces(faces, len(self.vertices), "faces")
         self.uv: NDArray[np.float64] | None = None
         self.polygons: Polygons | None = None
+        self.deformation: _core.VertexMotion | None = None
         if uv is not None:
             array = numbers(uv, "uv")
             if array.shape == (len(self.vertices), 2):
@@ -176,6 +178,25 @@ def read_mesh(file: str | os.PathLike[str]) -> Mesh:
     vertices, faces, uv, polygons, notes = _core.read_mesh(os.fspath(file))
     tell_of_file(notes)
     return mesh_with(vertices, faces, uv, polygons_from(*polygons))
+
+
+def read_gltf(file: str | os.PathLike[str], *, node: str = "", clip: str = "", scale: float = 1.0) -> Mesh:
+    """Reads the meshes of a glTF file (.glb, .gltf) as a body that moves: skins, morph targets, nodes.
+
+    node: only its meshes and those below it. clip: the animation, by default the first one. scale: length of the file's
+    unit [m]. The vertices are those at the start of the clip, and `deformation` of the mesh is its motion: as a
+    collider it moves (`World.add_collider`). Raises InputError for an unusable file, node or clip. A FileWarning names
+    what was ignored.
+    """
+    for name, text in (("node", node), ("clip", clip)):
+        if not isinstance(text, str):
+            raise _core.InputError(f"{name}: expected a name, found {text!r:.60}")
+    vertices, faces, uv, deformation, _, notes = _core.read_gltf(os.fspath(file), node, clip, real(scale, "scale"))
+    tell_of_file(notes)
+    mesh = Mesh(vertices, faces)
+    mesh.uv = uv if len(uv) else None
+    mesh.deformation = deformation
+    return mesh
 
 
 def mesh_with(

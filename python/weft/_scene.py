@@ -386,6 +386,7 @@ def run(
     obj: bool = False,
     audit: bool = False,
     check_passages: bool = True,
+    start_from: str | os.PathLike[str] | Run | None = None,
     unfinished: Literal["refuse", "resume", "discard"] = "refuse",
     checkpoint_every: int | None = None,
 ) -> Run:
@@ -395,9 +396,11 @@ def run(
     without it they go when the returned object does. progress: True shows a bar (tqdm where it is installed); or a
     function of frame, number of frames, seconds spent and seconds left, which ends the run by returning False.
     glb, obj: whether to write animation.glb, and an OBJ file per cloth and frame. audit: also the energy balance.
-    check_passages: also the check for tunnelling within steps. unfinished: what to do about a run in `out` that was
-    killed: refuse it, resume it from its last checkpoint, or discard it. checkpoint_every: frames between checkpoints;
-    by default as many as take 30 s.
+    check_passages: also the check for tunnelling within steps. start_from: a frame of an earlier run, as "DIR@60" or
+    "DIR@last"; of a Run its last one. The cloths begin with the positions of that frame, by their names, and with
+    velocities from differences of frames: an approximation, while a resumed run continues exactly. unfinished: what to
+    do about a run in `out` that was killed: refuse it, resume it from its last checkpoint, or discard it.
+    checkpoint_every: frames between checkpoints; by default as many as take 30 s.
 
     Ctrl-C ends it within a step; the frames made so far are in `out`. Raises InputError for bad input. A failed step
     ends it with the outcome "failed".
@@ -411,12 +414,15 @@ def run(
     num_threads, num_frames = whole(threads, "threads"), None if frames is None else whole(frames, "frames")
     if num_threads < 1 or (num_frames is not None and num_frames < 1):
         raise _core.InputError("threads and frames: expected at least 1")
+    start = start_from.folder if isinstance(start_from, Run) else start_from
+    if start is not None:
+        choose(start, "start_from", (str, os.PathLike), 'a Run or text such as "out/flag@60"')
     every = None if checkpoint_every is None else whole(checkpoint_every, "checkpoint_every")
     keeper = tempfile.TemporaryDirectory(prefix="weft-", ignore_cleanup_errors=True) if out is None else None
     folder = Path(keeper.name if keeper else os.fspath(out))  # type: ignore[arg-type]
     tell = _show_progress(scene.name) if progress is True else progress or None
     _core.run(
         scene._scene, num_frames, num_threads, bool(audit), bool(check_passages),
-        str(folder), bool(glb), bool(obj), str(unfinished), every, tell,
+        str(folder), bool(glb), bool(obj), "" if start is None else os.fspath(start), str(unfinished), every, tell,
     )  # fmt: skip
     return Run(folder, keeper)

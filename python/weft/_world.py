@@ -213,17 +213,22 @@ class Cloth:
         damping: float = 0.0,
         motion: Sequence[_core.KeyFrame] = (),
         pivot: ArrayLike = (0, 0, 0),
+        follow: Collider | None = None,
     ) -> None:
         """Pins particles where they are: indices, negative ones from the end, or a mask.
 
         `stiffness` [N/m] and `damping` [N·s/m] make them soft: a spring each. `motion` moves them along key frames,
-        turning about `pivot` [m]. Raises InputError for particles that are pinned already.
+        turning about `pivot` [m]. `follow` binds them to a collider instead: to the nearest triangle of a mesh, to any
+        other shape as a rigid body. Raises InputError for particles that are pinned already.
         """
+        if follow is not None:
+            choose(follow, "follow", Collider, "a Collider")
         self._core.add_pin(
             self._id,
             indices(particles, self._count, "particles"),
             _key_frames(motion),
             vector(pivot, "pivot"),
+            None if follow is None else follow._id,
             None if stiffness is None else real(stiffness, "stiffness"),
             real(damping, "damping"),
         )
@@ -498,18 +503,25 @@ class World:
         rotation: Any = None,
         motion: Sequence[_core.KeyFrame] = (),
         frames: Iterable[tuple[float, ArrayLike]] = (),
+        start_time: float | None = None,
         name: str = "",
     ) -> Collider:
         """Adds a collider: Sphere, Plane, Capsule, Box, Mesh, or any object with `vertices` and `faces`.
 
         position [m] and rotation: its pose, as in `add_cloth`. motion: key frames. frames: (time, vertices) of a
-        mesh that deforms, linear between them. friction and static_friction: Coulomb coefficients of cloth on it.
+        mesh that deforms, linear between them. start_time: of the `deformation` of a mesh from `read_gltf`, at time 0 of
+        the world [s]; by default its start. friction and static_friction: Coulomb coefficients of cloth on it.
 
         Raises InputError for an invalid shape or motion.
         """
+        deformation = None
         if not isinstance(shape, Solid):
             mesh = as_mesh(shape)
-            shape = (mesh.vertices, mesh.faces)
+            shape, deformation = (mesh.vertices, mesh.faces), mesh.deformation
+        if start_time is None:
+            start_time = deformation.start if deformation is not None else 0.0
+        elif deformation is None:
+            raise _core.InputError("start_time: only a mesh with a deformation has it, from read_gltf")
         keys = _key_frames(motion)
         choose(frames, "frames", Iterable, "a list of pairs (time, vertices)")
         poses = []
@@ -520,7 +532,7 @@ class World:
             poses.append((real(frame[0], "frames"), vectors(frame[1], "frames")))
         id = self._core.add_collider(
             str(name), shape, "", vector(position, "position"), _rotation(rotation), keys, poses,
-            real(friction, "friction"), real(static_friction, "static_friction"),
+            deformation, real(start_time, "start_time"), real(friction, "friction"), real(static_friction, "static_friction"),
         )  # fmt: skip
         return Collider(self, id)
 

@@ -249,7 +249,7 @@ TEST_F(App, ConvertsMeshesAndPointCaches) {
   expect_bad_input("weft convert part.pc2 part.fbx", "a point cache is written as .pc2 or .mdd");
   expect_bad_input("weft convert '" + shirt + "' shirt.fbx", "a mesh is written as .obj or .ply");
   expect_bad_input("weft convert run run.usdc", "USD files are converted by `python -m weft convert`");
-  expect_bad_input("weft convert out out.mdd", "out/run.json: not the list of a run's files");
+  expect_bad_input("weft convert out out.mdd", "out holds no run: there is no run.json");
 }
 
 /// Waits until a run in the background has made a frame of its first cloth.

@@ -377,6 +377,10 @@ def run_of(text: str, **options: object) -> weft.Run:
     return weft.run(weft.load_scene(text), frames=1, **options)  # type: ignore[arg-type]
 
 
+def run_into(folder: Path) -> Path:
+    return run_of(GRID_OF_FOUR, out=folder / "old").folder
+
+
 def unused_vertex(folder: Path) -> str:
     weft.write_obj(folder / "m.obj", weft.Mesh([*SQUARE.vertices, (9, 9, 9)], SQUARE.faces))
     return GRID + 'mesh = "m.obj"\n'
@@ -428,6 +432,17 @@ FILES: list[tuple[Callable[[Path], object], str]] = [
     (lambda t: run_of(GRID_OF_FOUR, out="/dev/null/x"),
      "cannot create folder /dev/null/x: Not a directory"),
     (lambda t: run_of(GRID_OF_FOUR, glb=False).picture(), "the run has no animation.glb; run it with glb=True"),
+    (lambda t: run_of(GRID_OF_FOUR, start_from=t), "{} holds no run: there is no run.json"),
+    (lambda t: run_of(GRID_OF_FOUR, start_from=f"{t}@x"),
+     'start_from {}@x: expected DIR@FRAME, with a number or "last" as FRAME'),
+    (lambda t: run_of(GRID_OF_FOUR, start_from=f"{run_into(t)}@2"),
+     "{}/old has the frames 0 to 1; a scene cannot start from frame 2"),
+    (lambda t: run_of(GRID_OF_FOUR, start_from=run_into(t), out=t / "old"),
+     "start_from {}/old: the results would replace the run that they start from; give them another folder"),
+    (lambda t: run_of(GRID_OF_FOUR.replace("[4, 4]", "[4, 5]"), start_from=run_into(t)),
+     'cloth "cloth" has 30 vertices in the scene, but 25 in frame 1 of {}/old; a start requires the same mesh'),
+    (lambda t: run_of(GRID_OF_FOUR.replace("[[cloth]]", '[[cloth]]\nname = "cape"'), start_from=run_into(t)),
+     'no cloth starts from frame 1 of {}/old: the scene has "cape", the run has "cloth"; cloths are matched by name'),
     (lambda t: run_of(GRID_OF_FOUR).video(t / "a.avi"), "{}/a.avi: expected a file name ending in .mp4, .webp or .gif"),
     (lambda t: run_of(GRID_OF_FOUR).video(t / "a.gif", every=0),
      "{}/a.gif: expected every 1st or a later frame, not 0"),
@@ -518,13 +533,14 @@ UNREACHABLE = {
     ": a video needs colours": "the package asks for colours",
     '", expected a folder with scenes': "test_a_folder_of_scenes_that_is_none",
     "the shipped scenes are not found; set WEFT_SCENES to their folder": "they are there",
+    " has no frame yet": "a run writes its start first",
     "scene.settle: the simulation failed in step ": "no known scene diverges while it settles",
 }
 SEARCHED = ["face/*.cpp", "core/archive.h", "world/world.cpp", "world/world_input.cpp", "fabric/laboratory.cpp",
             "fabric/grid_springs.cpp", "mesh/triangle_mesh.cpp", "mesh/grid.cpp", "mesh/clean.cpp", "animation/*.cpp",
             "model/cloth_model.cpp", "integrators/integrator.cpp", "pictures/public_camera.cpp",
             "pictures/pictures.cpp",
-            "run/run.cpp", "scene/scene_library.cpp", "scene/scene_world.cpp"]  # fmt: skip
+            "run/run.cpp", "run/start_from.cpp", "scene/scene_start.cpp", "scene/scene_library.cpp", "scene/scene_world.cpp"]  # fmt: skip
 
 
 THROWN = re.compile(r"(?:throw InputError|\brequire)\(((?:[^;\"]|\"(?:[^\"\\]|\\.)*\")*);")

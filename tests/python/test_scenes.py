@@ -211,6 +211,16 @@ def test_a_killed_run_goes_on(tmp_path: Path) -> None:
         weft.run("paper/fig6_ball", frames=1, unfinished="maybe")  # type: ignore[arg-type]
 
 
+def test_a_scene_starts_from_a_frame_of_a_run(tmp_path: Path) -> None:
+    old = weft.run("paper/fig6_ball", frames=4, out=tmp_path / "old")
+    frame = old.positions["cloth"]
+    for start_from, number in ((f"{tmp_path}/old@2", 2), (tmp_path / "old", 4), (old, 4)):
+        new = weft.run("paper/fig6_ball", frames=1, start_from=start_from)
+        assert new.num_frames == 1
+        assert np.allclose(new.positions["cloth"][0], frame[number], rtol=0, atol=2e-7)  # floats below 2 m
+        assert new.report["notes"] == [f'cloth "cloth" starts from frame {number} of {tmp_path}/old']
+
+
 @pytest.mark.parametrize("has_tqdm", [False, True])
 def test_progress_is_shown(has_tqdm: bool) -> None:
     if has_tqdm:

@@ -218,6 +218,55 @@ TEST_F(Resume, NoticesThatAMeshFileHasChanged) {
   EXPECT_NE(said.find("[[cloth]] mesh = \"hash "), std::string::npos) << said;
 }
 
+/// The state that a run has started from is in its checkpoint: the old run is not needed any more.
+TEST_F(Resume, OfARunThatStartedFromAFrameNeedsNoOldRun) {
+  const SceneDesc scene = sheet(8);
+  run_to_folder(scene, options("old"));
+  const auto from = [&](const char* name, const char* frame, Unfinished unfinished = Unfinished::refuse) {
+    RunOptions with = options(name, unfinished);
+    with.start_from = (folder_ / "old").string() + frame;
+    return with;
+  };
+  const auto kill = [&] {
+    run_apart([&] {
+      run_to_folder(scene, from("broken", "@4"), {}, [](const Progress& progress) {
+        if (progress.frame == 5) raise(SIGKILL);
+        return true;
+      });
+    });
+  };
+  run_to_folder(scene, from("whole", "@4"));
+  kill();
+  const auto refused = [&](const RunOptions& with) {
+    return message_of([&] { run_to_folder(scene, with); });
+  };
+  const std::string old = (folder_ / "old").string();
+  EXPECT_NE(refused(options("broken", Unfinished::resume))
+                .find("start_from = \"" + old + "@4\" there, start_from = \"\" here"),
+            std::string::npos);
+  EXPECT_NE(
+      refused(from("broken", "@5", Unfinished::resume)).find("@4\" there, start_from = \"" + old + "@5\""),
+      std::string::npos);
+  SceneDesc faster = scene;
+  faster.gravity *= 1.5;
+  run_to_folder(faster, options("old"));
+  const std::string said = refused(from("broken", "@4", Unfinished::resume));
+  EXPECT_NE(said.find(old + "@4 is another state now"), std::string::npos) << said;
+
+  fs::remove_all(folder_ / "old");
+  run_to_folder(scene, from("broken", "@4", Unfinished::resume));
+  expect_same("whole", "broken");
+
+  run_to_folder(scene, options("old"));
+  fs::remove_all(folder_ / "broken");
+  kill();
+  fs::remove_all(folder_ / "old");
+  const UnfinishedRun own = read_unfinished_run(folder_ / "broken");
+  EXPECT_EQ(own.options.start_from, old + "@4");
+  run_to_folder(own.scene, own.options);
+  expect_same("whole", "broken");
+}
+
 TEST_F(Resume, OfADamagedCheckpointIsRefused) {
   const SceneDesc scene = sheet(4);
   run_apart([&] {

@@ -107,12 +107,16 @@ void xdotool(const std::string& words) { ASSERT_EQ(std::system(("xdotool " + wor
 /// A window of `weft view`, with simulated input and its report.
 class View : public testing::Test {
  protected:
-  void open(std::vector<std::string> more = {}) {
+  static void enter_folder() {
     const fs::path folder =
         fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder);
     fs::create_directories(folder);
     fs::current_path(folder);
+  }
+
+  void open(std::vector<std::string> more = {}) {
+    enter_folder();
     // Small, soft and cheap, so that it runs in real time on a busy machine.
     std::vector<std::string> words = {WEFT_PROGRAM,
                                       "view",
@@ -128,10 +132,25 @@ class View : public testing::Test {
                                       "--set",
                                       "solver.integrator=paper_fixed"};
     words.insert(words.end(), more.begin(), more.end());
+    start(words, "wind x");
+  }
+
+  /// The frames of a run of 0.2 s.
+  void open_run() {
+    enter_folder();
+    const int status = std::system("'" WEFT_PROGRAM
+                                   "' run paper/fig6_ball --set 'cloth[0].grid.cells=[12, 12]' --frames 12 "
+                                   "--out run > words.txt 2>&1");
+    ASSERT_EQ(WEXITSTATUS(status), 0) << words();
+    start({WEFT_PROGRAM, "view", "run", "--report", "view.json", "--size", "760x480"}, "frame");
+  }
+
+  /// `control`: one that the window has.
+  void start(const std::vector<std::string>& words, const std::string& control) {
     program_ = std::make_unique<Program>(words, -1, "words.txt");
     // Keys go to the window under the mouse: there is no window manager.
     xdotool("mousemove 700 440");
-    until("the window is there", [](const Json& j) { return j["controls"].contains("wind x"); });
+    until("the window is there", [&](const Json& j) { return j["controls"].contains(control); });
   }
 
   /// Presses J until the window reports a wanted state.
@@ -355,6 +374,64 @@ TEST_F(View, ComparesTwoIntegratorsAndSavesThePicture) {
     EXPECT_GT(other, 1000) << "half " << half;
   }
   close_by("q");
+}
+
+TEST_F(View, PlaysARunBack) {
+  open_run();
+  const Json first = state();
+  EXPECT_EQ(first["sides"][0]["frames"], 13);
+  EXPECT_EQ(first["controls"].contains("wind x"), false);
+  EXPECT_EQ(first["controls"].contains("integrator 0"), false);
+  until("another frame is shown",
+        [&](const Json& j) { return j["sides"][0]["frame"] != first["sides"][0]["frame"]; });
+  paused();
+  const auto is_at = [](int frame) {
+    return [frame](const Json& j) { return j["sides"][0]["frame"] == frame; };
+  };
+  xdotool("key r");
+  const Json start = until("it is at the start", is_at(0));
+  xdotool("key Right");
+  until("the next frame is shown", is_at(1));
+  xdotool("key s");
+  until("the next frame is shown", is_at(2));
+  xdotool("key Left");
+  until("the frame before is shown", is_at(1));
+  const Json& slider = start["controls"]["frame"];
+  move(slider[2].get<int>() - 3, (slider[1].get<int>() + slider[3].get<int>()) / 2);
+  xdotool("mousedown 1");
+  const Json last = until("the last frame is shown", is_at(12));
+  xdotool("mouseup 1");
+  EXPECT_LT(last["sides"][0]["center"][1], start["sides"][0]["center"][1].get<double>() - 0.05)
+      << "it has fallen";
+  move(700, 440);
+  xdotool("key l");
+  until("it does not loop", [](const Json& j) { return j["sides"][0]["loops"] == false; });
+  xdotool("key r");
+  until("it is at the start again", is_at(0));
+  xdotool("key space");
+  until("it has stopped at the end",
+        [&](const Json& j) { return j["sides"][0]["frame"] == 12 && j["playing"] == false; });
+  const Json turned = state();
+  drag("1", 380, 300, 420, 300);  // on cloth or beside it: there is nothing to grab
+  EXPECT_NE(state()["camera"]["azimuth"], turned["camera"]["azimuth"]);
+  xdotool("key i");
+  xdotool("key g");
+  EXPECT_EQ(state()["view"], "cloth");
+  close_by("q");
+}
+
+TEST_F(View, OfARunRefusesWhatIsForScenes) {
+  enter_folder();
+  fs::create_directories("run");
+  const auto refused = [](const std::string& rest, const std::string& sentence) {
+    const int status = std::system(("'" WEFT_PROGRAM "' view " + rest + " > words.txt 2>&1").c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    EXPECT_NE(words().find(sentence), std::string::npos) << words();
+  };
+  refused("run", "run holds no run: there is no run.json");
+  refused("run --compare paper,xpbd", "--compare does not apply to run: it is already simulated");
+  refused("run --set scene.fps=3", "--set does not apply to run");
+  refused("none.glb", "none.glb");
 }
 
 TEST_F(View, SaysWhatToDoWhereThereIsNoDisplay) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "weft/error.h"
 #include "weft/face/convert.h"
@@ -137,9 +138,28 @@ RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& n
   const bool is_mesh = std::holds_alternative<Fabric>(desc.fabric) && !grid_warp(desc);
   RestShape rest{is_mesh ? build_mesh_topology(build_grid_mesh(grid, diagonals_of(desc.model)))
                          : build_grid_topology(grid, desc.model),
+                 {},
                  {}};
   for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
   return rest;
+}
+
+/// Particles without a vertex. `clean` has its triangles in the coordinates of those of `mesh`.
+std::vector<AddedParticle> find_added(const weft::TriangleMesh& mesh, const CleanMesh& clean) {
+  std::vector<char> is_known(clean.mesh.positions.size(), 0);
+  for (const int particle : clean.vertex_of_source) {
+    if (particle >= 0) is_known[particle] = 1;
+  }
+  std::vector<AddedParticle> added;
+  for (std::size_t t = 0; t < clean.mesh.triangles.size(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int particle = clean.mesh.triangles[t][corner];
+      if (std::exchange(is_known[particle], 1)) continue;
+      added.push_back({particle, mesh.triangles[clean.source_triangle[t]], clean.corner_weights[t][corner]});
+    }
+  }
+  std::ranges::sort(added, {}, &AddedParticle::particle);
+  return added;
 }
 
 RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh, ClothNotes& notes) {
@@ -154,6 +174,7 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
   const std::vector<CornerUv> uv = to_engine(mesh.uv);
   for (std::size_t t = 0; !uv.empty() && t < clean.source_triangle.size(); ++t)
     rest.uv.push_back(interpolate(uv[clean.source_triangle[t]], clean.corner_weights[t]));
+  rest.added = find_added(mesh, clean);
   rest.topology = build_mesh_topology(std::move(clean.mesh));
   notes.particle_of_vertex = std::move(clean.vertex_of_source);
   notes.warnings = std::move(clean.warnings);
@@ -183,6 +204,25 @@ RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothN
   } catch (const InputError& error) {
     throw InputError(mesh_who + error.what());
   }
+}
+
+std::vector<Vec3> to_particles(const std::vector<Vec3>& of_vertices, const RestShape& rest,
+                               const ClothNotes& notes) {
+  const auto count = static_cast<std::size_t>(rest.topology->num_particles());
+  std::vector<Vec3> result(count, Vec3::Zero());
+  std::vector<int> num_vertices(count, 0);
+  for (std::size_t v = 0; v < of_vertices.size(); ++v) {
+    const int particle = notes.particle_of_vertex[v];
+    if (particle < 0) continue;
+    result[particle] += of_vertices[v];
+    ++num_vertices[particle];
+  }
+  for (std::size_t i = 0; i < count; ++i) result[i] /= std::max(num_vertices[i], 1);
+  for (const AddedParticle& added : rest.added) {
+    for (int corner = 0; corner < 3; ++corner)
+      result[added.particle] += added.weights[corner] * of_vertices[added.vertices[corner]];
+  }
+  return result;
 }
 
 ClothSubstance build_substance(const ClothDesc& desc, const RestShape& rest, const std::string& who,

@@ -11,15 +11,28 @@
 
 namespace weft::engine {
 
+/// A particle that is no vertex of the given mesh: sewing has added it within a triangle.
+struct AddedParticle {
+  int particle = 0;
+  Triangle vertices = {};        // of the given mesh, its corners
+  Vec3 weights = Vec3::UnitX();  // of these, at rest; sum 1 [1]
+};
+
 /// Rest shape of a cloth.
 struct RestShape {
   std::shared_ptr<const ClothTopology> topology;
-  std::vector<CornerUv> uv;  // of the topology's triangles; empty: none
+  std::vector<CornerUv> uv;          // of the topology's triangles; empty: none
+  std::vector<AddedParticle> added;  // by ascending particle
 };
 
 /// Cleans and sews a mesh as `desc` says; `notes` receives the report. Throws InputError, beginning with
 /// `who`, for an invalid cloth mesh.
 RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes);
+
+/// Positions or velocities of the particles from those of the given mesh's vertices. Sewn vertices have their
+/// mean, an added particle has the weighted mean of its triangle's corners.
+std::vector<Vec3> to_particles(const std::vector<Vec3>& of_vertices, const RestShape& rest,
+                               const ClothNotes& notes);
 
 struct ClothSubstance {
   ClothMaterial material;

@@ -57,6 +57,9 @@ struct Snapshot::Data {
 struct WorldAccess {
   static engine::World& engine(World& world) { return world.impl_->world; }
   static const engine::World& engine(const World& world) { return world.impl_->world; }
+  static const engine::RestShape& rest(const World& world, ClothId cloth) {
+    return world.impl_->at(cloth).rest;
+  }
 };
 
 }  // namespace weft

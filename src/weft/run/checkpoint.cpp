@@ -10,6 +10,7 @@
 #include "weft/core/staged_file.h"
 #include "weft/core/version.h"
 #include "weft/io/input_file.h"
+#include "weft/run/start_from.h"
 #include "weft/scene/scene_writer.h"
 
 namespace weft::engine {
@@ -24,7 +25,7 @@ constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 template <class Archive>
 void describe(Archive& archive, Checkpoint& c) {
   members(archive, c.scene_name, c.description, c.frame, c.num_frames, c.check_passages, c.audit, c.pc2,
-          c.glb, c.obj, c.run);
+          c.glb, c.obj, c.start_from, c.start, c.run);
 }
 
 }  // namespace
@@ -34,9 +35,14 @@ std::string describe_run(const SceneDesc& scene, int num_frames, const RunOption
   text << std::boolalpha << "[run]\nweft = \"" << kVersion << "\"\nname = \"" << scene.name
        << "\"\nframes = " << num_frames << "\naudit = " << options.audit
        << "\ncheck_passages = " << options.check_passages << "\npc2 = " << options.pc2
-       << "\nglb = " << options.glb << "\nobj = " << options.obj << "\n\n"
+       << "\nglb = " << options.glb << "\nobj = " << options.obj << "\nstart_from = \""
+       << full_start_from(options) << "\"\n\n"
        << scene_text_with_hashes(scene);
   return text.str();
+}
+
+std::string full_start_from(const RunOptions& options) {
+  return options.start_from.empty() ? "" : to_text(parse_start_from(options.start_from));
 }
 
 std::string find_difference(const std::string& there, const std::string& here) {

@@ -2,6 +2,7 @@
 /// Checkpoints: what an unfinished run needs to be continued.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ namespace weft::engine {
 /// files. The contents of mesh files are in it as hashes.
 std::string describe_run(const SceneDesc& scene, int num_frames, const RunOptions& options);
 
+/// RunOptions::start_from with an absolute folder; empty: none.
+std::string full_start_from(const RunOptions& options);
+
 /// The first difference, as `[solver] integrator = "newton" there, integrator = "xpbd" here`; empty: none.
 std::string find_difference(const std::string& there, const std::string& here);
 
@@ -23,7 +27,9 @@ struct Checkpoint {
   std::string description;  // describe_run()
   int frame = 0, num_frames = 0;
   bool check_passages = true, audit = false, pc2 = true, glb = true, obj = false;  // as in RunOptions
-  std::vector<std::byte> run;                                                      // SceneRun::save()
+  std::string start_from;                                                          // full_start_from()
+  std::uint64_t start = 0;     // hash of what it had there
+  std::vector<std::byte> run;  // SceneRun::save()
 };
 
 /// Replaces the file: written aside, flushed to disk, renamed. Throws InputError, and leaves the earlier file

@@ -1,17 +1,18 @@
 /// Public functions: conversion of files.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "weft/core/file_name.h"
 #include "weft/core/make_folder.h"
 #include "weft/error.h"
 #include "weft/io.h"
+#include "weft/io/gltf_body.h"
 #include "weft/io/mesh_files.h"
-#include "weft/run/run_folder.h"
+#include "weft/run/past_run.h"
 
 namespace weft::engine {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUsualFps = 60;
+constexpr double kMaxFrames = 1'000'000, kRounding = 1e-9;
 constexpr double kLargest = 100, kSmallest = 0.01;  // of cloth and bodies, without a note [m]
 
 /// A sentence for a size that is none of cloth or of a body.
@@ -142,32 +144,55 @@ void convert_sequence(const fs::path& in, const fs::path& out, const ConvertOpti
   convert_to_meshes(in, options.mesh, out, options, done);
 }
 
+/// The moving vertices of a glTF file's meshes, from the first key of its first animation to the last.
+void convert_motion(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
+  const GltfBody body = read_gltf_body(in, {.scale = options.scale});
+  done.notes = body.warnings;
+  const double fps = options.fps.value_or(kUsualFps);
+  if (!options.fps)
+    done.notes.push_back(in.string() + " has no frames, but keys: 60 frames per second (--fps)");
+  const double seconds = body.vertices.end() - body.vertices.start();
+  const int last_key = static_cast<int>(std::min(std::floor(seconds * fps + kRounding), kMaxFrames));
+  const int first = options.first_frame, last = options.last_frame.value_or(last_key);
+  if (first < 0 || last < first || last > last_key)
+    throw InputError(in.string() + " has the frames 0 to " + std::to_string(last_key) + "; it has not " +
+                     std::to_string(first) + " to " + std::to_string(last));
+  std::vector<float> times;
+  for (int k = first; k <= last; ++k) times.push_back(static_cast<float>(k / fps));
+  PointCacheWriter writer(out.string(), body.vertices.num_vertices(), times);
+  std::vector<Vec3> positions;
+  for (int k = first; k <= last; ++k) {
+    body.vertices.evaluate(body.vertices.start() + k / fps, positions);
+    std::vector<float> frame;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : positions) {
+      box.extend(p);
+      for (const double c : p) frame.push_back(static_cast<float>(c));
+    }
+    if (k == first) check_size(in, box, done.notes);
+    writer.add_frame(frame);
+  }
+  writer.finish();
+  done.files.push_back(out.string());
+}
+
+bool is_cache(const fs::path& file) { return has_ending(file, ".pc2") || has_ending(file, ".mdd"); }
+
 bool is_mesh(const fs::path& file) { return has_ending(file, ".obj") || has_ending(file, ".ply"); }
 
 void convert_run(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
-  const fs::path list = in / kRunName;
-  std::ifstream stream(list);
-  const nlohmann::json run = nlohmann::json::parse(stream, nullptr, false);
-  const auto fail = [&] { throw InputError(list.string() + ": not the list of a run's files"); };
-  if (!run.is_object() || !run.contains("cloths") || !run["cloths"].is_array() || run["cloths"].empty())
-    fail();
-  const bool is_one = run["cloths"].size() == 1;
+  const PastRun run = read_past_run(in);
   FileNames names;
-  for (const nlohmann::json& cloth : run["cloths"]) {
-    if (!cloth.is_object() || !cloth.value("name", nlohmann::json()).is_string()) fail();
-    if (!cloth.value("positions", nlohmann::json()).is_string())
-      throw InputError(in.string() + " has no point caches: it was run with --no-pc2");
+  for (const PastCloth& cloth : run.cloths) {
+    open_cache(run, cloth);
     fs::path own = out;
-    if (!is_one)
-      own.replace_filename(out.stem().string() + '_' + names.add(cloth["name"]) + out.extension().string());
-    const auto file_of = [&](const char* key) {
-      return in / fs::path(cloth[key].get<std::string>()).filename();
-    };
-    if (is_mesh(out) && !cloth.value("mesh", nlohmann::json()).is_string())
+    if (run.cloths.size() > 1)
+      own.replace_filename(out.stem().string() + '_' + names.add(cloth.name) + out.extension().string());
+    if (is_mesh(out) && cloth.mesh.empty())
       throw InputError(in.string() +
                        " has no meshes of its point caches: it is of an earlier version of Weft");
-    is_mesh(out) ? convert_to_meshes(file_of("positions"), file_of("mesh"), own, options, done)
-                 : convert_cache(file_of("positions"), own, options, run.value("fps", kUsualFps), done);
+    is_mesh(out) ? convert_to_meshes(cloth.cache, cloth.mesh, own, options, done)
+                 : convert_cache(cloth.cache, own, options, run.fps, done);
   }
 }
 
@@ -185,14 +210,16 @@ void refuse_usd(const fs::path& file) {
 }
 
 void convert_file(const fs::path& in, const fs::path& out, const ConvertOptions& options, Converted& done) {
-  const bool is_cache = has_ending(in, ".pc2") || has_ending(in, ".mdd");
-  if (!options.mesh.empty() && !(is_cache && is_mesh(out)))
+  if (!options.mesh.empty() && !(is_cache(in) && is_mesh(out)))
     throw InputError(options.mesh + ": only a point cache that becomes .obj or .ply needs a mesh (--mesh)");
+  if (is_gltf(in) && options.up_is_z) throw InputError(in.string() + ": a glTF file has its y axis up");
   if (!out.parent_path().empty()) make_folder(out.parent_path());
   if (fs::is_directory(in))
     convert_run(in, out, options, done);
-  else if (is_cache)
+  else if (is_cache(in))
     is_mesh(out) ? convert_sequence(in, out, options, done) : convert_cache(in, out, options, {}, done);
+  else if (is_gltf(in) && is_cache(out))
+    convert_motion(in, out, options, done);
   else
     convert_mesh(in, out, options, done);
 }

@@ -21,9 +21,6 @@ std::vector<std::string> file_names(const World& world) {
 
 constexpr std::size_t kMostFrames = 1000;  // of a .glb without a warning
 
-constexpr const char* kCacheEnding = ".pc2";
-constexpr const char* kMeshEnding = ".mesh.obj";
-
 /// The vertices of cloth `c`'s mesh as it was given (num_vertices) [m].
 std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
   const weft::World& world = run.public_world();

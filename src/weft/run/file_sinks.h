@@ -42,6 +42,9 @@ class GlbSink : public FrameSink {
   std::optional<StagedFile> glb_;
 };
 
+inline constexpr const char* kCacheEnding = ".pc2";
+inline constexpr const char* kMeshEnding = ".mesh.obj";
+
 /// Writes for each cloth a PC2 point cache and the mesh of its points: `FOLDER/sheet.pc2` and
 /// `FOLDER/sheet.mesh.obj` of cloth "sheet". Frame 0 is the start, and the mesh is at the start. Points are the
 /// vertices of the cloth's mesh as it was given, in their order (World::vertex_positions), in world

@@ -29,8 +29,8 @@ std::uintmax_t size_of(const AnimationFrame& frame) {
 FrameLog::FrameLog(const std::filesystem::path& file, const std::filesystem::path& log, AnimationFrame like,
                    int num_frames)
     : log_(log),
-      frame_(std::move(like)),
-      file_(file, log, num_frames * size_of(frame_)),
+      like_(std::move(like)),
+      file_(file, log, num_frames * size_of(like_)),
       num_frames_(num_frames) {}
 
 void FrameLog::append(const AnimationFrame& frame) {
@@ -41,11 +41,24 @@ void FrameLog::append(const AnimationFrame& frame) {
   ++num_frames_;
 }
 
-void FrameLog::read_frame(std::ifstream& in) {
+FrameLogReader::FrameLogReader(std::filesystem::path log, AnimationFrame like)
+    : log_(std::move(log)), frame_(std::move(like)), size_(size_of(frame_)), in_(log_, std::ios::binary) {}
+
+int FrameLogReader::num_frames() {
+  in_.clear();
+  in_.seekg(0, std::ios::end);  // of the open file: it may have been removed since
+  const std::streamoff size = in_.tellg();
+  return size < 0 ? 0 : static_cast<int>(static_cast<std::uintmax_t>(size) / size_);
+}
+
+const AnimationFrame& FrameLogReader::read(int frame) {
+  in_.clear();  // of an end that has moved since
+  in_.seekg(static_cast<std::streamoff>(size_ * static_cast<std::uintmax_t>(frame)));
   visit_numbers(frame_, [&](void* numbers, std::size_t bytes) {
-    in.read(static_cast<char*>(numbers), static_cast<std::streamsize>(bytes));
+    in_.read(static_cast<char*>(numbers), static_cast<std::streamsize>(bytes));
   });
-  if (!in) throw InputError(log_.string() + " cannot be read");
+  if (!in_) throw InputError(log_.string() + " cannot be read");
+  return frame_;
 }
 
 }  // namespace weft::engine

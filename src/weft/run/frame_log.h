@@ -3,11 +3,28 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 
 #include "weft/core/staged_file.h"
 #include "weft/io/animation.h"
 
 namespace weft::engine {
+
+/// The frames of a log, read in any order. It may grow meanwhile.
+class FrameLogReader {
+ public:
+  /// `like`: a frame of the animation.
+  FrameLogReader(std::filesystem::path log, AnimationFrame like);
+
+  int num_frames();                       // complete ones, now
+  const AnimationFrame& read(int frame);  // valid until the next call; throws InputError
+
+ private:
+  std::filesystem::path log_;
+  AnimationFrame frame_;
+  std::uintmax_t size_;  // of a frame [bytes]
+  std::ifstream in_;
+};
 
 /// Frames of the same size, one after the other. Every error is an InputError with the name of the file that
 /// the frames are for, and the system's reason.
@@ -24,18 +41,13 @@ class FrameLog {
   /// Calls `receive(frame)` for every frame, in order.
   template <class Receive>
   void read(const Receive& receive) {
-    std::ifstream in(log_, std::ios::binary);
-    for (int k = 0; k < num_frames_; ++k) {
-      read_frame(in);
-      receive(frame_);
-    }
+    FrameLogReader reader(log_, like_);
+    for (int k = 0; k < num_frames_; ++k) receive(reader.read(k));
   }
 
  private:
-  void read_frame(std::ifstream& in);
-
   std::filesystem::path log_;
-  AnimationFrame frame_;  // the last one read
+  AnimationFrame like_;
   StagedFile file_;
   int num_frames_;
 };

@@ -16,6 +16,7 @@
 #include "weft/run/file_sinks.h"
 #include "weft/run/frame_checker.h"
 #include "weft/run/recorder.h"
+#include "weft/run/start_from.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_writer.h"
 
@@ -54,14 +55,14 @@ std::vector<std::string> find_cloth_files(const fs::path& folder) {
 
 constexpr const char* kLockName = "lock";
 constexpr const char* kSceneName = "scene.toml";
-constexpr const char* kFramesName = "animation.frames";
 
 /// The folder of a run while it goes on: its lock, its scene, its checkpoint, its files so far.
 class WorkFolder {
  public:
   /// Throws InputError for a folder that is in use or cannot be written, and for an unfinished run that
   /// `options` neither resume nor discard.
-  WorkFolder(const SceneDesc& scene, const RunOptions& options)
+  /// `start`: what `options.start_from` names; null: nothing, or it is not there any more.
+  WorkFolder(const SceneDesc& scene, const RunOptions& options, const SceneStart* start)
       : folder_(fs::path(options.folder) / kUnfinishedName),
         is_killed_(fs::exists(folder_ / kLockName)),
         lock_(folder_),
@@ -75,7 +76,9 @@ class WorkFolder {
                    .audit = options.audit,
                    .pc2 = options.pc2,
                    .glb = options.glb,
-                   .obj = options.obj};
+                   .obj = options.obj,
+                   .start_from = full_start_from(options),
+                   .start = start ? hash_of(*start) : 0};
     try {
       begin(scene, options.unfinished);
     } catch (const InputError&) {
@@ -138,6 +141,10 @@ class WorkFolder {
     if (!difference.empty())
       throw InputError(folder_.string() + " is of another run: " + difference +
                        "; discard it (weft run --fresh) to begin again");
+    if (checkpoint_.start != 0 && checkpoint_.start != there.start)
+      throw InputError(folder_.string() + " is of another run: " + there.start_from +
+                       " is another state now; discard it (weft run --fresh) to begin again");
+    checkpoint_.start = there.start;
     resumed_ = std::move(there.run);
     checkpoint_.frame = there.frame;
   }
@@ -294,13 +301,31 @@ class RunFiles : public FrameSink {
   double fps_ = 0;
 };
 
+/// What `options.start_from` names; for a run to be resumed nothing, if it is not there any more.
+std::optional<SceneStart> find_start(const RunOptions& options) {
+  if (options.start_from.empty()) return std::nullopt;
+  const StartFrom from = parse_start_from(options.start_from);
+  if (fs::weakly_canonical(from.folder) == fs::weakly_canonical(options.folder))
+    throw InputError("start_from " + options.start_from +
+                     ": the results would replace the run that they start from; give them another folder");
+  const bool is_resumed = options.unfinished == Unfinished::resume &&
+                          fs::exists(fs::path(options.folder) / kUnfinishedName / kCheckpointName);
+  try {
+    return read_start(from);
+  } catch (const InputError&) {
+    if (!is_resumed) throw;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 FinishedRun run_to_folder(const SceneDesc& scene, const RunOptions& options,
                           const std::vector<FrameSink*>& sinks, const OnFrame& on_frame) {
   if (options.folder.empty()) return {run_scene(scene, options, sinks, on_frame), {}};
+  const std::optional<SceneStart> start = find_start(options);
   make_folder(options.folder);
-  WorkFolder work(scene, options);
+  WorkFolder work(scene, options, start ? &*start : nullptr);
   RunFiles files(options, work);
   Recorder recorder(options.audit);
   FrameChecker checker(options.check_passages);
@@ -310,7 +335,7 @@ FinishedRun run_to_folder(const SceneDesc& scene, const RunOptions& options,
   const int num_frames = options.frames.value_or(scene.num_frames());
   const std::shared_ptr<JobSystem> jobs = make_jobs(options.threads);
   const bool is_new = work.resumed().empty();
-  SceneRun run = is_new ? SceneRun(scene, jobs, all, num_frames)
+  SceneRun run = is_new ? SceneRun(scene, jobs, all, num_frames, start ? &*start : nullptr)
                         : SceneRun(scene, jobs, all, num_frames, work.resumed());
   if (is_new) work.save(run, true);
   const auto save_and_tell = [&](const Progress& progress) {
@@ -337,6 +362,7 @@ UnfinishedRun read_unfinished_run(const fs::path& folder) {
                                 .pc2 = checkpoint.pc2,
                                 .glb = checkpoint.glb,
                                 .obj = checkpoint.obj,
+                                .start_from = checkpoint.start_from,
                                 .unfinished = Unfinished::resume}};
   run.scene.name = checkpoint.scene_name;
   return run;

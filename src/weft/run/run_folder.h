@@ -24,6 +24,7 @@ inline constexpr const char* kReportName = "report.json";
 inline constexpr const char* kRunName = "run.json";
 inline constexpr const char* kCheckpointName = "checkpoint";
 inline constexpr const char* kUnfinishedName = "unfinished";
+inline constexpr const char* kFramesName = "animation.frames";  // in it
 
 struct FinishedRun {
   RunReport report;

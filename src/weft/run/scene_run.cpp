@@ -9,12 +9,14 @@
 #include "weft/run/frame_checker.h"
 #include "weft/run/recorder.h"
 #include "weft/run/run_archive.h"
+#include "weft/run/start_from.h"
 #include "weft/run/warnings.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
 namespace {
 
+constexpr const char* kSaved = "a saved run";
 constexpr std::size_t kMaxInfeasible = 100;  // listed in a report
 
 RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const World& world) {
@@ -36,10 +38,10 @@ RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const Wor
 }  // namespace
 
 SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
-                   std::optional<int> num_frames)
+                   std::optional<int> num_frames, const SceneStart* start)
     : scene_(std::move(scene)),
       num_frames_(num_frames.value_or(scene_.num_frames())),
-      built_(build_scene(scene_, jobs)),
+      built_(build_scene(scene_, jobs, start)),
       sinks_(std::move(sinks)),
       report_(make_report(scene_, built_, world())) {
   report_.threads = jobs->num_threads();
@@ -49,7 +51,7 @@ SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector
 SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
                    int num_frames, std::span<const std::byte> saved)
     : scene_(std::move(scene)), num_frames_(num_frames), sinks_(std::move(sinks)) {
-  Reader in(saved, "a saved run");
+  Reader in(saved, kSaved);
   std::vector<std::byte> world_bytes;
   double cpu_seconds = 0;
   members(in, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
@@ -159,6 +161,16 @@ const RunReport& SceneRun::finish() {
   return report_;
 }
 
+weft::World load_world(std::span<const std::byte> saved) {
+  Reader in(saved, kSaved);
+  RunReport report;
+  double spent = 0, cpu_seconds = 0;
+  std::vector<double> frame_ms;
+  std::vector<std::byte> world_bytes;
+  members(in, report, spent, frame_ms, cpu_seconds, world_bytes);
+  return weft::World::load(world_bytes);
+}
+
 const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame) {
   while (run.next_frame(options.keep_going)) {
     const double spent = run.seconds_spent();
@@ -175,7 +187,9 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std
   FrameChecker checker(options.check_passages);
   std::vector<FrameSink*> all = {&recorder, &checker};
   all.insert(all.end(), sinks.begin(), sinks.end());
-  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames);
+  std::optional<SceneStart> start;
+  if (!options.start_from.empty()) start = read_start(parse_start_from(options.start_from));
+  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames, start ? &*start : nullptr);
   return play(run, options, on_frame);
 }
 

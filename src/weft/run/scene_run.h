@@ -23,9 +23,9 @@ namespace weft::engine {
 class SceneRun {
  public:
   /// Builds the world and passes the start to the sinks, which must outlive this. `num_frames` overrides the
-  /// scene's duration. Throws InputError like build_scene() and the sinks.
+  /// scene's duration; `start` as in build_scene(). Throws InputError like build_scene() and the sinks.
   SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks = {},
-           std::optional<int> num_frames = {});
+           std::optional<int> num_frames = {}, const SceneStart* start = nullptr);
 
   /// Continues a run of the same scene, number of frames and kinds of sinks from what its save() returned: it
   /// ends with the same bits. Throws InputError for other bytes.
@@ -83,6 +83,9 @@ class SceneRun {
   double spent_ = 0;             // of all frames [s]
   std::vector<double> frame_ms_;
 };
+
+/// The world in what SceneRun::save() returned.
+weft::World load_world(std::span<const std::byte> saved);
 
 /// Simulates frame by frame until the end, a failure, or an interruption by the caller (RunOptions::keep_going,
 /// `on_frame`), and finishes the run.

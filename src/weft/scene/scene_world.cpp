@@ -12,6 +12,7 @@
 #include "weft/face/world_impl.h"
 #include "weft/scene/cloth_faces.h"
 #include "weft/scene/scene_meshes.h"
+#include "weft/scene/scene_start.h"
 
 namespace weft::engine {
 namespace {
@@ -185,7 +186,7 @@ void append(const std::vector<std::string>& messages, std::vector<std::string>& 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
 double SceneDesc::step_length() const { return 1 / (fps * steps_per_frame); }
 
-PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs, const SceneStart* start) {
   PublicScene result;
   World& world = WorldAccess::engine(result.world);
   world.set_jobs(std::move(jobs));
@@ -210,6 +211,7 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs)
     if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction);
     world.set_collision(a, b, rule.collide);
   }
+  if (start) set_start(*start, result);
   const bool is_repaired = scene.untangle && scene.contact;
   is_repaired ? untangle(world, result) : warn_about_start(world, result.warnings);
   if (scene.settle > 0) settle(scene, result);

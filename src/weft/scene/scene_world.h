@@ -28,9 +28,13 @@ struct SceneWorld : SceneNotes {
   World world;
 };
 
-/// Loads meshes, places cloth, sets pins. A collider mesh that faces inwards is flipped. Throws InputError if
-/// a mesh cannot be used or a pin selects nothing.
-PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
+struct SceneStart;  // scene_start.h
+
+/// Loads meshes, places cloth, sets pins. A collider mesh that faces inwards is flipped. `start` then moves
+/// cloths, before intersections are removed and the scene settles; null: none. Throws InputError if a mesh
+/// cannot be used, if a pin selects nothing, and like set_start().
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
+                        const SceneStart* start = nullptr);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
 /// A scene's wind as input for a World.
