@@ -570,8 +570,6 @@ void bind_batch(nb::module_& m) {
       });
 }
 
-}  // namespace
-
 /// Bound before functions that take it.
 void bind_vertex_motion(nb::module_& m) {
   nb::class_<VertexMotion>(
@@ -587,6 +585,8 @@ void bind_vertex_motion(nb::module_& m) {
           nb::arg("time"), nb::sig("def positions(self, time: float) -> NDArray[numpy.float64]"),
           "Positions at a time [s]: (num_vertices, 3), constant before `start` and after `end` [m].");
 }
+
+}  // namespace
 
 void bind_world(nb::module_& m) {
   bind_vertex_motion(m);

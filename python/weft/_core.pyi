@@ -1454,6 +1454,28 @@ class StepReport:
 
     def __repr__(self) -> str: ...
 
+class VertexMotion:
+    """
+    Vertices of a mesh as a function of time: skins, morph targets and nodes of a glTF file. From `read_gltf`.
+    """
+
+    @property
+    def num_vertices(self) -> int:
+        """The number of vertices."""
+
+    @property
+    def start(self) -> float:
+        """Time of the first key [s]."""
+
+    @property
+    def end(self) -> float:
+        """Time of the last key [s]."""
+
+    def positions(self, time: float) -> NDArray[numpy.float64]:
+        """
+        Positions at a time [s]: (num_vertices, 3), constant before `start` and after `end` [m].
+        """
+
 class ClothId:
     def __eq__(self, other: object, /) -> bool: ...
 
@@ -1482,7 +1504,7 @@ class World:
 
     def add_cloth(self, arg0: str, arg1: object, arg2: str, arg3: object, arg4: str, arg5: str, arg6: Sequence[float] | None, arg7: str, arg8: Sequence[float], arg9: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', device='cpu', writable=False)], arg10: Sequence[float], arg11: float | None, arg12: float, arg13: bool, /) -> ClothId: ...
 
-    def add_collider(self, arg0: str, arg1: object, arg2: str, arg3: Sequence[float], arg4: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', device='cpu', writable=False)], arg5: Sequence[KeyFrame], arg6: object, arg7: float, arg8: float, /) -> ColliderId: ...
+    def add_collider(self, arg0: str, arg1: object, arg2: str, arg3: Sequence[float], arg4: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C', device='cpu', writable=False)], arg5: Sequence[KeyFrame], arg6: object, arg7: VertexMotion | None, arg8: float, arg9: float, arg10: float, /) -> ColliderId: ...
 
     @overload
     def remove(self, arg: ClothId, /) -> None: ...
@@ -1526,7 +1548,7 @@ class World:
 
     def place_vertices(self, arg0: ColliderId, arg1: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], /) -> None: ...
 
-    def add_pin(self, arg0: ClothId, arg1: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], arg2: Sequence[KeyFrame], arg3: Sequence[float], arg4: float | None, arg5: float, /) -> None: ...
+    def add_pin(self, arg0: ClothId, arg1: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], arg2: Sequence[KeyFrame], arg3: Sequence[float], arg4: ColliderId | None, arg5: float | None, arg6: float, /) -> None: ...
 
     def unpin(self, arg0: ClothId, arg1: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], /) -> None: ...
 
@@ -1747,6 +1769,8 @@ class Scene:
 
 def scene_names() -> list[str]:
     """Names of the shipped scenes, sorted."""
+
+def read_gltf(file: str, node: str, clip: str, scale: float) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.float64], VertexMotion | None, str, list[str]]: ...
 
 def read_obj(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.float64], tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64], list[tuple[str, bool, NDArray[numpy.int32]]]], list[str]]: ...
 

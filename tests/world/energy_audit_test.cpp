@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "tests/support.h"
+#include "weft/animation/mesh_sequence.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -180,7 +181,7 @@ TEST(EnergyAudit, OfASheetOnAMeshThatDeformsHasTheMeshLiftIt) {
   std::vector<Vec3> high = low.positions;
   for (Vec3& p : high) p.y() += 0.5;
   MeshShape shape;
-  shape.sequence =
+  shape.source =
       std::make_shared<const MeshSequence>(std::vector<MeshSequence::Key>{{0.5, low.positions}, {1.5, high}});
   shape.mesh = std::make_shared<const TriangleMesh>(std::move(low));
   World world = make_world();

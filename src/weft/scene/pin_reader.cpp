@@ -166,7 +166,7 @@ PinDesc read_pin(TomlTable table, const Pinnable& pinnable) {
   const TomlValue spring = table.get("stiffness", make_note(not_negative("N/m")));
   if (spring && spring.read(stiffness, not_negative("N/m"))) pin.stiffness = stiffness;
   table.read("damping", pin.damping, not_negative("N·s/m"));
-  if (table.has("damping") && !spring) table.get("damping").mistake("requires stiffness");
+  if (pin.damping > 0 && !spring) table.get("damping").mistake("requires stiffness");
   if (pin.motion.empty()) return pin;
   if (spring) spring.mistake("a pin with a motion is held exactly");
   if (!pin.follow.empty())
