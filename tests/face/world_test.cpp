@@ -254,7 +254,7 @@ TEST(Face, APinThatIsAddedLeavesTheMotionOfTheOthers) {
   expect_contains(error_of([&] {
                     world.add_pin(sheet, {.particles = {5}, .motion = {{.time = 0}, {.time = 1}}});
                   }),
-                  "which a pin with motion cannot join");
+                  "which a pin with a motion or a collider cannot join");
 }
 
 TEST(Face, SomePinsAreMovedAndTheOthersStay) {

@@ -125,7 +125,7 @@ def test_the_program_names_the_command_for_usd(tmp_path: Path) -> None:
     [
         (lambda t: weft.convert(t / "no.obj", t / "a.ply"), "no.obj: cannot be read"),
         (lambda t: weft.convert(t / "a.obj", t / "a.fbx"), "a.fbx: a mesh is written as .obj or .ply"),
-        (lambda t: weft.convert(t, t / "a.pc2"), "run.json: not the list of a run's files"),
+        (lambda t: weft.convert(t, t / "a.pc2"), "holds no run: there is no run.json"),
         (lambda t: weft.convert(t / "a.obj", t / "a.ply", up="x"), "up: expected \"y\" or \"z\", found 'x'"),
         (lambda t: weft.convert(t / "a.obj", t / "a.ply", scale=-1), "scale: expected a number above 0, found -1"),
         (lambda t: weft.convert(t / "a.obj", t / "a.ply", frames=(-1, 2)), "frames: expected whole numbers from 0"),

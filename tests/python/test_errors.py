@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import weft
-from worlds import DT, SQUARE, cloth_of, draped, hanging, triangulated
+from worlds import DT, SQUARE, cloth_of, draped, hanging, triangulated, write_turning_plate
 
 TREE = Path(__file__).parents[2]
 NAN = np.nan
@@ -58,6 +58,17 @@ def removed() -> weft.Cloth:
 def two_planes() -> tuple[weft.World, weft.Collider, weft.Collider]:
     world = weft.World()
     return world, world.add_collider(weft.Plane(), name="a"), world.add_collider(weft.Plane(), name="b")
+
+
+def plate(folder: Path, shape: weft.Mesh | None = None) -> weft.Mesh:
+    """A plate that turns; with a shape: this one, with the plate's motion."""
+    write_turning_plate(folder / "plate.glb")
+    mesh = weft.read_gltf(folder / "plate.glb")
+    if shape is None:
+        return mesh
+    other = weft.Mesh(shape.vertices, shape.faces)
+    other.deformation = mesh.deformation
+    return other
 
 
 def pins_with_targets() -> weft.Cloth:
@@ -121,7 +132,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: collider().place_at(rotation=MIRROR), f'collider "collider", moved: {ROTATION}'),
     (lambda: collider(friction=-1), 'collider "collider": friction must be 0 or more'),
     (lambda: collider(static_friction=-1), 'collider "collider": friction must be 0 or more'),
-    (lambda: collider(frames=[(0, SQUARE.vertices)]), 'collider "collider": only a mesh can have frames'),
+    (lambda: collider(frames=[(0, SQUARE.vertices)]),
+     'collider "collider": only a mesh can have frames or a deformation'),
     (lambda: collider(SQUARE, frames=[(0, SQUARE.vertices), (0, SQUARE.vertices)]),
      'collider "collider": key 1 of the mesh sequence is not later than the previous one'),
     (lambda: collider(SQUARE, frames=[(0, SQUARE.vertices[:3])]), 'collider "collider": expected 4 vertices, got 3'),
@@ -233,7 +245,9 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: cloth().pin([0], stiffness=1, motion=keys(0)),
      'cloth "cloth": a pin with stiffness does not support motion; set targets before each step'),
     (lambda: pins_with_targets().pin([1], motion=keys(0)),
-     'cloth "cloth": its pins have targets, which a pin with motion cannot join'),
+     'cloth "cloth": its pins have targets, which a pin with a motion or a collider cannot join'),
+    (lambda: cloth().pin([0], follow=collider(), motion=keys(0)),
+     'cloth "cloth": a pin that follows a collider has no motion of its own'),
     (lambda: cloth().pin([0], motion=keys(1, 0)), 'cloth "cloth": key frame 1 is not later than the previous one'),
     (lambda: cloth().unpin([0]), 'cloth "cloth": particle 0 is not pinned'),
     (lambda: cloth().set_targets([0], (0, 0, 0)), 'cloth "cloth": particle 0 is not pinned'),
@@ -302,7 +316,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: weft.World.load(hanging(2).save()[:-1]), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(damaged()), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(of_version(99)),
-     "the saved world has format version 99; this library reads version 1"),
+     "the saved world has format version 99; this library reads version 2"),
     # Pictures.
     (lambda: weft.Camera(position=(0, 0, 0)).render(empty(), color=False),
      "a camera's position and target: expected two different points"),
@@ -404,6 +418,11 @@ CROSSED = GRID_OF_FOUR + (
 )
 
 FILES: list[tuple[Callable[[Path], object], str]] = [
+    (lambda t: collider(plate(t), frames=[(0, plate(t).vertices)]),
+     'collider "collider": has both frames and a deformation; expected one of them'),
+    (lambda t: collider(plate(t, SQUARE)), 'collider "collider": its deformation has 15 vertices, the mesh 4'),
+    (lambda t: world_of(GRID_OF_FOUR + 'pins = [{ select = "corner:0,0", follow = "body" }]\n', t),
+     'cloth "cloth": a pin follows "body", but there is no collider of this name'),
     (lambda t: weft.read_obj(t), "{}: this is a folder; expected an OBJ file"),
     (lambda t: weft.read_obj(t / "no.obj"), f"{{}}/no.obj: cannot be read: {NO_ENTRY}"),
     (lambda t: weft.write_obj(t / "no" / "m.obj", SQUARE), f"{{}}/no/m.obj cannot be written: {NO_ENTRY}"),
@@ -518,7 +537,11 @@ UNREACHABLE = {
     " particles but ": BUILT,
     '" has no particle ': BUILT,
     "it has no mesh": BUILT,
-    "its sequence and its mesh have different numbers of vertices": BUILT,
+    "its motion and its mesh have different numbers of vertices": BUILT,
+    "the start of its deformation is not finite": CHECKED,
+    "its deformation has a vertex that is not finite at the start": "the mesh is refused first",
+    '": a pin follows a collider of the world, without a motion of its own': BUILT,
+    "a grab follows a collider that is not in the world": WINDOW,
     "its topology has ": BUILT,
     " has no area: is it in no triangle? clean_mesh() removes such vertices": "meshes are cleaned",
     "a spring joins particles ": BUILT,

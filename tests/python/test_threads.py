@@ -224,7 +224,7 @@ folder = Path(sys.argv[1])
 def has_frames():
     time.sleep(0.01)
     try:
-        return any(file.stat().st_size > 4 * 12 * 1089 for file in (folder / "unfinished").iterdir())
+        return any(file.stat().st_size > 4 * 12 * 1089 for file in (folder / "unfinished").glob("*.pc2"))
     except FileNotFoundError:  # a file went between the two
         return False
 thread = interrupt_when(has_frames)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import struct
 import subprocess
 import sys
 from collections.abc import Callable
@@ -145,3 +147,41 @@ def program() -> Path:
     """The program `weft`: the environment's WEFT_PROGRAM, else the release build's."""
     default = Path(__file__).parents[2] / "build" / "release" / "bin" / "weft"
     return Path(os.environ.get("WEFT_PROGRAM", default))
+
+
+def write_turning_plate(file: Path) -> None:
+    """A plate of a metre along x and half a metre along z, whose node turns about z by 90 degrees in 2 s."""
+    points = np.array([(x / 4, 0, z / 4) for z in range(3) for x in range(5)], np.float32)
+    cells = [5 * z + x for z in range(2) for x in range(4)]
+    faces = np.array([t for a in cells for t in ((a, a + 5, a + 1), (a + 1, a + 5, a + 6))], np.uint16)
+    half = np.sqrt(0.5)
+    times, turns = np.array([0, 2], np.float32), np.array([(0, 0, 0, 1), (0, 0, half, half)], np.float32)
+    blocks = [block.tobytes() for block in (points, faces, times, turns)]
+    views, offset = [], 0
+    for block in blocks:
+        views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(block)})
+        offset += len(block)
+    gltf = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": offset}],
+        "bufferViews": views,
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
+             "min": points.min(0).tolist(), "max": points.max(0).tolist()},
+            {"bufferView": 1, "componentType": 5123, "count": faces.size, "type": "SCALAR"},
+            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2]},
+            {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC4"},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "nodes": [{"name": "plate", "mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+        "scene": 0,
+        "animations": [{"name": "turn", "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+                        "samplers": [{"input": 2, "output": 3}]}],
+    }  # fmt: skip
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    data = b"".join(blocks)
+    data += b"\0" * (-len(data) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+    file.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)

@@ -19,7 +19,10 @@ class PublicMeshes : public testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "weft_public_meshes";
+  // A folder of its own for each test: they may run at the same time.
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      (std::string("weft_public_meshes_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 const std::string kShirt =

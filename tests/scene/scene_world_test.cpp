@@ -169,7 +169,10 @@ class GroupsOfAMesh : public testing::Test {
     return "no error";
   }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "weft_scene_world_groups";
+  // A folder of its own for each test: they may run at the same time.
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                  (std::string("weft_scene_world_groups_") +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(GroupsOfAMesh, SelectTheParticlesOfTheirVertices) {
