@@ -45,4 +45,4 @@ done
 "$weft" verify "$out/garment" || echo "garment: reported only"
 
 # Typical input: garments that intersect the figure at the start, in several pieces, in another unit.
-"$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 30 --cell 0.012 --out "$out/garments"
+"$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 20 --cell 0.012 --out "$out/garments"
