@@ -136,9 +136,10 @@ TEST(GlbReader, ReadsAStill) {
 
 TEST(GlbReader, ReadsAFrameWhenItIsAskedForIt) {
   const Animation written{.title = "", .cloths = {make_cloth(40)}, .bodies = {make_body("ball", {}, 40)}};
-  write_glb(output_file("lazy"), written);
-  const Animation all = read_glb(output_file("lazy"));
-  GlbFrames frames(output_file("lazy"));
+  const std::string file = testing::TempDir() + "weft_lazy.glb";
+  write_glb(file, written);
+  const Animation all = read_glb(file);
+  GlbFrames frames(file);
   ASSERT_EQ(frames.num_frames(), 40);
   EXPECT_TRUE(frames.meshes().cloths[0].frames.empty());
   for (const int k : {39, 0, 17}) {
@@ -147,13 +148,13 @@ TEST(GlbReader, ReadsAFrameWhenItIsAskedForIt) {
     EXPECT_EQ(frame.poses[0], all.bodies[0].poses[k]);
   }
   // The end of the file is the end of its buffer, with frames. They are damaged only for those who read them.
-  std::filesystem::resize_file(output_file("lazy"), std::filesystem::file_size(output_file("lazy")) / 2);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
   EXPECT_EQ(frames.read(1).cloths[0], all.cloths[0].frames[1]);
   try {
     frames.read(39);
     FAIL() << "read a frame that is not there";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), output_file("lazy") + ": cannot be read");
+    EXPECT_EQ(error.what(), file + ": cannot be read");
   }
 }
 
