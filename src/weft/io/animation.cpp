@@ -15,7 +15,8 @@ Animation without_frames(const Animation& animation) {
                              .triangles = cloth.triangles,
                              .color = cloth.color,
                              .frames = {},
-                             .fabric_coordinates = cloth.fabric_coordinates});
+                             .fabric_coordinates = cloth.fabric_coordinates,
+                             .fabric = cloth.fabric});
   for (const AnimatedBody& body : animation.bodies)
     meshes.bodies.push_back({.name = body.name,
                              .mesh = body.mesh,

@@ -18,6 +18,7 @@ struct AnimatedCloth {
   std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
   std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
   std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+  std::string fabric = {};                // its name; empty: none
 };
 
 /// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, from mesh to world

@@ -171,6 +171,9 @@ AnimatedCloth read_cloth(const tinygltf::Model& model, const tinygltf::Node& nod
   AnimatedCloth cloth;
   cloth.name = node.name;
   cloth.color = read_color(model, primitive);
+  const Value& weft = node.extras.Get("weft");
+  if (weft.Has("fabric") && weft.Get("fabric").IsString())
+    cloth.fabric = weft.Get("fabric").Get<std::string>();
   const auto base = read_positions(model, primitive.attributes);
   cloth.triangles = read_triangles(model, primitive.indices, base.size() / 3);
   cloth.frames.push_back(base);

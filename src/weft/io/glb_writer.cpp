@@ -133,9 +133,10 @@ Extras shape_extras(const OrientedBox& b) {
           {"rotation", numbers(std::span<const double>(rows.data(), 9))}};
 }
 
-tinygltf::Value extras_of(const AnimatedCloth&) {
-  return tinygltf::Value(
-      Extras{{"weft", tinygltf::Value(Extras{{"role", tinygltf::Value(std::string("cloth"))}})}});
+tinygltf::Value extras_of(const AnimatedCloth& cloth) {
+  Extras weft = {{"role", tinygltf::Value(std::string("cloth"))}};
+  if (!cloth.fabric.empty()) weft["fabric"] = tinygltf::Value(cloth.fabric);
+  return tinygltf::Value(Extras{{"weft", tinygltf::Value(std::move(weft))}});
 }
 
 tinygltf::Value extras_of(const AnimatedBody& body) {

@@ -17,7 +17,7 @@ namespace weft::engine {
 /// kilobytes per frame and mesh, independent of the number of vertices.
 ///
 /// Materials are double-sided, fabric coordinates become texture coordinates in metres. Data without a glTF
-/// equivalent is in the nodes' extras, as `"weft": {"role": "cloth"}` or `{"role": "collider", "shape":
+/// equivalent is in the nodes' extras, as `"weft": {"role": "cloth", "fabric": "denim"}` or `{"role": "collider", "shape":
 /// "sphere", "center": [0, 0, 0], "radius": 0.3}`. Other shapes are `plane` (point, normal), `capsule` (a, b,
 /// radius), `box` (center, half_size, rotation: nine numbers row by row) and `mesh`. The asset's extras hold
 /// `title` and `passing`.
