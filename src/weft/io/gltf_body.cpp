@@ -607,7 +607,8 @@ MeshFromFile mesh_at_start(const GltfBody& body) {
   for (const Triangle& triangle : body.triangles) {
     if (body.uv.empty()) break;
     CornerUv& corners = result.uv.emplace_back();
-    for (int c = 0; c < 3; ++c) corners[c] = body.uv[triangle[c]];
+    for (int c = 0; c < 3; ++c)
+      corners[c] = {body.uv[triangle[c]].x(), 1 - body.uv[triangle[c]].y()};  // v up
   }
   result.faces = make_faces(result.mesh.triangles, result.uv);
   return result;

@@ -73,7 +73,7 @@ std::vector<double> find_ticks(const std::array<double, 2>& range) {
 
 void draw_legend(Image& image, const Legend& legend) {
   constexpr int kWidth = 190, kHeight = 46, kMargin = 10, kInset = 10, kBar = 9;
-  const int scale = std::max(1, image.height / 420);
+  const int scale = std::max(1, image.height / 360);
   if (image.width < scale * (kWidth + 2 * kMargin) || image.height < scale * (kHeight + 2 * kMargin)) return;
   const Panel panel{scale * kMargin, image.height - scale * (kMargin + kHeight), scale * kWidth,
                     scale * kHeight};
@@ -89,7 +89,9 @@ void draw_legend(Image& image, const Legend& legend) {
     const int x = left + static_cast<int>(std::lround(share * (width - scale)));
     blend(image, {x, top + scale * kBar, scale, 3 * scale}, {0.12, 0.12, 0.14}, 1);
     const std::string text = to_text(tick);
-    write(image, text, x - text_width(text, scale) / 2, top + scale * (kBar + 5), scale);
+    const int text_left = std::clamp(x - text_width(text, scale) / 2, panel.left + 2 * scale,
+                                     panel.left + panel.width - 2 * scale - text_width(text, scale));
+    write(image, text, text_left, top + scale * (kBar + 5), scale);
   }
 }
 

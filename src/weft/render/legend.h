@@ -17,8 +17,8 @@ struct Legend {
 /// panel. Its size follows the picture's; a picture too small for it stays as it is.
 void draw_legend(Image& image, const Legend& legend);
 
-/// Round numbers in a range, in ascending order: multiples of 1, 2 or 5 times a power of ten, between three and
-/// eight of them. A range without width has its one number.
+/// Round numbers in a range, in ascending order: multiples of 1, 2 or 5 times a power of ten, three to
+/// eleven of them. A range without width has its one number.
 std::vector<double> find_ticks(const std::array<double, 2>& range);
 
 }  // namespace weft::engine

@@ -164,6 +164,7 @@ struct Renderer::Stage {
   void draw_fabric(GeometryId geometry, float number, const DrawnMesh& mesh) {
     const Look& look = mesh.look;
     const weft::FabricLook& fabric = look.fabric;
+    const bool shows_values = !mesh.values.empty();  // their colours change little from light to shadow
     const bool is_woven = fabric.weave != weft::Weave::none && !mesh.fabric_coordinates.empty();
     const Vector3f weft_color = static_cast<float>(fabric.weft_shade) * to_vector(look.color);
     device.draw({Program::fabric,
@@ -171,13 +172,13 @@ struct Renderer::Stage {
                   {"color", to_vector(look.color)},
                   {"weft_color", weft_color},
                   {"mesh", number},
-                  {"shows_values", mesh.values.empty() ? 0.0f : 1.0f},
+                  {"shows_values", shows_values ? 1.0f : 0.0f},
                   {"check_size", static_cast<float>(look.check_size)},
                   {"weave", static_cast<float>(fabric.weave)},
                   {"thread", is_woven ? static_cast<float>(fabric.thread) : 0.0f},
-                  {"translucency", static_cast<float>(fabric.translucency)},
-                  {"sheen", static_cast<float>(fabric.sheen)},
-                  {"gloss", static_cast<float>(fabric.gloss)}},
+                  {"translucency", shows_values ? 0.8f : static_cast<float>(fabric.translucency)},
+                  {"sheen", shows_values ? 0.0f : static_cast<float>(fabric.sheen)},
+                  {"gloss", shows_values ? 0.0f : static_cast<float>(fabric.gloss)}},
                  geometry});
   }
 
