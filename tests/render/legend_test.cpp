@@ -23,7 +23,7 @@ TEST(ColorMap, IsViridis) {
                                                           {0.993, 0.906, 0.144}}};
   for (int k = 0; k < 5; ++k) {
     const std::array<double, 3> color = map_color(std::min(64.0 * k, 255.0) / 255);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], expected[k][c], 0.012) << k << ' ' << c;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], expected[k][c], 0.015) << k << ' ' << c;
   }
 }
 

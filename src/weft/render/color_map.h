@@ -6,7 +6,7 @@
 namespace weft::engine {
 
 /// viridis (S. van der Walt, N. Smith, 2015, CC0) as polynomials of degree 6 (M. Zucker, 2018, CC0): sRGB
-/// red, green and blue of a share t in [0, 1] are sums of row k times tᵏ, within 0.01 of the original.
+/// red, green and blue of a share t in [0, 1] are sums of row k times tᵏ, within 0.015 of the original.
 inline constexpr std::array<std::array<double, 3>, 7> kColorMap = {{
     {0.2777273272, 0.0054073445, 0.3340998053},
     {0.1050930431, 1.4046135299, 1.3845901627},

@@ -497,7 +497,7 @@ void main() {
   float phase = phase_of(mesh, 1.0 / gl_FragCoord.w);
   vec4 best = texelFetch(lit, at, 0);
   float least = miss(best.a, phase);
-  int looks = least > 2.0 * fwidth(phase) + 0.012 ? 4 : 0;
+  int looks = least > min(2.0 * fwidth(phase), 0.4) + 0.012 ? 4 : 0;
   for (int k = 0; k < looks; ++k) {
     int side = 2 * (k & 1) - 1;
     vec4 there = texelFetch(lit, clamp(at + (k < 2 ? ivec2(side, 0) : ivec2(0, side)), ivec2(0), last), 0);
