@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kCheckSize = 0.025;   // of the checks in cloth [m]
 constexpr double kHemRadius = 0.9e-3;  // three layers of thin cloth, half of them [m]
-constexpr int kHemLines = 720;  // hems are drawn where a pixel of so many lines is narrower than them [1]
+constexpr int kHemLines = 720;         // hems are drawn where they cover four pixels of so many lines [1]
 constexpr double kInset = 0.2,
                  kMaxInset = 5e-3;  // of bodies below smooth cloth: share of its edges, limit [m]
 constexpr std::size_t kSmoothTriangles = 160'000;  // of all cloth, at most, after subdivision
@@ -206,7 +206,7 @@ DrawnMesh ScenePictures::draw_cloth(int index, int frame, const Camera& camera) 
   mesh.fabric_coordinates = coordinates;
   if (!mesh.values.empty()) mesh.values = subdivision.apply(mesh.values, 1);
   const double pixel = 2 * camera.distance * std::tan(camera.fov_deg * std::numbers::pi / 360) / kHemLines;
-  if (pixel < kHemRadius) add_hem(hem, mesh);
+  if (2 * pixel < kHemRadius) add_hem(hem, mesh);
   return mesh;
 }
 
