@@ -110,7 +110,7 @@ FabricPreset make_denim() {
            .translucency = 0.05,
            .sheen = 0.3,
            .gloss = 0.03,
-           .weft_shade = 4}};
+           .weft_shade = 2.5}};
 }
 
 FabricPreset make_leather() {

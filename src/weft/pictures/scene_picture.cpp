@@ -12,8 +12,8 @@ namespace {
 constexpr double kCheckSize = 0.025;   // of the checks in cloth [m]
 constexpr double kHemRadius = 0.9e-3;  // three layers of thin cloth, half of them [m]
 constexpr int kHemLines = 720;         // hems are drawn where they cover four pixels of so many lines [1]
-constexpr double kInset = 0.2,
-                 kMaxInset = 5e-3;  // of bodies below smooth cloth: share of its edges, limit [m]
+constexpr double kInset = 0.2;         // of bodies below smooth cloth, as a share of its edges [1]
+constexpr double kMaxInset = 5e-3;     // limit of that [m]
 constexpr std::size_t kSmoothTriangles = 160'000;  // of all cloth, at most, after subdivision
 constexpr double kBelow = 0.02;   // depth of the ground below the scene, as a share of its size [1]
 constexpr double kLevel = 0.999;  // least y of the normal of a ground plane [1]
