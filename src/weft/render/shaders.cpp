@@ -183,11 +183,11 @@ void main() {
   vec2 px = dFdx(p), py = dFdy(p);
   float width = max(length(px), length(py));  // of a pixel [threads]
   float streaks = thread == 0.0 ? 0.0 : 1.0 - smoothstep(1.5, 6.0, width),
-        threads = thread == 0.0 ? 0.0 : 1.0 - smoothstep(0.2, 0.55, width);
+        threads = thread == 0.0 ? 0.0 : 1.0 - smoothstep(0.12, 0.32, width);
   // Loops of one turn: software drivers skip a loop, but execute both sides of a branch.
   for (int k = 0; k < (streaks > 0.0 ? 1 : 0); ++k) {  // threads of uneven thickness
     float uneven = noise(p.yx * vec2(0.35, 0.012)) + noise(p * vec2(0.35, 0.012)) - 1.0;
-    base *= 1.0 + 0.22 * streaks * uneven;
+    base *= 1.0 + 0.14 * streaks * uneven;
   }
   for (int k = 0; k < (threads > 0.0 ? 1 : 0); ++k) {
     const float kStep = 0.06;
