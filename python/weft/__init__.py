@@ -9,6 +9,7 @@
 (289, 3)
 """
 
+from . import farm
 from ._batch import Batch
 from ._core import (
     Air,
