@@ -254,7 +254,7 @@ class _Batch:
             deaths.begin_attempt("", -1)
         try:
             world = plan.make_world(dict(case))
-            choose(world, "make_world", World, "a function that returns a World")
+            choose(world, "its result", World, "a World")
         except Exception as error:
             row["id"], row["error"] = self._id_without_world(row["case"]), f"make_world: {words(error)}"
             with place.lock:
@@ -330,8 +330,8 @@ class _CaseRun:
                 self._advance()
             where = "measure"
             measures = plan.measure(self._world) if plan.measure else {}
-            choose(measures, "measure", Mapping, "a function that returns a dict")
-            row["measures"] = {str(name): plain(value, f'measure "{name}"') for name, value in measures.items()}
+            choose(measures, "its result", Mapping, "a dict")
+            row["measures"] = {str(name): plain(value, f'"{name}"') for name, value in measures.items()}
             twice = [name for name in row["measures"] if name in row["case"] or name in COLUMNS]
             if twice:
                 row["measures"] = {}

@@ -191,8 +191,11 @@ def _check(plan: Plan, cases: Sequence[Case], out: object) -> None:
         raise _core.InputError(
             f"seconds and dt: expected at least one step, found {plan.seconds:g} s and {plan.dt:g} s"
         )
-    if plan.frames < 0 or plan.max_deaths < 1 or plan.checkpoint_every <= 0:
-        raise _core.InputError("frames: 0 or more; max_deaths: 1 or more; checkpoint_every: above 0")
+    for name, least in (("frames", 0), ("max_deaths", 1)):
+        if getattr(plan, name) < least:
+            raise _core.InputError(f"{name}: expected at least {least}, found {getattr(plan, name)}")
+    if plan.checkpoint_every <= 0:
+        raise _core.InputError(f"checkpoint_every: expected a number above 0, found {plan.checkpoint_every:g}")
     choose(cases, "cases", Sequence, "a list of dicts")
     for case in cases:
         choose(case, "cases", Mapping, "a list of dicts")
@@ -390,7 +393,7 @@ def _farm_of(
     try:
         data = importlib.import_module("cloudpickle").dumps(plan)
     except Exception as error:
-        raise _core.InputError(f"make_world, control and measure cannot be sent to workers: {words(error)}") from None
+        raise _core.InputError(f"make_world, measure and control cannot be sent to workers: {words(error)}") from None
     name = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
     try:
         for part in ("rows", "live"):
