@@ -1,4 +1,4 @@
-"""Speed of the package, as ratios within one run: `python -m weft.bench`."""
+"""Speed of the package, as ratios within one run: `python -m weft.bench`; of farms: `python -m weft.bench farm`."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, farm
 from ._batch import Batch
 from ._mesh import grid
 from ._world import World
@@ -181,6 +182,52 @@ def _bench_mujoco() -> None:
     _row("MuJoCo's rollout, a flex of 32 × 32, frames of 8 × 2 ms, two threads", f"{rate:.0f} frames/s")
 
 
+def _bench_farm(count: int, milliseconds: int, aim: int) -> None:
+    """Cases of a duration, by one worker of a farm, against a loop. Half of the loop is before the farm, half after."""
+
+    def make_world(case: dict[str, int]) -> World:
+        world = _hang(8)
+        world.cloths[0].velocities = (0, 0, 1e-4 * case["n"])
+        return world
+
+    def measure(world: World) -> dict[str, float]:
+        return {"height": world.cloths[0].center_of_mass[1]}
+
+    def loop(cases: list[dict[str, int]], steps: int) -> float:
+        start = time.perf_counter()
+        for case in cases:
+            world = make_world(case)
+            for _ in range(steps):
+                world.step(_STEP)
+            measure(world)
+        return time.perf_counter() - start
+
+    cases = farm.grid(n=range(count))
+    few = cases[: max(1, 2000 // milliseconds)]
+    steps = max(1, round(1e-3 * milliseconds / statistics.median(loop(few, 10) / (10 * len(few)) for _ in range(3))))
+    with farm.local(1) as client, tempfile.TemporaryDirectory() as folder:
+        farm.run(make_world, cases[:1], seconds=_STEP, out=f"{folder}/first", client=client, progress=False)
+        before = loop(cases[: count // 2], steps)
+        start = time.perf_counter()
+        farm.run(
+            make_world, cases, seconds=steps * _STEP, dt=_STEP, measure=measure, out=f"{folder}/farm", client=client,
+            progress=False,
+        )  # fmt: skip
+        spent = time.perf_counter() - start
+        bare = before + loop(cases[count // 2 :], steps)
+    each = 1e3 * bare / count
+    _row(f"a farm of {count} cases of {each:.1f} ms, beyond a loop", f"{100 * (spent / bare - 1):.1f} %", f"≤ {aim} %")
+
+
+def bench_farms() -> None:
+    """Prints the rows of farms."""
+    try:
+        _bench_farm(10_000, 10, 25)
+        _bench_farm(600, 200, 3)
+    except ImportError as error:
+        _row(str(error), "–")
+
+
 def main() -> None:
     """Prints the table: what, the figure, and the aim."""
     _bench_step()
@@ -194,4 +241,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    bench_farms() if sys.argv[1:] == ["farm"] else main()
