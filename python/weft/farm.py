@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 __all__ = ["grid", "local", "run", "table"]
 
-_BATCH = 1.0  # computing time of a batch [s]
+_BATCH = 2.0  # computing time of a batch [s]
 _MAX_BATCH = 1000  # cases
 _STOP_WAIT = 30.0  # for workers to end their steps after Ctrl-C [s]
 _MAX_LOSSES = 20  # workers that end with a case, before the farm gives up
