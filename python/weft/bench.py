@@ -194,16 +194,21 @@ def _measure_case(world: World) -> dict[str, float]:
     return {"height": world.cloths[0].center_of_mass[1]}
 
 
-def loop_over_cases(steps: int, count: Path | None, limit: int) -> None:
-    """Cases without a farm. After each one, writes their number to a file."""
-    file = None if count is None else os.open(count, os.O_WRONLY | os.O_CREAT)
-    for n in range(limit):
+def _loop_over_cases(steps: int, count: int) -> None:
+    for n in range(count):
         world = _make_case({"n": n})
         for _ in range(steps):
             world.step(_STEP)
         _measure_case(world)
-        if file is not None:
-            os.pwrite(file, f"{n + 1:12}".encode(), 0)
+
+
+def count_cases(steps: int, file: str, parent: int) -> None:
+    """Cases without a farm, while the parent process lives. After each one, writes their number to a file."""
+    stream, number = os.open(file, os.O_WRONLY | os.O_CREAT), 0
+    while os.getppid() == parent:
+        _loop_over_cases(steps, 1)
+        number += 1
+        os.pwrite(stream, f"{number:12}".encode(), 0)
 
 
 def _bench_farm(num_cases: int, milliseconds: int, aim: int) -> None:
@@ -211,14 +216,14 @@ def _bench_farm(num_cases: int, milliseconds: int, aim: int) -> None:
     few, times = max(1, 2000 // milliseconds), []
     for _ in range(3):
         start = time.perf_counter()
-        loop_over_cases(10, None, few)
+        _loop_over_cases(10, few)
         times.append((time.perf_counter() - start) / (10 * few))
     steps = max(1, round(1e-3 * milliseconds / min(times)))
     with farm.local(1) as client, tempfile.TemporaryDirectory() as folder:
         cases, count = farm.grid(n=range(num_cases)), Path(folder, "count")
         options: dict[str, Any] = {"client": client, "progress": False, "measure": _measure_case}
         farm.run(_make_case, cases[:1], seconds=_STEP, out=f"{folder}/first", **options)
-        code = f"import pathlib, weft.bench; weft.bench.loop_over_cases({steps}, pathlib.Path({str(count)!r}), 10**9)"
+        code = f"import weft.bench; weft.bench.count_cases({steps}, {str(count)!r}, {os.getpid()})"
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         loop = subprocess.Popen([sys.executable, "-c", code], env=environment, start_new_session=True)
         try:

@@ -277,6 +277,8 @@ class _Farm:
 
     def _fill(self) -> None:
         """Two batches for each thread of the workers: one that it computes, one that follows."""
+        if self.client.status in ("closing", "closed"):
+            raise RuntimeError(f"the connection to the scheduler of dask is closed; {_KEPT}")
         now = time.monotonic()
         if now - self.asked > 1:
             self.asked = now
