@@ -313,9 +313,10 @@ class _Farm:
 
     def _land(self, flight: _Flight) -> None:
         """Takes a batch's report. Cases without a row run again."""
-        if flight.future.status == "finished":
-            self._take(flight.future.result(), flight)
-        elif flight.future.status == "error":
+        status, report = flight.future.status, _report_of(flight)
+        if report:
+            self._take(report, flight)
+        elif status == "error":
             error = flight.future.exception()
             if type(error).__name__ != "KilledWorker":
                 raise RuntimeError(f"a worker of the farm failed: {words(error)}; {_KEPT}") from error
@@ -360,11 +361,12 @@ class _Farm:
         """Ends the batches on their way between two steps, and takes their reports."""
         (self.live / "plan.pickle").unlink(missing_ok=True)
         end = time.monotonic() + _STOP_WAIT
-        while self.flights and time.monotonic() < end:
-            with contextlib.suppress(queue.Empty):
-                flight = self.flights.pop(self.landed.get(timeout=0.2))
-                if flight.future.status == "finished" and (report := flight.future.result()).rows:
-                    self._write(report.rows, report)
+        while any(not flight.future.done() for flight in self.flights.values()) and time.monotonic() < end:
+            time.sleep(0.05)
+        for flight in self.flights.values():
+            report = _report_of(flight)
+            if report and report.rows:
+                self._write(report.rows, report)
         self.client.cancel([flight.future for flight in self.flights.values()])
 
     def finish(self) -> pyarrow.Table:
@@ -380,6 +382,15 @@ class _Farm:
         if failed and self.tell is not None:
             print(f"{self.folder}: {failed} of {len(own)} cases failed; column error has the reasons", file=sys.stderr)
         return _as_table(own)
+
+
+def _report_of(flight: _Flight) -> Report | None:
+    """None for a batch that was lost or has failed."""
+    lost = tuple(importlib.import_module(name).CancelledError for name in ("asyncio", "concurrent.futures"))
+    try:
+        return flight.future.result() if flight.future.status == "finished" else None
+    except (OSError, *lost):  # with the scheduler, at this moment
+        return None
 
 
 _KEPT = "finished cases are kept, and read when it runs again"
