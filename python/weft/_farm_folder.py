@@ -63,7 +63,7 @@ def plain(value: Any, name: str) -> Any:
 
 def canonical(case: Mapping[str, Any]) -> str:
     """A case's values as text, independent of their order."""
-    return json.dumps(case, sort_keys=True, ensure_ascii=False)
+    return json.dumps(case, sort_keys=True)
 
 
 @functools.cache
@@ -114,7 +114,7 @@ def write_whole(file: Path, data: bytes) -> None:
 
 def add_rows(folder: Path, rows: Iterable[Row]) -> None:
     """Adds a file of rows. Raises OSError if the folder cannot be written."""
-    data = "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows).encode()
+    data = "".join(json.dumps(row) + "\n" for row in rows).encode()
     write_whole(folder / "rows" / f"{hashlib.sha256(data).hexdigest()[:32]}.jsonl", data)
 
 
@@ -329,5 +329,7 @@ def load_checkpoint(file: Path) -> tuple[World, dict[str, Any]] | None:
     return World.load(world), json.loads(head)
 
 
-def remove_parts(folder: Path, id: str) -> None:
-    shutil.rmtree(folder / "parts" / id, ignore_errors=True)
+def remove_parts(folder: Path, rows: Iterable[Row]) -> None:
+    """Of finished cases."""
+    for row in rows:
+        shutil.rmtree(folder / "parts" / row["id"], ignore_errors=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import datetime
 import functools
 import importlib
@@ -170,8 +171,13 @@ def work(folder: str, farm: str, batch: str, items: Sequence[tuple[int, Case]], 
     with contextlib.suppress(OSError):
         mark.touch()
     report = _Batch(place, careful).run(items)
-    mark.unlink(missing_ok=True)
     report.host, report.worker, report.seconds = place.host, importlib.import_module("distributed").get_worker().address, time.perf_counter() - start
+    if report.rows is None:  # by the folder too: dask loses results of workers that die
+        with contextlib.suppress(OSError):
+            part = place.live / f".{batch}.partial"
+            part.write_text(json.dumps(dataclasses.asdict(report)))
+            os.replace(part, place.live / f"{batch}.report")
+    mark.unlink(missing_ok=True)
     return report
 
 
@@ -210,9 +216,9 @@ class _Batch:
         except OSError as error:
             report.rows = (report.rows or []) + rows
             report.unwritable = error.strerror or str(error)
-        for index, row in self._rows:
-            report.cases.append((index, row["id"], True))
-            remove_parts(self._place.folder, row["id"])
+        else:
+            remove_parts(self._place.folder, rows)
+        report.cases += [(index, row["id"], True) for index, row in self._rows]
         self._rows = []
 
     def _compute(self, index: int, case: Case) -> None:
@@ -226,7 +232,7 @@ class _Batch:
             "host": place.host, "farm": place.farm,
         }  # fmt: skip
         if deaths and deaths.count >= self._plan.max_deaths:
-            row["id"] = deaths.id or self._id_without_world(values)
+            row["id"] = deaths.id or self._id_without_world(values, "deadly")
             row["error"] = (
                 f"the case ended its worker {deaths.count} times, each time as the only case in it; memory or a crash "
                 "of make_world, control or measure is the usual cause"
@@ -244,25 +250,32 @@ class _Batch:
             place.done.add(row)
         self._rows.append((index, row))
 
-    def _id_without_world(self, values: Any) -> str:
-        return case_id(b"no world: " + canonical(values).encode(), self._plan.seconds, self._plan.dt, self._plan.key)
+    def _id_without_world(self, values: Any, make_world: str) -> str:
+        """Of a case whose make_world fails, or is deadly."""
+        world = f"{make_world}: {canonical(values)}".encode()
+        return case_id(world, self._plan.seconds, self._plan.dt, self._plan.key)
 
     def _fill(self, row: Row, index: int, case: Case, deaths: _Deaths | None) -> bool:
         """Computes a row. True: the case has one already."""
-        plan, place = self._plan, self._place
+        plan, place, text = self._plan, self._place, canonical(row["case"])
+        deadly = self._id_without_world(row["case"], "deadly")
+        with place.lock:
+            found = place.done.find(deadly, text, False, place.retry_of)
+        if self._is_read(index, deadly, found):
+            return True
         if deaths:
             deaths.begin_attempt("", -1)
         try:
             world = plan.make_world(dict(case))
             choose(world, "its result", World, "a World")
         except Exception as error:
-            row["id"], row["error"] = self._id_without_world(row["case"]), f"make_world: {words(error)}"
+            row["id"], row["error"] = self._id_without_world(row["case"], "fails"), f"make_world: {words(error)}"
             with place.lock:
-                found = place.done.find(row["id"], canonical(row["case"]), False, place.retry_of)
+                found = place.done.find(row["id"], text, False, place.retry_of)
             return self._is_read(index, row["id"], found)
         id = row["id"] = case_id(world.save(), plan.seconds, plan.dt, plan.key)
         with place.lock:
-            found = place.done.find(id, canonical(row["case"]), plan.frames > 0, place.retry_of)
+            found = place.done.find(id, text, plan.frames > 0, place.retry_of)
         if self._is_read(index, id, found):
             return True
         if found is None and (twin := self._twin(id)):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import itertools
+import json
 import math
 import os
 import queue
@@ -31,7 +32,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import choose, real, whole
-from ._farm_folder import Row, add_rows, build_id, canonical, merge_rows, plain, read_rows, write_whole
+from ._farm_folder import Row, add_rows, build_id, canonical, merge_rows, plain, read_rows, remove_parts, write_whole
 from ._farm_work import COLUMNS, Case, Plan, Report, words, work
 from ._progress import Progress, print_progress, show_progress
 from ._world import World
@@ -44,6 +45,7 @@ __all__ = ["grid", "local", "run", "table"]
 
 _BATCH = 2.0  # computing time of a batch [s]
 _MAX_BATCH = 1000  # cases
+_RESULT_WAIT = 30.0  # for a report that the worker could not write into the folder [s]
 _STOP_WAIT = 30.0  # for workers to end their steps after Ctrl-C [s]
 _MAX_LOSSES = 20  # workers that end with a case, before the farm gives up
 _ROUNDS = 5  # over cases whose rows are missing at the end
@@ -214,6 +216,7 @@ class _Flight:
 
     indices: list[int]
     future: Any  # of dask, of a Report
+    file: Path  # of the same report, written by the worker
 
 
 @dataclass
@@ -308,7 +311,7 @@ class _Farm:
             work, str(self.folder), self.name, batch, items, careful, key=f"weft-cases-{batch}", pure=False,
             **({"workers": good, "allow_other_workers": True} if good else {}),
         )  # fmt: skip
-        self.flights[batch] = _Flight(indices, future)
+        self.flights[batch] = _Flight(indices, future, self.live / f"{batch}.report")
         future.add_done_callback(lambda _: self.landed.put(batch))
 
     def _land(self, flight: _Flight) -> None:
@@ -350,6 +353,7 @@ class _Farm:
         """Writes rows that their worker cannot write."""
         try:
             add_rows(self.folder, rows)
+            remove_parts(self.folder, rows)
         except OSError as error:
             raise _core.InputError(
                 f"{report.host} and {socket.gethostname()} cannot write {self.folder}: {error.strerror}; {_KEPT}"
@@ -386,10 +390,15 @@ class _Farm:
 
 def _report_of(flight: _Flight) -> Report | None:
     """None for a batch that was lost or has failed."""
-    lost = tuple(importlib.import_module(name).CancelledError for name in ("asyncio", "concurrent.futures"))
     try:
-        return flight.future.result() if flight.future.status == "finished" else None
-    except (OSError, *lost):  # with the scheduler, at this moment
+        report = Report(**json.loads(flight.file.read_text()))
+        flight.file.unlink()
+        return report
+    except OSError:
+        asyncio, futures = importlib.import_module("asyncio"), importlib.import_module("concurrent.futures")
+    try:
+        return flight.future.result(timeout=_RESULT_WAIT) if flight.future.status == "finished" else None
+    except (OSError, asyncio.TimeoutError, asyncio.CancelledError, futures.CancelledError):  # its worker has died
         return None
 
 

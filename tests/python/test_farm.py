@@ -161,6 +161,29 @@ def test_a_culprit_gets_its_sentence_and_its_victims_their_rows(tmp_path: Path) 
     assert [each for n, each in enumerate(hashes(table)) if n != 7] == [h for n, h in enumerate(HASHES[:16]) if n != 7]
 
 
+def test_a_deadly_make_world_gets_its_sentence_and_is_not_called_again(tmp_path: Path) -> None:
+    log = Log(tmp_path / "log")
+
+    def deadly(case: dict[str, Any]) -> weft.World:
+        if case["push"] == 1:
+            log.add("death")
+            farms.die()
+        return make_world(case)
+
+    with workers(1) as client:
+        table = run(CASES[:3], tmp_path / "out", make_world=deadly, client=client)
+        assert [error is None for error in table["error"].to_pylist()] == [True, False, True]
+        deaths = len(log.lines())
+        assert deaths >= 3
+        assert run(CASES[:3], tmp_path / "out", make_world=deadly, client=client).equals(table)
+    assert len(log.lines()) == deaths
+
+
+def test_no_cases_are_a_table_without_rows(tmp_path: Path, two: Client) -> None:
+    table = run([], tmp_path, client=two)
+    assert table.num_rows == 0 and "state_hash" in table.column_names
+
+
 def test_a_full_folder_of_one_worker_loses_nothing(tmp_path: Path) -> None:
     with workers(2) as client:
         full = farms.full_folder(tmp_path / "full")
