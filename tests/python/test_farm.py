@@ -38,9 +38,14 @@ LIMIT = 240  # for anything that has to happen at all [s]
 
 @contextmanager
 def workers(count: int, *, threads: int = 1) -> Iterator[Client]:
-    """Workers on this machine, restarted when they die, by forks of a process that has imported dask."""
+    """Workers on this machine, restarted when they die, by forks of a process that has imported dask.
+
+    dask gives up a worker that is killed while it starts: the cluster forgets it after 3 s, and scale() makes another.
+    """
     with (
-        dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}),
+        dask.config.set(
+            {"distributed.worker.multiprocessing-method": "forkserver", "distributed.deploy.lost-worker-timeout": "3s"}
+        ),
         LocalCluster(
             n_workers=count, threads_per_worker=threads, host="127.0.0.1", dashboard_address="127.0.0.1:0",
             worker_dashboard_address="127.0.0.1:0", silence_logs=60, memory_limit=0,
@@ -48,6 +53,11 @@ def workers(count: int, *, threads: int = 1) -> Iterator[Client]:
         Client(cluster) as client,
     ):  # fmt: skip
         yield client
+
+
+def scaled(client: Client, count: int) -> Callable[[int, int, float, float], object]:
+    """A progress that starts workers which dask has given up."""
+    return lambda *_: client.cluster.scale(count)
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +93,7 @@ def test_twenty_kills_of_working_processes_lose_nothing(count: int, tmp_path: Pa
     with workers(count) as client:
         # By chance, one case can be hit several times: it is not a culprit.
         deadly = farms.deadly_control(tmp_path / "kills")
-        table = run(CASES, tmp_path / "out", control=deadly, client=client, max_deaths=21)
+        table = run(CASES, tmp_path / "out", control=deadly, client=client, max_deaths=21, progress=scaled(client, count))
     assert len(tokens) == 0
     assert hashes(table) == HASHES and table["error"].null_count == len(CASES)
     everything = farm.table(tmp_path / "out")
@@ -154,7 +164,7 @@ def test_a_culprit_gets_its_sentence_and_its_victims_their_rows(tmp_path: Path) 
 
     cases = [dict(case, cells=5 if n == 7 else 4) for n, case in enumerate(CASES[:16])]
     with workers(1, threads=2) as client:
-        table = run(cases, tmp_path, control=deadly, client=client)
+        table = run(cases, tmp_path, control=deadly, client=client, progress=scaled(client, 1))
     errors = table["error"].to_pylist()
     assert errors[7].startswith("the case ended its worker 3 times, each time as the only case in it")
     assert [error for n, error in enumerate(errors) if n != 7] == [None] * 15
@@ -171,7 +181,7 @@ def test_a_deadly_make_world_gets_its_sentence_and_is_not_called_again(tmp_path:
         return make_world(case)
 
     with workers(1) as client:
-        table = run(CASES[:3], tmp_path / "out", make_world=deadly, client=client)
+        table = run(CASES[:3], tmp_path / "out", make_world=deadly, client=client, progress=scaled(client, 1))
         assert [error is None for error in table["error"].to_pylist()] == [True, False, True]
         deaths = len(log.lines())
         assert deaths >= 3
@@ -211,7 +221,8 @@ def test_a_long_case_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
 
     case = {"height": 1.0, "cells": 6}
     with workers(1) as client:
-        options = {"client": client, "frames": 2, "seconds": 40 * DT, "checkpoint_every": 1e-9}
+        options = {"client": client, "frames": 2, "seconds": 40 * DT, "checkpoint_every": 1e-9,
+                   "progress": scaled(client, 1)}  # fmt: skip
         table = run([case], tmp_path / "out", control=deadly, **options)
         assert [int(line) for line in log.lines()] == [*range(11), *range(10, 12), *range(11, 31), *range(30, 40)]
         lone = run([case], tmp_path / "lone", **options)
