@@ -171,7 +171,8 @@ def work(folder: str, farm: str, batch: str, items: Sequence[tuple[int, Case]], 
     with contextlib.suppress(OSError):
         mark.touch()
     report = _Batch(place, careful).run(items)
-    report.host, report.worker, report.seconds = place.host, importlib.import_module("distributed").get_worker().address, time.perf_counter() - start
+    report.host, report.seconds = place.host, time.perf_counter() - start
+    report.worker = importlib.import_module("distributed").get_worker().address
     if report.rows is None:  # by the folder too: dask loses results of workers that die
         with contextlib.suppress(OSError):
             part = place.live / f".{batch}.partial"

@@ -112,7 +112,8 @@ def main() -> int:
     hashes = [lone_hash(case) for case in cases]
     equal = sum(a == b for a, b in zip(table["state_hash"].to_pylist(), hashes, strict=True))
     rows = weft.farm.table(folder / "farm").num_rows
-    print(f"rows: {rows}; failed: {len(cases) - table['error'].null_count}; by node: {dict(Counter(table['node'].to_pylist()))}")
+    nodes = dict(Counter(table["node"].to_pylist()))
+    print(f"rows: {rows}; failed: {len(cases) - table['error'].null_count}; by node: {nodes}")
     print(f"cases computed twice: {last - len(cases)}; steps computed twice: {steps - STEPS * len(cases)} of {steps}")
     print(f"hashes equal to those of lone runs: {equal} of {len(cases)}")
     good = rows == equal == len(cases) and accident.is_over

@@ -103,7 +103,8 @@ def test_twenty_kills_of_working_processes_lose_nothing(count: int, tmp_path: Pa
 
 
 def process(out: Path, log: Path, what: str) -> subprocess.Popen[bytes]:
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(farms.__file__).parent), *filter(None, sys.path)])}
+    path = os.pathsep.join([str(Path(farms.__file__).parent), *filter(None, sys.path)])
+    environment = {**os.environ, "PYTHONPATH": path}
     return subprocess.Popen([sys.executable, farms.__file__, str(out), str(log), what], env=environment)
 
 
@@ -317,7 +318,8 @@ def test_columns_and_the_parquet_file(tmp_path: Path, two: Client) -> None:
     for step in range(12):
         control(world, step)
         world.step(DT)
-    assert first["low"] == world.cloths[0].positions[:, 1].min() and first["center"] == list(world.cloths[0].center_of_mass)
+    assert first["low"] == world.cloths[0].positions[:, 1].min()
+    assert first["center"] == list(world.cloths[0].center_of_mass)
     assert first["report"]["steps"] == 12 and first["report"]["warnings"] == [] and first["error"] is None
     assert first["wall_seconds"] > 0 and first["host"] and first["seconds"] == SECONDS and first["dt"] == DT
     stored = pyarrow.parquet.read_table(tmp_path / "out" / "cases.parquet")
