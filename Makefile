@@ -2,7 +2,7 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help program lab build python wheel wheel-all demo test scenes pictures videos study docs asan tsan fuzz format clean
+.PHONY: help program lab build python wheel wheel-all demo test scenes pictures videos study docs cluster asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
@@ -16,6 +16,7 @@ help:
 	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
 	@echo "make study   every claim tested: docs/study/study.md again (most of an hour)"
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
+	@echo "make cluster a farm on a real Slurm on this machine, a node of which dies and returns; as root (five minutes)"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
 	@echo "make fuzz    fuzz the readers of scenes, meshes, glTF and saved worlds, FUZZ_SECONDS each (default 60)"
@@ -59,6 +60,10 @@ docs:
 	@mkdocs build --strict --quiet
 	@mkdir -p build/site/cpp && doxygen Doxyfile
 	@echo "build/site/index.html"
+
+cluster: python
+	@tools/install_deps.sh --cluster
+	@tools/make_cluster.sh build/venv/bin/python build/release/python
 
 asan tsan:
 	@tools/install_deps.sh
