@@ -7,8 +7,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import signal
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -79,16 +81,17 @@ class Job:
         """Begins a job: earlier contents of the folder, but no caches, are removed."""
         path = Path(folder)
         path.mkdir(parents=True, exist_ok=True)
-        for name in ("job.json", "motion.bin", "checkpoint.weft", "report.json"):
-            (path / name).unlink(missing_ok=True)
-        contents: dict[str, Any] = {"format": FORMAT}
-        for entry in fields(self):
-            if entry.name not in ("cloths", "colliders"):
-                contents[entry.name] = getattr(self, entry.name)
-        contents["cloths"] = [_write(path, f"cloth_{n}", cloth) for n, cloth in enumerate(self.cloths)]
-        contents["colliders"] = [_write(path, f"collider_{n}", body) for n, body in enumerate(self.colliders)]
-        (path / "job.json.partial").write_text(json.dumps(contents, indent=1), encoding="utf-8")
-        os.replace(path / "job.json.partial", path / "job.json")
+        with take_over(path):
+            for name in ("job.json", "motion.bin", "checkpoint.weft", "report.json"):
+                (path / name).unlink(missing_ok=True)
+            contents: dict[str, Any] = {"format": FORMAT}
+            for entry in fields(self):
+                if entry.name not in ("cloths", "colliders"):
+                    contents[entry.name] = getattr(self, entry.name)
+            contents["cloths"] = [_write(path, f"cloth_{n}", cloth) for n, cloth in enumerate(self.cloths)]
+            contents["colliders"] = [_write(path, f"collider_{n}", body) for n, body in enumerate(self.colliders)]
+            (path / "job.json.partial").write_text(json.dumps(contents, indent=1), encoding="utf-8")
+            os.replace(path / "job.json.partial", path / "job.json")
 
     @staticmethod
     def read(folder: str | os.PathLike[str]) -> Job:
@@ -139,6 +142,21 @@ class Job:
             parts += [(f"to_world_{n}", "<f8", (4, 4)), (f"pins_{n}", "<f8", (len(cloth.pins), 3))]
         parts += [(f"collider_{n}", "<f4", (len(body.start), 3)) for n, body in enumerate(self.colliders)]
         return np.dtype(parts)
+
+
+def take_over(folder: Path) -> BinaryIO:
+    """A lock on the folder, until it is closed: an earlier bake, whose program has gone, is asked to end first."""
+    stream = open(folder / "lock", "a+b")
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        stream.seek(0)
+        os.kill(int(stream.read()), signal.SIGTERM)
+        fcntl.flock(stream, fcntl.LOCK_EX)
+    stream.truncate(0)
+    stream.write(str(os.getpid()).encode())
+    stream.flush()
+    return stream
 
 
 def _write(folder: Path, prefix: str, part: Any) -> dict[str, Any]:

@@ -10,7 +10,6 @@ Exit code: 0 done, 1 a step failed, 2 bad input, 130 cancelled or without furthe
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import signal
@@ -26,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._bake_job import ClothInput, ColliderInput, Job, MotionReader, MotionWriter
+from ._bake_job import ClothInput, ColliderInput, Job, MotionReader, MotionWriter, take_over
 from ._mesh import Mesh, find_crossings
 from ._world import Cloth, Collider, World
 
@@ -388,27 +387,12 @@ def _say(line: dict[str, Any]) -> None:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
 
 
-def _take_over(folder: Path) -> BinaryIO:
-    """Only one bake at a time works on a job: an earlier one, whose program has gone, is asked to end."""
-    stream = open(folder / "lock", "a+b")
-    try:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        stream.seek(0)
-        os.kill(int(stream.read()), signal.SIGTERM)
-        fcntl.flock(stream, fcntl.LOCK_EX)
-    stream.truncate(0)
-    stream.write(str(os.getpid()).encode())
-    stream.flush()
-    return stream
-
-
 def run(folder: str | os.PathLike[str]) -> dict[str, Any]:
     """Bakes a job, and returns its report, which is also written to report.json."""
     path, report = Path(folder), dict[str, Any]()
     if not (path / "job.json").is_file():
         raise _core.InputError(f"{path} holds no job: there is no job.json")
-    lock = _take_over(path)
+    lock = take_over(path)
     try:
         bake = _Bake(path)
         for which in (signal.SIGTERM, signal.SIGINT):
