@@ -86,17 +86,17 @@ def show(cloth: bpy.types.Object, position: int, file: Path, first_frame: int) -
 
 
 class Hidden:
-    """Within it, cloths are shown as they are above our modifier, and the scene's frame may change."""
+    """Within it, cloths are shown as they are above our modifier's place, and the scene's frame may change."""
 
-    def __init__(self, scene: bpy.types.Scene, cloths: list[bpy.types.Object]) -> None:
-        self._scene, self._cloths = scene, cloths
+    def __init__(self, scene: bpy.types.Scene, cloths: list[bpy.types.Object], positions: list[int]) -> None:
+        self._scene, self._places = scene, list(zip(cloths, positions, strict=True))
 
     def __enter__(self) -> None:
         self._frame = (self._scene.frame_current, self._scene.frame_subframe)
         self._shown = []
-        for cloth in self._cloths:
-            position = list(cloth.modifiers).index(find_modifier(cloth)) if find_modifier(cloth) else None
-            for modifier in list(cloth.modifiers)[position if position is not None else len(cloth.modifiers) :]:
+        for cloth, position in self._places:
+            modifiers, own = list(cloth.modifiers), find_modifier(cloth)
+            for modifier in modifiers[modifiers.index(own) if own else position :]:
                 self._shown.append((modifier, modifier.show_viewport))
                 modifier.show_viewport = False
 

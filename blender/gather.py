@@ -68,7 +68,7 @@ class Gather:
             if thing.mode == "EDIT":
                 thing.update_from_editmode()
         self.positions = [cache.check_modifiers(cloth, layer) for cloth in cloths]
-        with cache.Hidden(scene, cloths), _AboveOurs(cloths, self.positions):
+        with cache.Hidden(scene, cloths, self.positions):
             self._set_frame(self.first_frame)
             scale = units.metres(scene)
             self.job = Job(
@@ -131,7 +131,7 @@ class Gather:
         except KeyError as error:
             raise Refused(f"{str(error).split('key ')[-1].split(' not')[0]} is no longer there; bake again") from None
         scale = units.metres(scene)
-        with cache.Hidden(scene, cloths):
+        with cache.Hidden(scene, cloths, self.positions):
             for number in numbers:
                 self._set_frame(self.first_frame + number)
                 matrices = [self._matrix(cloth) * scale for cloth in cloths]
@@ -168,27 +168,6 @@ class Gather:
             )
         matrix = self._matrix(thing)
         return scale * (own.reshape(-1, 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3])
-
-
-class _AboveOurs:
-    """Before our modifier is there: within it, what will be below it is not shown."""
-
-    def __init__(self, cloths: list[bpy.types.Object], positions: list[int]) -> None:
-        self._below = [
-            modifier
-            for cloth, position in zip(cloths, positions, strict=True)
-            for modifier in list(cloth.modifiers)[position:]
-            if not cache.find_modifier(cloth)
-        ]
-
-    def __enter__(self) -> None:
-        self._shown = [modifier.show_viewport for modifier in self._below]
-        for modifier in self._below:
-            modifier.show_viewport = False
-
-    def __exit__(self, *_: object) -> None:
-        for modifier, shown in zip(self._below, self._shown, strict=True):
-            modifier.show_viewport = shown
 
 
 def _triangles(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -98,7 +98,7 @@ class WeftScene(bpy.types.PropertyGroup):
     threads: IntProperty(name="Threads", description="0: one per core. They never change the result", min=0)
     folder: StringProperty(
         name="Cache", description="Folder of the caches; // is the folder of the .blend", subtype="DIR_PATH",
-        default="//weft_cache",
+        default="//weft_cache", **({"options": {"PATH_SUPPORTS_BLEND_RELATIVE"}} if bpy.app.version >= (4, 5, 0) else {}),
     )  # fmt: skip
     report: StringProperty(description="Sentences of the last report")
 

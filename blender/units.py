@@ -34,4 +34,5 @@ def frame_range(scene: bpy.types.Scene) -> tuple[int, int]:
 
 
 def steps_per_frame(scene: bpy.types.Scene) -> int:
-    return max(1, math.ceil(1 / (STEP[scene.weft.quality] * frame_rate(scene)) - 1e-6))
+    """29.97 frames per second are taken as 30."""
+    return max(1, math.ceil(1 / (STEP[scene.weft.quality] * frame_rate(scene)) - 0.05))
