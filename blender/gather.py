@@ -28,6 +28,7 @@ def folder_of(scene: bpy.types.Scene) -> Path:
 
 def _objects(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> tuple[list[Any], list[Any]]:
     """Cloths and colliders. Raises Refused for what cannot be either."""
+    layer.update()  # objects that a script has just linked
     cloths = [thing for thing in layer.objects if thing.weft.role == "CLOTH"]
     colliders = [thing for thing in layer.objects if thing.weft.role == "COLLIDER"]
     if scene.weft.colliders:
