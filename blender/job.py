@@ -50,6 +50,7 @@ class Job:
         self.frames, self.seconds_left, self.outcome, self.words = 0, None, "", list[str]()
         self.report: dict[str, Any] = {}
         self.gathering_seconds = 0.0
+        self._is_cancelled = False
         self._scene, self._layer = scene.name, layer.name
         began = time.perf_counter()
         self._gather = Gather(scene, layer)
@@ -175,6 +176,7 @@ class Job:
     def cancel(self) -> None:
         """Asks the engine to end; poll() until it has. The frames that are there stay, and Resume goes on."""
         if self.is_running:
+            self._is_cancelled = True
             self._process.terminate()
 
     def _finish(self) -> None:
@@ -187,6 +189,9 @@ class Job:
             self.outcome = "failed" if self.words else self.report["outcome"]
             self.words += self.report["words"]
             self.frames = self.report.get("frames", self.frames)
+        elif self._is_cancelled:  # before it had begun
+            self.outcome = "failed" if self.words else "cancelled"
+            self.words.append("Cancelled: no frame is baked.")
         else:
             self.outcome = "failed"
             said = (self.folder / "errors.txt").read_text(errors="replace").strip().splitlines()

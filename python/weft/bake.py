@@ -44,21 +44,22 @@ def pin_stiffness(masses: NDArray[np.float64], weights: NDArray[np.float64]) -> 
 
 
 class Cache:
-    """A PC2 file that is complete after every frame. It keeps its first `keep` frames."""
+    """A PC2 file that is complete after every frame. It keeps its first `keep` frames; an earlier file until the first one."""
 
     def __init__(self, file: str, num_points: int, first_frame: int, keep: int) -> None:
         self._size = 12 * num_points
         try:
             Path(file).parent.mkdir(parents=True, exist_ok=True)
-            self._file: BinaryIO = open(file, "r+b" if keep else "w+b")
-            if keep and self._file.seek(0, os.SEEK_END) < _HEADER.size + keep * self._size:
-                raise _core.InputError(f"{file} has fewer frames than its checkpoint; bake again")
+            self._file: BinaryIO = os.fdopen(os.open(file, os.O_RDWR | os.O_CREAT, 0o666), "r+b")
+            is_short = self._file.seek(0, os.SEEK_END) < _HEADER.size + keep * self._size
         except OSError as error:
             raise _core.InputError(f"{file} cannot be written: {error.strerror}") from None
+        if keep and is_short:
+            raise _core.InputError(f"{file} has fewer frames than its checkpoint; bake again")
         self._name, self.num_frames = file, keep
-        self._file.truncate(_HEADER.size + keep * self._size)
-        self._header = ("POINTCACHE2\0".encode(), 1, num_points, float(first_frame), 1.0)
-        self._write(0, _HEADER.pack(*self._header, keep))
+        self._header = (b"POINTCACHE2\0", 1, num_points, float(first_frame), 1.0)
+        if keep:
+            self._write_count()
 
     def _write(self, at: int, data: bytes) -> None:
         try:
@@ -68,11 +69,15 @@ class Cache:
         except OSError as error:
             raise _core.InputError(f"{self._name} cannot be written: {error.strerror}") from None
 
+    def _write_count(self) -> None:
+        self._write(0, _HEADER.pack(*self._header, self.num_frames))
+        self._file.truncate(_HEADER.size + self.num_frames * self._size)
+
     def add_frame(self, positions: NDArray[np.float64]) -> None:
         """Positions before their number: a reader finds whole frames only."""
         self._write(_HEADER.size + self.num_frames * self._size, positions.astype("<f4").tobytes())
         self.num_frames += 1
-        self._write(0, _HEADER.pack(*self._header, self.num_frames))
+        self._write_count()
 
 
 class _Sheet:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import shutil
 import subprocess
@@ -18,7 +17,7 @@ import pytest
 import weft
 from weft.bake import Job, MotionReader
 from scenes import (
-    add_ball, add_bending_body, add_cloth, add_grid, bake, begin, cache_of, crossings, faces, finish, job, pin, shown, uv,
+    add_ball, add_bending_body, add_cloth, bake, begin, cache_of, crossings, faces, finish, job, pin, shown, uv,
 )  # fmt: skip
 
 FIVE = (1, 3, 6, 9, 12)
@@ -107,8 +106,8 @@ def test_pins_follow_an_armature_from_its_pose_at_the_start() -> None:
     assert np.abs(shown(cloth, 12) - posed[12]).max() > 0.01, "the rest is cloth"
 
 
-@pytest.mark.parametrize("rest, most", [("MESH", 0.5), ("START", 0.02)])
-def test_the_rest_shape_is_the_mesh_or_the_start(rest: str, most: float) -> None:
+@pytest.mark.parametrize("rest", ["MESH", "START"])
+def test_the_rest_shape_is_the_mesh_or_the_start(rest: str) -> None:
     """A shape key stretches the cloth at the start; without gravity it returns to its rest shape, or stays."""
     cloth = add_cloth()
     cloth.shape_key_add(name="Basis")
@@ -141,8 +140,6 @@ def test_keyed_and_skinned_colliders_are_not_crossed() -> None:
     for frame in (1, 6, 12, 18, 24):
         assert crossings([cloth, second], [ball, bar], frame) == 0
     assert shown(cloth, 24)[:, 2].max() > 0.7, "it lies on the ball"
-    lowest = np.abs(shown(cloth, 24)[:, None, :2] - shown(ball, 24)[None, :, :2]).sum(-1).min()
-    assert lowest < 0.1
 
 
 def test_a_collider_with_a_modifier_that_makes_vertices() -> None:
@@ -151,8 +148,6 @@ def test_a_collider_with_a_modifier_that_makes_vertices() -> None:
     cube = bpy.context.object
     cube.weft.role = "COLLIDER"
     cube.modifiers.new("Subdivision", "SUBSURF").levels = 2
-    turn(cube, "scale", (1, 1, 1), (-1, 1, 1.1))  # mirrored on the way: through a flat shape
-    cube.animation_data_clear()
     cube.scale = (-1, 1, 1)  # mirrored: its triangles face inwards
     done = bake()
     assert not any("inside out" in sentence or "turned" in sentence for sentence in done.words)
@@ -192,7 +187,7 @@ def test_the_cache_is_in_front_of_a_subdivision_and_nothing_else_changes() -> No
     cloth = add_cloth()
     pin(cloth, 1.0, lambda co: co.x < -0.49)
     cloth.modifiers.new("Subdivision", "SUBSURF")
-    ball = add_ball(location=(2, 0, 0))
+    add_ball(location=(2, 0, 0))
     hidden = cloth.modifiers.new("Off", "WAVE")
     hidden.show_viewport = hidden.show_render = False
     scene.frame_set(5, subframe=0.25)
@@ -208,7 +203,7 @@ def test_the_cache_is_in_front_of_a_subdivision_and_nothing_else_changes() -> No
     bake()
     assert state() == before and len(bpy.data.objects) == objects
     assert [modifier.type for modifier in cloth.modifiers] == ["MESH_CACHE", "SUBSURF", "WAVE"]
-    assert len(shown(cloth, 12)) == 21 * 21 + 0 * len(ball.name)
+    assert len(shown(cloth, 12)) == 21 * 21
     assert shown(cloth, 12)[:, 2].min() < 0.7
     bake()  # again, with the modifier that is there
     assert [modifier.type for modifier in cloth.modifiers] == ["MESH_CACHE", "SUBSURF", "WAVE"]
@@ -319,7 +314,7 @@ def test_undo_takes_the_modifier_away_and_the_blend_opens_elsewhere(blend: Path,
         assert np.array_equal(shown(cloth, frame), points)
 
 
-def test_the_bake_of_a_scene_that_is_elsewhere_in_time_and_a_tilted_gravity() -> None:
+def test_a_frame_range_and_a_gravity_of_its_own() -> None:
     scene = bpy.context.scene
     scene.weft.own_range, scene.weft.first_frame, scene.weft.last_frame = True, -3, 5
     scene.gravity = (3, 0, 0)
@@ -328,5 +323,4 @@ def test_the_bake_of_a_scene_that_is_elsewhere_in_time_and_a_tilted_gravity() ->
     fallen = shown(cloth, 5) - shown(cloth, -3)
     time_s = 8 / 24
     assert fallen[:, 0].mean() == pytest.approx(0.5 * 3 * time_s**2, rel=0.1) and abs(fallen[:, 2]).max() < 1e-4
-    assert math.isclose(cache_of(cloth).stat().st_size, 32 + 9 * 12 * 121)
-    assert len(add_grid("Other").modifiers) == 0
+    assert cache_of(cloth).stat().st_size == 32 + 9 * 12 * 121
