@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "weft/io/glb_reader.h"
 #include "weft/run/frame_checks.h"
+#include "weft/run/playback.h"
 
 namespace weft::engine::app {
 namespace {
@@ -83,9 +83,9 @@ std::string require_depth(const std::string& text) {
 }
 
 int verify(const VerifyRequest& request) {
-  const fs::path file = fs::is_directory(request.path) ? request.path / "animation.glb" : request.path;
-  const AnimationCheck check =
-      check_animation(read_glb(file), {.tolerance = request.tolerance, .passages_offend = request.passages});
+  const fs::path& file = request.path;
+  const AnimationCheck check = check_animation(
+      *open_frames(file), {.tolerance = request.tolerance, .passages_offend = request.passages});
   if (request.json) {
     const auto keep_going = nlohmann::ordered_json::error_handler_t::replace;
     fmt::print("{}\n", to_json(file, check).dump(2, ' ', false, keep_going));

@@ -20,7 +20,7 @@ void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& points) {
 }
 
 /// Corners of boxes around all meshes but planes, in frames over the whole run.
-std::vector<Vec3> find_reach(Playback& run) {
+std::vector<Vec3> find_reach(FrameSource& run) {
   std::vector<Vec3> points;
   Animation sample = run.meshes();
   const int last = run.num_frames() - 1, count = std::min(last + 1, kSampled);
@@ -94,11 +94,12 @@ bool LiveSide::update() {
 }
 
 RunSide::RunSide(const std::filesystem::path& path)
-    : playback_(path),
-      title_(playback_.meshes().title.empty() ? path.string() : playback_.meshes().title),
-      reach_(find_reach(playback_)),
-      head_{.frames_per_second = playback_.meshes().frames_per_second, .is_playing = false} {
-  animation_ = playback_.meshes();
+    : frames_(open_frames(path)),
+      title_(frames_->meshes().title.empty() ? path.string() : frames_->meshes().title),
+      reach_(find_reach(*frames_)),
+      head_{.frames_per_second = frames_->meshes().frames_per_second, .is_playing = false} {
+  animation_ = frames_->meshes();
+  replace_frames(frames_->read(0), animation_);
   ground_ = find_ground(reach_);
 }
 
@@ -109,7 +110,7 @@ bool RunSide::update() {
   updated_ = now;
   if (head_.frame() == frame_) return was_playing != head_.is_playing;
   frame_ = head_.frame();
-  replace_frames(playback_.read(frame_), animation_);
+  replace_frames(frames_->read(frame_), animation_);
   return true;
 }
 

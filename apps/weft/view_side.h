@@ -82,7 +82,7 @@ class LiveSide : public ViewSide {
 /// The frames of a run, in their time.
 class RunSide : public ViewSide {
  public:
-  /// Throws InputError like Playback.
+  /// Throws InputError like open_frames().
   explicit RunSide(const std::filesystem::path& path);
 
   const std::string& title() const override { return title_; }
@@ -95,13 +95,13 @@ class RunSide : public ViewSide {
   bool update() override;
   bool is_going() const override { return head_.is_playing; }
   PlayHead* head() override { return &head_; }
-  int num_frames() override { return playback_.num_frames(); }
+  int num_frames() override { return frames_->num_frames(); }
   int frame() const override { return frame_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  Playback playback_;
+  std::unique_ptr<FrameSource> frames_;
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;

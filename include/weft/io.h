@@ -48,12 +48,12 @@ WEFT_API void write_obj(const std::string& file, const TriangleMesh& mesh);
 /// other. A group's name must be one word, an object's words, without # and without a backslash at the end.
 WEFT_API void write_obj(const std::string& file, const std::vector<Vec3>& vertices, const MeshFaces& faces);
 
-/// Reads a PLY (`.ply`) or STL (`.stl`) file; any other is read as Wavefront OBJ. Throws InputError for an
-/// unusable one.
+/// Reads a PLY (`.ply`), STL (`.stl`) or glTF (`.glb`, `.gltf`) file, of the last all meshes at the start of its
+/// first animation; any other is read as Wavefront OBJ. Throws InputError for an unusable one.
 WEFT_API MeshFromFile read_mesh(const std::string& file);
 
-/// Writes an OBJ (`.obj`) or PLY (`.ply`) file, from which the same numbers are read back. Throws InputError for
-/// another ending, and if it cannot be written.
+/// Writes an OBJ (`.obj`) or PLY (`.ply`) file, from which the same numbers are read back. Throws InputError
+/// for another ending, and if it cannot be written.
 WEFT_API void write_mesh(const std::string& file, const TriangleMesh& mesh);
 
 /// The same of polygons; errors as of write_obj(). PLY files have no groups.
@@ -141,12 +141,12 @@ struct Converted {
   std::vector<std::string> notes = {};  // what a format could not say or hold, and absurd sizes, as sentences
 };
 
-/// `in` is a mesh (OBJ, PLY, STL, glTF), a point cache (PC2, MDD), or the folder of a run. `out` is a file of the
-/// same kind (OBJ, PLY; PC2, MDD), by its ending; the meshes of a glTF file also become a point cache. Of a run with several cloths each has its own file:
-/// `walk.mdd` becomes `walk_skirt.mdd`. Point caches also become a sequence of meshes, `walk_0000.obj` being
-/// frame 0. A run has their mesh, another cache needs `mesh`. Frames are read and written one by one. Throws
-/// InputError for files that cannot be read, written or converted; an earlier file of that name then stays as
-/// it was.
+/// `in` is a mesh (OBJ, PLY, STL, glTF), a point cache (PC2, MDD), or the folder of a run. `out` is a file of
+/// the same kind (OBJ, PLY; PC2, MDD), by its ending; the meshes of a glTF file also become a point cache. Of a
+/// run with several cloths each has its own file: `walk.mdd` becomes `walk_skirt.mdd`. Point caches also become
+/// a sequence of meshes, `walk_0000.obj` being frame 0. A run has their mesh, another cache needs `mesh`. Frames
+/// are read and written one by one. Throws InputError for files that cannot be read, written or converted; an
+/// earlier file of that name then stays as it was.
 WEFT_API Converted convert(const std::string& in, const std::string& out, const ConvertOptions& options = {});
 
 }  // namespace weft

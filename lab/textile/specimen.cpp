@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "weft/core/angle.h"
-#include "weft/forces/membrane.h"
+#include "weft/forces/membrane_patch.h"
 #include "weft/forces/spring.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/model/fabric_springs.h"
@@ -135,9 +135,9 @@ std::vector<Vec3> compute_membrane_forces(const Specimen& specimen) {
   const ClothElements& elements = *specimen.model->elements;
   const std::vector<Vec3> x = positions(specimen.state);
   std::vector<Vec3> force(x.size(), Vec3::Zero());
-  for (const auto& [v, rest] : elements.membranes) {
-    const TriangleCorners f = membrane_force(rest, elements.law(), {x[v[0]], x[v[1]], x[v[2]]});
-    for (int c = 0; c < 3; ++c) force[v[c]] += f[c];
+  for (const MembranePatch& patch : elements.patches) {
+    const PatchCorners f = patch_force(patch, elements.law(), corners_of(patch, x));
+    for (int v = 0; v < patch.num_vertices(); ++v) force[patch.vertices[v]] += f[v];
   }
   const std::vector<Spring>& springs = specimen.model->topology->springs;
   for (std::size_t s = 0; s < springs.size(); ++s) {

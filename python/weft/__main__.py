@@ -119,8 +119,8 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_convert(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("file", metavar="IN", help="a mesh (.obj, .ply, .stl), a point cache (.pc2, .mdd), the folder "
-                      "of a run, or USD (.usdc, .usda, .usd, .usdz)")  # fmt: skip
+    verb.add_argument("file", metavar="IN", help="a mesh (.obj, .ply, .stl, .glb, .gltf), a point cache "
+                      "(.pc2, .mdd), the folder of a run, or USD (.usdc, .usda, .usd, .usdz)")  # fmt: skip
     verb.add_argument("out", metavar="OUT", help="a mesh (.obj, .ply; of a cache one per frame), a point cache "
                       "(.pc2, .mdd), or USD (.usdc, .usda, .usd); USD needs pip install weft[usd]")  # fmt: skip
     verb.add_argument("--fps", type=float, metavar="N", help="frames per second of a cache that does not say it "

@@ -88,11 +88,11 @@ def convert(
     mesh: str | os.PathLike[str] | None = None,
     node: str | None = None,
 ) -> list[Path]:
-    """Converts a mesh (OBJ, PLY, STL), a point cache (PC2, MDD), the folder of a run, or USD; the endings decide.
+    """Converts a mesh (OBJ, PLY, STL, glTF), a point cache (PC2, MDD), the folder of a run, or USD; the endings decide.
 
-    Meshes become OBJ, PLY or USD. Point caches and runs become PC2, MDD, USD, or a mesh per frame. USD becomes a mesh
-    or a point cache; it needs `pip install weft[usd]`. Returns the written files: of a run with several cloths one
-    for each, in USD one.
+    Meshes become OBJ, PLY or USD; those of glTF also PC2 or MDD. Point caches and runs become PC2, MDD, USD, or a mesh
+    per frame. USD becomes a mesh or a point cache; it needs `pip install weft[usd]`. Returns the written files: of a
+    run with several cloths one for each, in USD one.
 
     fps: frames per second of a cache that does not say it, by default 60; of USD, the frames that are sampled.
     up: the input's vertical axis, "y" or "z"; the output's is y. scale: length of the input's unit [m]. USD says

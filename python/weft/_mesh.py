@@ -171,7 +171,7 @@ def read_obj(file: str | os.PathLike[str]) -> Mesh:
 
 
 def read_mesh(file: str | os.PathLike[str]) -> Mesh:
-    """Reads a PLY, STL or OBJ file by the ending of its name, as read_obj(). `weft.usd.read_mesh` reads USD.
+    """Reads a PLY, STL, glTF or OBJ file by the ending of its name, as read_obj(). `weft.usd.read_mesh` reads USD.
 
     Raises InputError for an unusable one. A FileWarning names what was ignored.
     """

@@ -11,7 +11,11 @@ using Key = MeshSequence::Key;
 
 TEST(MeshSequence, MovesInStraightLinesBetweenItsKeysAndStaysOutside) {
   const MeshSequence sequence({Key{1, {Vec3(0, 0, 0)}}, Key{2, {Vec3(2, 0, 0)}}, Key{4, {Vec3(2, 4, 0)}}});
-  const auto at = [&](double time) { return sequence.position(sequence.at(time), 0); };
+  const auto at = [&](double time) {
+    std::vector<Vec3> positions;
+    sequence.evaluate(time, positions);
+    return positions[0];
+  };
   EXPECT_EQ(at(0), Vec3(0, 0, 0));
   EXPECT_EQ(at(1), Vec3(0, 0, 0));
   EXPECT_EQ(at(1.25), Vec3(0.5, 0, 0));

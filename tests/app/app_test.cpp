@@ -478,7 +478,7 @@ TEST_F(App, VerifyTellsWhatMayHavePassedAndFailsWhereAsked) {
 TEST_F(App, VerifyRefusesWhatIsNoRun) {
   expect_bad_input("weft verify no/such/folder", "no/such/folder");
   fs::create_directories("empty");
-  expect_bad_input("weft verify empty", "empty/animation.glb");
+  expect_bad_input("weft verify empty", "empty holds no run: there is no run.json");
   std::ofstream("words.glb") << "words";
   expect_bad_input("weft verify words.glb", "words.glb: is not a complete .glb file");
   for (const std::string tolerance : {"nan", "inf", "-1", "deep"})

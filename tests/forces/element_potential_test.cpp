@@ -7,6 +7,7 @@
 #include "weft/core/simd.h"
 #include "weft/error.h"
 #include "weft/forces/bending.h"
+#include "weft/forces/membrane_patch.h"
 #include "weft/forces/potential.h"
 
 namespace weft::engine {
@@ -111,10 +112,6 @@ struct Bent {
   }
 };
 
-TriangleCorners corners(const MembraneElement& m, const std::vector<Vec3>& x) {
-  return {x[m.vertices[0]], x[m.vertices[1]], x[m.vertices[2]]};
-}
-
 double norm(const std::vector<Vec3>& field) {
   double sum = 0;
   for (const Vec3& v : field) sum += v.squaredNorm();
@@ -130,10 +127,10 @@ TEST(ElementPotential, IsTheSumOfTheElementsOnGridsAndMeshes) {
     const std::vector<Vec3> x = bent.positions();
     double expected = bending_energy(elements.bending, x);
     std::vector<Vec3> difference(x.size(), Vec3::Zero());
-    for (const MembraneElement& m : elements.membranes) {
-      expected += membrane_energy(m.rest, elements.law(), corners(m, x));
-      const TriangleCorners f = membrane_force(m.rest, elements.law(), corners(m, x));
-      for (int c = 0; c < 3; ++c) difference[m.vertices[c]] += f[c];
+    for (const MembranePatch& patch : elements.patches) {
+      expected += patch_energy(patch, elements.law(), corners_of(patch, x));
+      const PatchCorners f = patch_force(patch, elements.law(), corners_of(patch, x));
+      for (int v = 0; v < patch.num_vertices(); ++v) difference[patch.vertices[v]] += f[v];
     }
     add_bending_force(elements.bending, x, difference);
     const double size = norm(difference);
@@ -161,12 +158,12 @@ TEST(ElementPotential, MultipliesByTheFilteredHessian) {
     const double dot = bent.potential.multiply(p, *bent.jobs, q);
     add_bending_force(elements.bending, direction, expected);
     for (Vec3& v : expected) v = -v;
-    for (const MembraneElement& m : elements.membranes) {
-      const MembraneHessian hessian = membrane_hessian(m.rest, elements.law(), corners(m, x));
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b)
-          expected[m.vertices[a]] +=
-              membrane_block(hessian, a, b, StressFilter::absolute) * direction[m.vertices[b]];
+    for (const MembranePatch& patch : elements.patches) {
+      const PatchHessian hessian = patch_hessian(patch, elements.law(), corners_of(patch, x));
+      for (int a = 0; a < patch.num_vertices(); ++a) {
+        for (int b = 0; b < patch.num_vertices(); ++b)
+          expected[patch.vertices[a]] +=
+              patch_block(patch, hessian, a, b, StressFilter::absolute) * direction[patch.vertices[b]];
       }
     }
     const double size = norm(expected);
@@ -230,8 +227,8 @@ TEST(ElementPotential, DampingIsTheTimeConstantTimesTheRateOfStrainAndLeavesARig
     const TriangleMesh& mesh = sheet.model->topology->mesh;
     const auto stretched = test::mapped(mesh, [](const Vec3& p) { return Vec3(1.01 * p.x(), 0, p.z()); });
     double elastic = 0;
-    for (const MembraneElement& m : elements.membranes)
-      elastic += membrane_energy(m.rest, elements.law(), corners(m, stretched));
+    for (const MembranePatch& patch : elements.patches)
+      elastic += patch_energy(patch, elements.law(), corners_of(patch, stretched));
     // From rest to e: ½ A η eᵀ C e less the constant η/(1 + η) ½ e₀ᵀ C e₀ = 0.
     EXPECT_NEAR(viscous_energy(*sheet.model, mesh.positions, stretched), kShare * elastic,
                 1e-4 * kShare * elastic)

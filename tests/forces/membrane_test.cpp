@@ -1,6 +1,6 @@
 /// The triangle membrane: against finite differences, under rigid motion, and its given stiffness recovered.
 
-#include "weft/forces/membrane.h"
+#include "tests/forces/single_membrane.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,12 @@
 
 namespace weft::engine {
 namespace {
+
+using test::membrane_block;
+using test::membrane_energy;
+using test::membrane_force;
+using test::membrane_hessian;
+using test::MembraneHessian;
 
 using test::SheetKind;
 

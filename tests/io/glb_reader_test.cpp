@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 
 #include "weft/error.h"
 #include "weft/mesh/grid.h"
@@ -131,6 +132,61 @@ TEST(GlbReader, ReadsAStill) {
       write_and_read("still_again", {.title = "", .cloths = {make_cloth(1)}, .bodies = {}});
   ASSERT_EQ(read.cloths.size(), 1u);
   EXPECT_EQ(read.cloths[0].frames.size(), 1u);
+}
+
+TEST(GlbReader, ReadsAFrameWhenItIsAskedForIt) {
+  const Animation written{.title = "", .cloths = {make_cloth(40)}, .bodies = {make_body("ball", {}, 40)}};
+  const std::string file = testing::TempDir() + "weft_lazy.glb";
+  write_glb(file, written);
+  const Animation all = read_glb(file);
+  GlbFrames frames(file);
+  ASSERT_EQ(frames.num_frames(), 40);
+  EXPECT_TRUE(frames.meshes().cloths[0].frames.empty());
+  for (const int k : {39, 0, 17}) {
+    const AnimationFrame frame = frames.read(k);
+    EXPECT_EQ(frame.cloths[0], all.cloths[0].frames[k]);
+    EXPECT_EQ(frame.poses[0], all.bodies[0].poses[k]);
+  }
+  // The end of the file is the end of its buffer, with frames. They are damaged only for those who read them.
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_EQ(frames.read(1).cloths[0], all.cloths[0].frames[1]);
+  try {
+    frames.read(39);
+    FAIL() << "read a frame that is not there";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), file + ": cannot be read");
+  }
+}
+
+TEST(GlbReader, ReadsTheParticlesOfShownVertices) {
+  AnimatedCloth cloth = make_cloth(3);
+  const int num_particles = 4 * 5;
+  ShownVertices shown{.particles = {-1}, .triangles = {}, .rest = {7, 8, 9}, .texture = {0, 1}};
+  for (int v = 0; v < 2 * num_particles; ++v) {  // every particle twice, in reverse order
+    shown.particles.push_back(num_particles - 1 - v % num_particles);
+    shown.rest.insert(shown.rest.end(), 3, 0.0f);
+    shown.texture.insert(shown.texture.end(), {0.1f, 0.2f});
+  }
+  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+    Triangle& triangle = shown.triangles.emplace_back(cloth.triangles[t]);
+    for (int& corner : triangle) corner = 1 + num_particles - 1 - corner + (t % 2 == 0 ? num_particles : 0);
+  }
+  cloth.fabric_coordinates.resize(2 * num_particles);
+  std::iota(cloth.fabric_coordinates.begin(), cloth.fabric_coordinates.end(), 0.0f);
+  Animation written{.title = "", .cloths = {cloth}, .bodies = {}};
+  write_glb(output_file("particles"), written);
+  written.cloths[0].shown = shown;
+  write_glb(output_file("shown"), written);
+  const Animation as_particles = read_glb(output_file("particles")), read = read_glb(output_file("shown"));
+  EXPECT_EQ(read.cloths[0].triangles, cloth.triangles);
+  EXPECT_EQ(read.cloths[0].fabric_coordinates, cloth.fabric_coordinates);
+  EXPECT_EQ(read.cloths[0].frames, as_particles.cloths[0].frames);
+
+  written.cloths[0].shown->particles[3] = num_particles;
+  EXPECT_THROW(write_glb(output_file("shown"), written), InputError);
+  written.cloths[0].shown = shown;
+  written.cloths[0].shown->texture.pop_back();
+  EXPECT_THROW(write_glb(output_file("shown"), written), InputError);
 }
 
 TEST(GlbReader, NamesTheFileAndWhatIsWrong) {

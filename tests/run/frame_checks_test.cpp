@@ -67,17 +67,22 @@ Animation make_animation() {
   return animation;
 }
 
+AnimationCheck check(const Animation& animation, const AnimationCheckOptions& options = {}) {
+  FramesInMemory frames(animation);
+  return check_animation(frames, options);
+}
+
 TEST(FrameChecks, TellTheDeepestFrameOfAnAnimation) {
-  const AnimationCheck check = check_animation(make_animation());
-  EXPECT_EQ(check.frames, 5);
-  EXPECT_EQ(check.intersections, 0);
-  EXPECT_FALSE(check.is_clean);
-  EXPECT_NEAR(*check.penetration_max, 0.05, 1e-12);
-  EXPECT_EQ(check.deepest_frame, 3);
-  EXPECT_EQ(check.deepest_place, "cloth \"rag\" triangle 0 in collider \"ball\"");
-  ASSERT_EQ(check.offences.size(), 1u);
-  EXPECT_EQ(check.offences[0].frame, 3);
-  EXPECT_TRUE(check_animation(make_animation(), {.tolerance = 0.051}).is_clean);
+  const AnimationCheck result = check(make_animation());
+  EXPECT_EQ(result.frames, 5);
+  EXPECT_EQ(result.intersections, 0);
+  EXPECT_FALSE(result.is_clean);
+  EXPECT_NEAR(*result.penetration_max, 0.05, 1e-12);
+  EXPECT_EQ(result.deepest_frame, 3);
+  EXPECT_EQ(result.deepest_place, "cloth \"rag\" triangle 0 in collider \"ball\"");
+  ASSERT_EQ(result.offences.size(), 1u);
+  EXPECT_EQ(result.offences[0].frame, 3);
+  EXPECT_TRUE(check(make_animation(), {.tolerance = 0.051}).is_clean);
 }
 
 TEST(FrameChecks, CountFramesThatCross) {
@@ -87,12 +92,12 @@ TEST(FrameChecks, CountFramesThatCross) {
     blade.frames.push_back({0.1f, 2, 0, 0.2f, 2, 0, 0.1f, 1.2f - depth, 0.1f});
   }
   animation.cloths.push_back(blade);
-  const AnimationCheck check = check_animation(animation, {.tolerance = 1});
-  EXPECT_EQ(check.frames_with_crossings, 3);
-  EXPECT_EQ(check.intersections, 1);
-  EXPECT_EQ(check.worst_frame, 1);
-  ASSERT_EQ(check.offences.size(), 3u);
-  EXPECT_EQ(check.offences[0].what, "cloth \"rag\" triangle 0 intersects cloth \"blade\" triangle 0");
+  const AnimationCheck result = check(animation, {.tolerance = 1});
+  EXPECT_EQ(result.frames_with_crossings, 3);
+  EXPECT_EQ(result.intersections, 1);
+  EXPECT_EQ(result.worst_frame, 1);
+  ASSERT_EQ(result.offences.size(), 3u);
+  EXPECT_EQ(result.offences[0].what, "cloth \"rag\" triangle 0 intersects cloth \"blade\" triangle 0");
 }
 
 TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
@@ -101,16 +106,16 @@ TEST(FrameChecks, TellWhatMayHavePassedBetweenFrames) {
   for (const float depth : {0.0f, 5.0f, 5.0f, 0.0f, 0.0f})  // completely below the rag, and back
     blade.frames.push_back({0.1f, 4 - depth, 0, 0.2f, 4 - depth, 0, 0.1f, 3 - depth, 0.1f});
   animation.cloths.push_back(blade);
-  const AnimationCheck check = check_animation(animation, {.tolerance = 1});
-  EXPECT_EQ(check.intersections, 0);
-  EXPECT_EQ(check.passages, 6) << "three corners, twice";
-  ASSERT_EQ(check.possible_passages.size(), 2u);
-  EXPECT_EQ(check.possible_passages[0].frame, 1);
-  EXPECT_EQ(check.possible_passages[0].what,
+  const AnimationCheck result = check(animation, {.tolerance = 1});
+  EXPECT_EQ(result.intersections, 0);
+  EXPECT_EQ(result.passages, 6) << "three corners, twice";
+  ASSERT_EQ(result.possible_passages.size(), 2u);
+  EXPECT_EQ(result.possible_passages[0].frame, 1);
+  EXPECT_EQ(result.possible_passages[0].what,
             "cloth \"blade\" particle 0 passes through cloth \"rag\" triangle 0 (and 2 more)");
-  EXPECT_EQ(check.possible_passages[1].frame, 3);
-  EXPECT_TRUE(check.is_clean) << "straight lines between frames are a guess";
-  EXPECT_FALSE(check_animation(animation, {.tolerance = 1, .passages_offend = true}).is_clean);
+  EXPECT_EQ(result.possible_passages[1].frame, 3);
+  EXPECT_TRUE(result.is_clean) << "straight lines between frames are a guess";
+  EXPECT_FALSE(check(animation, {.tolerance = 1, .passages_offend = true}).is_clean);
 }
 
 }  // namespace

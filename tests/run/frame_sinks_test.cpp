@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 
 #include "tests/run/shipped.h"
 #include "weft/core/file_name.h"
 #include "weft/io/glb_reader.h"
+#include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
 #include "weft/run/file_sinks.h"
 #include "weft/run/film.h"
@@ -123,6 +125,65 @@ frame_rate = 30
   ASSERT_EQ(read.bodies[0].frames.size(), 3u);
   for (const int k : {0, 1, 2})
     EXPECT_NEAR(read.bodies[0].vertex(0, static_cast<std::size_t>(k)).norm(), 0.2 + 0.05 * k, 1e-6);
+}
+
+/// Two squares that touch, and a vertex of neither. The first is cut along a seam of the texture.
+constexpr const char* kTwoSquares = R"(v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+v 1 0 0
+v 2 0 0
+v 2 0 1
+v 1 0 1
+v 7 7 7
+vt 0 0
+vt 0.5 0
+vt 0.5 0.5
+vt 0 0.5
+vt 0.25 0.75
+f 1/1 2/2 3/3
+f 1/5 3/3 4/4
+f 5/1 6/2 7/3 8/4
+)";
+
+TEST_F(FrameSinks, GlbHasTheVerticesAndTextureCoordinatesOfTheFile) {
+  std::ofstream(folder_ / "squares.obj") << kTwoSquares;
+  const SceneDesc scene = parse_scene(R"([scene]
+format = 1
+[[cloth]]
+mesh = "squares.obj"
+weld = true
+)",
+                                      folder_ / "scene.toml");
+  GlbSink glb(folder_ / "animation.glb", folder_ / "frames");
+  FilmSink film;
+  run_scene(scene, {.frames = 3}, {&glb, &film});
+  glb.replace();
+
+  // As other programs read it.
+  const MeshFromFile given = read_obj(folder_ / "squares.obj"), shown = read_mesh(folder_ / "animation.glb");
+  ASSERT_EQ(given.mesh.num_vertices(), 9);
+  ASSERT_EQ(shown.mesh.num_vertices(), 10) << "one vertex has two texture coordinates";
+  for (int v = 0; v < 9; ++v) EXPECT_EQ(shown.mesh.positions[v], given.mesh.positions[v]) << v;
+  EXPECT_EQ(shown.mesh.positions[9], given.mesh.positions[0]);
+  ASSERT_EQ(shown.mesh.num_triangles(), given.mesh.num_triangles());
+  for (int t = 0; t < given.mesh.num_triangles(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = shown.mesh.triangles[t][k];
+      EXPECT_EQ(vertex == 9 ? 0 : vertex, given.mesh.triangles[t][k]);
+      EXPECT_EQ(shown.uv[t][k], given.uv[t][k]);
+    }
+  }
+
+  // As Weft reads it: six particles.
+  const Animation read = read_glb(folder_ / "animation.glb"), made = film.animation();
+  EXPECT_EQ(read.cloths[0].triangles, made.cloths[0].triangles);
+  EXPECT_EQ(read.cloths[0].fabric_coordinates, made.cloths[0].fabric_coordinates);
+  EXPECT_EQ(read.cloths[0].frames[0], made.cloths[0].frames[0]);
+  ASSERT_EQ(read.cloths[0].frames[3].size(), 18u);
+  for (std::size_t i = 0; i < 18; ++i)
+    EXPECT_NEAR(read.cloths[0].frames[3][i], made.cloths[0].frames[3][i], 1e-7);
 }
 
 TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {

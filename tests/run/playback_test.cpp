@@ -54,14 +54,14 @@ TEST_F(PlaybackOfARun, HasItsFramesColoursAndBodies) {
   FilmSink film;
   run_to_folder(scene(), options(5), {&film});
   for (const fs::path& path : {folder_, folder_ / "animation.glb"}) {
-    Playback playback(path);
-    EXPECT_EQ(playback.num_frames(), 6);
-    EXPECT_NEAR(playback.meshes().frames_per_second, scene().fps, 1e-4) << "by float times";
-    EXPECT_EQ(playback.meshes().title, "contact/rotating_ball");
-    EXPECT_EQ(playback.meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));
-    EXPECT_EQ(playback.meshes().bodies.size(), scene().colliders.size());
-    EXPECT_EQ(count_frames(playback.meshes()), 1u);
-    for (const int k : {3, 0, 5, 1}) expect_frame(playback.read(k), film.animation(), k);
+    const auto playback = open_frames(path);
+    EXPECT_EQ(playback->num_frames(), 6);
+    EXPECT_NEAR(playback->meshes().frames_per_second, scene().fps, 1e-4) << "by float times";
+    EXPECT_EQ(playback->meshes().title, "contact/rotating_ball");
+    EXPECT_EQ(playback->meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));
+    EXPECT_EQ(playback->meshes().bodies.size(), scene().colliders.size());
+    EXPECT_TRUE(playback->meshes().cloths[0].frames.empty());
+    for (const int k : {3, 0, 5, 1}) expect_frame(playback->read(k), film.animation(), k);
   }
 }
 
@@ -80,20 +80,20 @@ TEST_F(PlaybackOfARun, ThatIsUnfinishedHasTheFramesSoFarAndFollowsIt) {
   const fs::path log = folder_ / kUnfinishedName / kFramesName;
   const std::uintmax_t size = fs::file_size(log);
   fs::resize_file(log, size / 5 * 3 + 7);  // as if the run wrote its fourth frame now
-  Playback playback(folder_);
-  EXPECT_EQ(playback.num_frames(), 3);
-  EXPECT_EQ(playback.meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));
-  for (const int k : {2, 0, 1}) expect_frame(playback.read(k), film.animation(), k);
+  const auto playback = open_frames(folder_);
+  EXPECT_EQ(playback->num_frames(), 3);
+  EXPECT_EQ(playback->meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));
+  for (const int k : {2, 0, 1}) expect_frame(playback->read(k), film.animation(), k);
 
   RunOptions resumed = read_unfinished_run(folder_).options;
   resumed.keep_going = [&] {
-    EXPECT_GE(playback.num_frames(), 1);
+    EXPECT_GE(playback->num_frames(), 1);
     return true;
   };
   run_to_folder(scene(), resumed);
   EXPECT_FALSE(fs::exists(log));
-  EXPECT_EQ(playback.num_frames(), 7) << "of the open file, which has been removed";
-  for (const int k : {6, 3, 0}) expect_frame(playback.read(k), film.animation(), k);
+  EXPECT_EQ(playback->num_frames(), 7) << "of the open file, which has been removed";
+  for (const int k : {6, 3, 0}) expect_frame(playback->read(k), film.animation(), k);
 }
 
 TEST_F(PlaybackOfARun, WithoutAnimationIsRefused) {
@@ -101,7 +101,7 @@ TEST_F(PlaybackOfARun, WithoutAnimationIsRefused) {
   without.glb = false;
   const auto message = [&](const fs::path& path) -> std::string {
     try {
-      Playback playback(path);
+      open_frames(path);
     } catch (const InputError& error) {
       return error.what();
     }

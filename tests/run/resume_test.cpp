@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/message_of.h"
 #include "tests/read_text.h"
 #include "tests/run/shipped.h"
 #include "weft/core/folder_lock.h"
 #include "weft/core/staged_file.h"
-#include "weft/error.h"
 #include "weft/io/pc2.h"
 #include "weft/run/checkpoint.h"
 #include "weft/run/run_folder.h"
@@ -25,15 +25,6 @@ namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string message_of(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// A report without what a clock says.
 nlohmann::json without_times(const fs::path& file) {

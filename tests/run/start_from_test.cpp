@@ -9,12 +9,11 @@
 
 #include <csignal>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "tests/message_of.h"
 #include "tests/run/shipped.h"
 #include "weft/core/staged_file.h"
-#include "weft/error.h"
 #include "weft/io/pc2.h"
 #include "weft/run/past_run.h"
 #include "weft/run/run_folder.h"
@@ -24,15 +23,6 @@ namespace weft::engine {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string message_of(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 void expect_contains(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << text << "\nhas not: " << part;

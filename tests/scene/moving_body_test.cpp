@@ -215,6 +215,28 @@ TEST_F(MovingBody, CarriesPinsAtTheirOffsetFromItsSurface) {
   }
 }
 
+TEST_F(MovingBody, CarriesPinsFromWhereClothWasPlaced) {
+  for (const bool is_soft : {false, true}) {
+    World world;
+    const ColliderId arm = world.add_collider(describe_arm());
+    const ClothId cloth = world.add_cloth(describe_sheet());
+    Pin pin{.particles = first_row(), .follow = arm};
+    if (is_soft) pin.stiffness = 1e6;
+    world.set_pins(cloth, {pin});
+    std::vector<Vec3> placed = world.positions(cloth);
+    for (Vec3& p : placed) p.y += 0.05;
+    world.set_positions(cloth, placed);
+    ASSERT_TRUE(world.step(1.0 / 60).ok);
+    // In 1/60 s the elbow turns by 1.5 degrees.
+    const std::array<double, 3> weights = weights_at(placed[0].x, placed[0].z);
+    const Point expected =
+        above(triangle_at(placed[0].x, placed[0].z, std::acos(-1.0) / 120), weights, placed[0].y);
+    const Point off = to_point(world.positions(cloth)[0]) - expected;
+    EXPECT_LT(std::sqrt(dot(off, off)), is_soft ? 1e-3 : 1e-6)
+        << (is_soft ? "with a stiffness" : "held exactly");
+  }
+}
+
 TEST_F(MovingBody, DoesNotCollideWithThePinsThatFollowIt) {
   World world;
   const ColliderId arm = world.add_collider(describe_arm());
@@ -364,8 +386,9 @@ position = [-0.62, 0, 0]
   EXPECT_EQ(mistakes("follow = \"arm\"", "follow = \"arms\""),
             "cloth \"sheet\": a pin follows \"arms\", but there is no collider of this name; did you mean "
             "\"arm\"?");
-  EXPECT_NE(mistakes("clip = \"bend\"", "clip = \"walk\"").find("no clip is named \"walk\"; available: \"bend\""),
-            std::string::npos)
+  EXPECT_NE(
+      mistakes("clip = \"bend\"", "clip = \"walk\"").find("no clip is named \"walk\"; available: \"bend\""),
+      std::string::npos)
       << mistakes("clip = \"bend\"", "clip = \"walk\"");
   EXPECT_NE(mistakes("scale = 2", "up = \"z\"").find("a glTF file has its y axis up"), std::string::npos);
   EXPECT_NE(mistakes("follow = \"arm\"", "follow = \"arm\", damping = 1").find("requires stiffness"),

@@ -66,8 +66,8 @@ Figure make_figure(double cell, Hands hands = Hands::fingers);
 /// The mesh's vertices in a pose (num_vertices) [m].
 std::vector<Vec3> pose_figure(const Figure& figure, const Pose& pose);
 
-/// A motion from rest: "stand" (arms sink a little), "walk", "stroll" (a calmer walk), "kick" (the foot reaches 15 m/s), "fold" (the
-/// arms fold before the chest) or "sit". `time` [s].
+/// A motion from rest: "stand" (arms sink a little), "walk", "stroll" (a calmer walk), "kick" (the foot reaches
+/// 15 m/s), "fold" (the arms fold before the chest) or "sit". `time` [s].
 Pose pose_at(const std::string& motion, double time);
 
 }  // namespace weft::engine::wardrobe

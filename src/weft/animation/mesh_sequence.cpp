@@ -20,18 +20,14 @@ MeshSequence::MeshSequence(std::vector<Key> keys) : keys_(std::move(keys)) {
 }
 
 void MeshSequence::evaluate(double time, std::vector<Vec3>& positions) const {
-  const Blend blend = at(time);
-  positions.resize(keys_[0].positions.size());
-  for (int v = 0; v < num_vertices(); ++v) positions[v] = position(blend, v);
-}
-
-MeshSequence::Blend MeshSequence::at(double time) const {
   const auto next = std::upper_bound(keys_.begin(), keys_.end(), time,
                                      [](double t, const Key& key) { return t < key.time; });
-  const int to = std::min<int>(static_cast<int>(next - keys_.begin()), static_cast<int>(keys_.size()) - 1);
-  const int from = std::max(0, static_cast<int>(next - keys_.begin()) - 1);
-  const double span = keys_[to].time - keys_[from].time;
-  return {from, to, span > 0 ? (time - keys_[from].time) / span : 0.0};
+  const Key& from = next == keys_.begin() ? keys_.front() : *(next - 1);
+  const Key& to = next == keys_.end() ? keys_.back() : *next;
+  const double span = to.time - from.time, share = span > 0 ? (time - from.time) / span : 0.0;
+  positions.resize(from.positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    positions[v] = from.positions[v] + share * (to.positions[v] - from.positions[v]);
 }
 
 }  // namespace weft::engine

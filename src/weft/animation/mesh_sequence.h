@@ -16,12 +16,6 @@ class MeshSequence final : public VertexSource {
     std::vector<Vec3> positions;  // (num_vertices) [m]
   };
 
-  /// Two keys, and the interpolation weight.
-  struct Blend {
-    int from = 0, to = 0;
-    double share = 0;  // of `to` [1]
-  };
-
   /// Throws InputError if there is no key, if times do not increase strictly, or if keys differ in their
   /// number of vertices.
   explicit MeshSequence(std::vector<Key> keys);
@@ -30,13 +24,6 @@ class MeshSequence final : public VertexSource {
   bool is_still() const override { return keys_.size() == 1; }
   void evaluate(double time, std::vector<Vec3>& positions) const override;
   const std::vector<Key>& keys() const { return keys_; }
-
-  Blend at(double time) const;
-
-  Vec3 position(const Blend& blend, int vertex) const {
-    const Vec3& from = keys_[blend.from].positions[vertex];
-    return from + blend.share * (keys_[blend.to].positions[vertex] - from);
-  }
 
  private:
   std::vector<Key> keys_;

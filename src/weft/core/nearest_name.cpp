@@ -38,4 +38,11 @@ std::string find_nearest(std::string_view name, const std::vector<std::string>& 
   return nearest;
 }
 
+std::string list_names(const std::vector<std::string>& names, std::size_t most) {
+  std::string list;
+  for (std::size_t k = 0; k < std::min(most, names.size()); ++k)
+    list += (k > 0 ? ", \"" : "\"") + names[k] + '"';
+  return names.size() > most ? list + " and " + std::to_string(names.size() - most) + " more" : list;
+}
+
 }  // namespace weft::engine

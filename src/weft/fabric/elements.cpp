@@ -1,6 +1,8 @@
 #include "weft/fabric/elements.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 namespace weft::engine {
@@ -87,6 +89,130 @@ std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const War
     membranes.push_back({mesh.triangles[t], make_rest_triangle(flat(p.a), flat(p.b), flat(p.c))});
   }
   return membranes;
+}
+
+namespace {
+
+/// Two triangles that may be a pair.
+struct Candidate {
+  int first = 0, second = 0;  // triangles
+  double squareness = 0;      // |edge|² over their area, at most 2: the diagonal of a square [1]
+};
+
+/// The position in a triangle at which the edge from a to b begins; -1: nowhere.
+int find_edge(const Triangle& triangle, int a, int b) {
+  for (int c = 0; c < 3; ++c) {
+    if (triangle[c] == a && triangle[(c + 1) % 3] == b) return c;
+  }
+  return -1;
+}
+
+std::vector<Candidate> find_candidates(const TriangleMesh& mesh, const WarpField& warp,
+                                       const std::vector<MembraneElement>& membranes) {
+  constexpr double kSameWarp = 0.94;                       // cosine of 20 degrees
+  std::map<std::pair<int, int>, std::vector<int>> around;  // triangles of each edge
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const Triangle& v = mesh.triangles[t];
+    for (int c = 0; c < 3; ++c) around[std::minmax(v[c], v[(c + 1) % 3])].push_back(t);
+  }
+  std::vector<Candidate> candidates;
+  for (const auto& [edge, triangles] : around) {
+    if (triangles.size() != 2) continue;
+    const auto& [a, b] = edge;
+    const int s = triangles[0], t = triangles[1];
+    const bool is_oriented =
+        (find_edge(mesh.triangles[s], a, b) >= 0) != (find_edge(mesh.triangles[t], a, b) >= 0);
+    if (!is_oriented) continue;
+    const Vec3 along = (mesh.positions[b] - mesh.positions[a]).normalized();
+    // Warp in the axes along the edge and across it, in each triangle's plane.
+    const auto in_plane = [&](int k) {
+      const Vec3 across = corners(mesh, k).normal().normalized().cross(along);
+      return Vec2(warp.warp[k].dot(along), warp.warp[k].dot(across));
+    };
+    if (in_plane(s).dot(in_plane(t)) < kSameWarp) continue;
+    const double length_sq = (mesh.positions[b] - mesh.positions[a]).squaredNorm();
+    candidates.push_back(
+        {s, t, std::min(2.0, length_sq / (membranes[s].rest.area + membranes[t].rest.area))});
+  }
+  std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::squareness);
+  return candidates;
+}
+
+/// Partner of each triangle, -1: none. Greedy by squareness; then triangles without a partner get one where two
+/// of them are joined by a pair, which is exchanged for two pairs.
+std::vector<int> match(const std::vector<Candidate>& candidates, int num_triangles) {
+  std::vector<int> partner(static_cast<std::size_t>(num_triangles), -1);
+  const auto pair = [&](int s, int t) {
+    partner[s] = t;
+    partner[t] = s;
+  };
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(num_triangles));
+  for (const auto& [s, t, squareness] : candidates) {
+    neighbours[s].push_back(t);
+    neighbours[t].push_back(s);
+    if (partner[s] < 0 && partner[t] < 0) pair(s, t);
+  }
+  const auto exchange = [&](int t) {
+    for (const int a : neighbours[t]) {
+      const int b = partner[a];
+      for (const int free : neighbours[b]) {
+        if (free == t || partner[free] >= 0) continue;
+        pair(t, a);
+        pair(b, free);
+        return;
+      }
+    }
+  };
+  for (int t = 0; t < num_triangles; ++t) {
+    if (partner[t] < 0) exchange(t);
+  }
+  return partner;
+}
+
+MembranePatch make_single(const MembraneElement& membrane, int index) {
+  const auto& [a, b, c] = membrane.vertices;
+  return {.num_triangles = 1,
+          .vertices = {a, b, c, -1},
+          .triangles = {index, -1},
+          .corners = {{{0, 1, 2}, {0, 0, 0}}},
+          .rest = {membrane.rest, {}}};
+}
+
+/// The second triangle's corner that is not in the first one becomes vertex 3.
+MembranePatch make_pair(const std::vector<MembraneElement>& membranes, int first, int second) {
+  MembranePatch patch = make_single(membranes[first], first);
+  patch.num_triangles = 2;
+  patch.triangles[1] = second;
+  patch.rest[1] = membranes[second].rest;
+  for (int c = 0; c < 3; ++c) {
+    const int vertex = membranes[second].vertices[c];
+    const auto found = std::find(patch.vertices.begin(), patch.vertices.begin() + 3, vertex);
+    patch.corners[1][c] = static_cast<int>(found - patch.vertices.begin());
+    patch.vertices[patch.corners[1][c]] = vertex;
+  }
+  return patch;
+}
+
+}  // namespace
+
+std::vector<MembranePatch> make_single_patches(const std::vector<MembraneElement>& membranes) {
+  std::vector<MembranePatch> patches;
+  for (std::size_t t = 0; t < membranes.size(); ++t)
+    patches.push_back(make_single(membranes[t], static_cast<int>(t)));
+  return patches;
+}
+
+std::vector<MembranePatch> pair_triangles(const TriangleMesh& mesh, const WarpField& warp,
+                                          const std::vector<MembraneElement>& membranes) {
+  const std::vector<int> partner = match(find_candidates(mesh, warp, membranes), mesh.num_triangles());
+  std::vector<MembranePatch> patches;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    if (partner[t] < 0)
+      patches.push_back(make_single(membranes[t], t));
+    else if (partner[t] > t)
+      patches.push_back(make_pair(membranes, t, partner[t]));
+  }
+  return patches;
 }
 
 std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp,

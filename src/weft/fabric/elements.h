@@ -38,6 +38,32 @@ struct MembraneElement {
 /// One per triangle, in its order. Rest lengths are the mesh's; `warp` only rotates the frame.
 std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const WarpField& warp);
 
+/// One triangle, or two with a common edge, which resist their mean strain (forces/membrane_patch.h).
+///
+///          2
+///         / \\        0, 1, 2: corners of the first triangle; 3: the other corner of the second one.
+///        0---1       `corners` numbers the corners of each triangle, in its own order, in this way.
+///         \\ /
+///          3
+struct MembranePatch {
+  int num_triangles = 1;
+  std::array<int, 4> vertices = {-1, -1, -1, -1};
+  std::array<int, 2> triangles = {-1, -1};  // indices of membranes
+  std::array<std::array<int, 3>, 2> corners = {};
+  std::array<RestTriangle, 2> rest = {};
+
+  int num_vertices() const { return num_triangles + 2; }
+  double area() const { return rest[0].area + rest[1].area; }  // [m²]
+};
+
+/// Every triangle alone.
+std::vector<MembranePatch> make_single_patches(const std::vector<MembraneElement>& membranes);
+
+/// Pairs of triangles, as nearly square as they can be, and triangles that have no partner. Only triangles with
+/// the same orientation and nearly the same warp direction are paired. Every triangle is in one patch.
+std::vector<MembranePatch> pair_triangles(const TriangleMesh& mesh, const WarpField& warp,
+                                          const std::vector<MembraneElement>& membranes);
+
 struct HingeElement {
   std::array<int, 4> vertices;  // as in forces/hinge.h: the edge's ends, then the two opposite ones
   double stiffness = 0;         // k [N·m]

@@ -72,4 +72,19 @@ struct MembraneResponse {
 };
 MembraneResponse membrane_response(const MembraneLaw& law, const Vec3& strain);
 
+/// Response of a pair of triangles to the difference of their strains: linear and soft up to a strain, and
+/// beyond it along warp and weft as stiff as the fabric. It is zero where both have the same strain.
+struct PatchDifference {
+  double stiffness = 0;       // of all three strains [N/m]
+  double begin = 0;           // strain difference above which threads are stiff [1]
+  double warp = 0, weft = 0;  // additional stiffness beyond it, >= 0 [N/m]
+};
+PatchDifference make_patch_difference(const Fabric& fabric);
+MembraneResponse difference_response(const PatchDifference& law, const Vec3& difference);
+
+struct PatchLaw {
+  MembraneLaw mean;
+  PatchDifference difference;
+};
+
 }  // namespace weft::engine

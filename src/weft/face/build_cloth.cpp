@@ -144,6 +144,21 @@ RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& n
   return rest;
 }
 
+/// The given vertices at the corners of the cleaned triangles, -1: none. `mesh` is the given one.
+std::vector<Triangle> find_vertices(const weft::TriangleMesh& mesh, const CleanMesh& clean) {
+  std::vector<Triangle> vertices;
+  for (std::size_t t = 0; t < clean.mesh.triangles.size(); ++t) {
+    Triangle& own = vertices.emplace_back(Triangle{-1, -1, -1});
+    const weft::Triangle& source = mesh.triangles[clean.source_triangle[t]];
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int k = 0; k < 3; ++k) {
+        if (clean.vertex_of_source[source[k]] == clean.mesh.triangles[t][corner]) own[corner] = source[k];
+      }
+    }
+  }
+  return vertices;
+}
+
 /// Particles without a vertex. `clean` has its triangles in the coordinates of those of `mesh`.
 std::vector<AddedParticle> find_added(const weft::TriangleMesh& mesh, const CleanMesh& clean) {
   std::vector<char> is_known(clean.mesh.positions.size(), 0);
@@ -175,6 +190,7 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
   for (std::size_t t = 0; !uv.empty() && t < clean.source_triangle.size(); ++t)
     rest.uv.push_back(interpolate(uv[clean.source_triangle[t]], clean.corner_weights[t]));
   rest.added = find_added(mesh, clean);
+  rest.vertices = find_vertices(mesh, clean);
   rest.topology = build_mesh_topology(std::move(clean.mesh));
   notes.particle_of_vertex = std::move(clean.vertex_of_source);
   notes.warnings = std::move(clean.warnings);

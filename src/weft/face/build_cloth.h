@@ -23,6 +23,8 @@ struct RestShape {
   std::shared_ptr<const ClothTopology> topology;
   std::vector<CornerUv> uv;          // of the topology's triangles; empty: none
   std::vector<AddedParticle> added;  // by ascending particle
+  std::vector<Triangle> vertices;    // (triangles) given vertices at their corners, -1: of an added particle;
+                                     // empty of a grid, whose particles are its vertices
 };
 
 /// Cleans and sews a mesh as `desc` says; `notes` receives the report. Throws InputError, beginning with

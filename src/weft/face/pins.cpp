@@ -71,20 +71,24 @@ void append(const Pin& pin, const std::string& owner, const engine::World& world
   const int follow = pin.follow ? world.index(*pin.follow) : -1;
   if (!pin.stiffness)
     held.pins.push_back({pin.particles, to_engine(pin.motion, owner), to_engine(pin.pivot), follow});
+  std::vector<engine::Vec3> positions;
   for (const int i : pin.particles) {
     if (i < 0 || static_cast<std::size_t>(i) >= state.x.size())
       throw InputError(owner + "there is no particle " + std::to_string(i) + " to pin; it has " +
                        std::to_string(state.x.size()));
-    const engine::Vec3 position = state.position(i);
-    engine::SurfaceAnchor anchor;
-    if (pin.follow) anchor = world.bind(follow, {position})[0];
+    positions.push_back(state.position(i));
+  }
+  std::vector<engine::SurfaceAnchor> anchors(positions.size());
+  if (pin.follow) anchors = world.bind(follow, positions);
+  for (std::size_t p = 0; p < positions.size(); ++p) {
+    const engine::Vec3& position = positions[p];
     if (pin.stiffness) {
-      held.attachments.push_back(make_soft_pin(pin, i, position));
+      held.attachments.push_back(make_soft_pin(pin, pin.particles[p], position));
       held.attachments.back().follow = follow;
-      held.attachments.back().anchor = anchor;
+      held.attachments.back().anchor = anchors[p];
     } else {
       held.anchors.push_back(position);
-      held.on_surface.push_back(anchor);
+      held.on_surface.push_back(anchors[p]);
     }
     engine::PointGuide& guide = pin.stiffness ? held.attachment_guide : held.pin_guide;
     if (!guide.is_empty()) {

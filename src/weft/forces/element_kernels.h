@@ -91,27 +91,43 @@ void grid_element_forces(const GridElements& g, int row_begin, int row_end);
 void grid_multiply_elements(const GridElements& g, ConstRows p, Rows q, int row_begin, int row_end,
                             double* dot);
 
-/// Triangles and particle table entries are stored in slices of sixteen: value k of an item is at (slice ·
-/// count + k) · 16 + lane.
+/// Stiffness of a pair's difference of strains, with damping, and the threads' beyond a large difference.
+struct DifferenceNumbers {
+  float soft = 0, begin = 0;  // [N/m, 1]
+  float along_1 = 0, along_2 = 0;
+};
+
+/// Patches (forces/membrane_patch.h) and particle table entries are stored in slices of sixteen: value k of an item
+/// is at (slice · count + k) · 16 + lane. Vertices 0 and 1 of a pair are its common edge; the first triangle is 0,
+/// 1, 2, the second one 1, 0, 3. A single triangle is a pair whose second one has no area.
 struct MeshElements {
-  static constexpr int kShapeSize = 5;  // gradients of corners 1 and 2, area
-  static constexpr int kFrameSize = 9;  // F's columns, stress
-  static constexpr int kEntrySize = 9;  // √area · gradients of both ends in two triangles, bending
+  static constexpr int kShapeSize =
+      11;  // gradients of vertices 1, 2 in the first triangle, 1, 3 in the second;
+           // both areas, 1 / their sum
+  static constexpr int kFrameSize =
+      20;  // of both triangles F's columns, then their stresses; tangent of a large
+           // difference along both threads
+  static constexpr int kNumCouplings = 6;   // of a patch's vertices: 0-1, 0-2, 0-3, 1-2, 1-3, 2-3
+  static constexpr int kCouplingSize = 10;  // slope, block from the first vertex
+  static constexpr int kPatchSize = kNumCouplings * kCouplingSize;
 
   int first = 0;  // index of particle 0
   MembraneNumbers membrane;
+  DifferenceNumbers difference;
   float damping = 0;  // η
   StiffeningNumbers stiffening;
-  float* tangent = nullptr;          // of stiffening, per triangle; null: none [N/m]
-  float* peak = nullptr;             // largest principal strain of each slice; null: none [1]
-  const int* corner = nullptr;       // three of each triangle
-  const float* shape = nullptr;      // of each triangle
-  float* past = nullptr;             // rest strain of damping, per triangle
-  float* frame = nullptr;            // of each triangle
+  float* tangent = nullptr;     // of stiffening, per patch; null: none [N/m]
+  float* peak = nullptr;        // largest principal strain of each slice; null: none [1]
+  const int* corner = nullptr;  // four of each patch
+  const float* shape = nullptr;
+  float* past = nullptr;  // rest strains of damping, of both triangles (6)
+  float* frame = nullptr;
+  float* patch = nullptr;            // slopes and blocks of the couplings
   const int* slice_begin = nullptr;  // of the particles' edges
   const int* neighbour = nullptr;    // of each entry
-  const int* triangle = nullptr;     // two of each entry
-  const float* entry = nullptr;
+  const int* coupling =
+      nullptr;  // two of each entry: 2 · its place in `patch`, + 1 if the entry is its second end
+  const float* bending = nullptr;  // of each entry [N/m]
   const int* far_begin = nullptr;  // of the particles joined only by bending
   const int* far_neighbour = nullptr;
   const float* far_bending = nullptr;
@@ -122,13 +138,16 @@ struct MeshElements {
 
 void mesh_past(const MeshElements& m, float share, int slice_begin, int slice_end);
 
-/// Frames and energies of slices of triangles.
+/// Frames and energies of slices of patches.
 void mesh_membranes(const MeshElements& m, int slice_begin, int slice_end, double* energy);
 
 /// Bending energies of slices of particles; each end counts half of every coupling.
 void mesh_bending(const MeshElements& m, int slice_begin, int slice_end, double* energy);
 
-/// force += forces of membranes and bending; Hessian blocks of the entries.
+/// Slopes and blocks of slices of patches, from their frames.
+void mesh_patches(const MeshElements& m, int slice_begin, int slice_end);
+
+/// force += forces of membranes and bending; Hessian blocks of the entries, from those of the patches.
 void mesh_blocks(const MeshElements& m, int slice_begin, int slice_end);
 
 void mesh_multiply_elements(const MeshElements& m, ConstRows p, Rows q, int slice_begin, int slice_end,

@@ -78,13 +78,14 @@ void ElementPotential::fit_grid(const ClothModel& model) {
 
 void ElementPotential::fit_mesh(const ClothModel& model) {
   tables_ = build_element_tables(*elements_, model.num_particles());
-  const std::size_t triangles = static_cast<std::size_t>(tables_.num_triangle_slices()) * kPackLanes;
-  fit_stiffening(kernels::kTangentSize * triangles, tables_.num_triangle_slices());
-  past_.assign(3 * triangles, 0.0f);
-  stress_.assign(MeshElements::kFrameSize * triangles, 0.0f);
+  const std::size_t patches = static_cast<std::size_t>(tables_.num_patch_slices()) * kPackLanes;
+  fit_stiffening(kernels::kTangentSize * patches, tables_.num_patch_slices());
+  past_.assign(6 * patches, 0.0f);
+  stress_.assign(MeshElements::kFrameSize * patches, 0.0f);
+  patch_.assign(MeshElements::kPatchSize * patches, 0.0f);
   hessian_.assign(static_cast<std::size_t>(tables_.num_entry_rows()) * kernels::kBlockSize * kPackLanes,
                   0.0f);
-  parts_.assign(tables_.num_triangle_slices() + tables_.num_slices(), 0.0);
+  parts_.assign(tables_.num_patch_slices() + tables_.num_slices(), 0.0);
 }
 
 void ElementPotential::fit_stiffening(std::size_t num_tangents, std::size_t num_peaks) {
@@ -122,7 +123,8 @@ double ElementPotential::stiffening_rate(int triangle) const {
     pitch = static_cast<std::ptrdiff_t>(rows_.size());
     first = (is_top ? 0 : kernels::kTangentSize) * pitch + rows_.row(j) + i;
   } else {
-    first = triangle / kPackLanes * (kernels::kTangentSize * kPackLanes) + triangle % kPackLanes;
+    const int patch = tables_.patch_of_triangle[triangle];
+    first = patch / kPackLanes * (kernels::kTangentSize * kPackLanes) + patch % kPackLanes;
   }
   return 0.5 * (static_cast<double>(tangent_[first + kD11 * pitch]) + tangent_[first + kD22 * pitch]);
 }
@@ -179,10 +181,14 @@ GridElements ElementPotential::grid_view() {
 
 MeshElements ElementPotential::mesh_view() {
   const float stiffening = 1 + damping_;
+  const PatchDifference& difference = elements_->difference;
   const Mat3& c = elements_->stiffness;
   return {.first = rows_.row(0),
           .membrane = {stiffening * static_cast<float>(c(0, 0)), stiffening * static_cast<float>(c(1, 1)),
                        stiffening * static_cast<float>(c(0, 1)), stiffening * static_cast<float>(c(2, 2))},
+          .difference = {stiffening * static_cast<float>(difference.stiffness),
+                         static_cast<float>(difference.begin), static_cast<float>(difference.warp),
+                         static_cast<float>(difference.weft)},
           .damping = damping_,
           .stiffening = stiffening_of(elements_->limit, elements_->stretch_warp, elements_->stretch_weft),
           .tangent = tangent_.data(),
@@ -191,10 +197,11 @@ MeshElements ElementPotential::mesh_view() {
           .shape = tables_.shape.data(),
           .past = past_.data(),
           .frame = stress_.data(),
+          .patch = patch_.data(),
           .slice_begin = tables_.slice_begin.data(),
           .neighbour = tables_.neighbour.data(),
-          .triangle = tables_.triangle.data(),
-          .entry = tables_.entry.data(),
+          .coupling = tables_.coupling.data(),
+          .bending = tables_.bending.data(),
           .far_begin = tables_.far_begin.data(),
           .far_neighbour = tables_.far_neighbour.data(),
           .far_bending = tables_.far_bending.data(),
@@ -220,7 +227,7 @@ void ElementPotential::add_past(const Vec3Array& x, double share, JobSystem& job
   }
   MeshElements m = mesh_view();
   m.x = kernels::rows(x);
-  parallel_for(jobs, tables_.num_triangle_slices(), kSlicesPerChunk,
+  parallel_for(jobs, tables_.num_patch_slices(), kSlicesPerChunk,
                [&](int begin, int end) { kernels::mesh_past(m, s, begin, end); });
 }
 
@@ -243,8 +250,8 @@ double ElementPotential::energy(const Vec3Array& x, const Vec3Array& z, JobSyste
   MeshElements m = mesh_view();
   m.x = kernels::rows(x);
   m.damped = kernels::rows(z);
-  double* bending = parts + tables_.num_triangle_slices();
-  parallel_for(jobs, tables_.num_triangle_slices(), kSlicesPerChunk,
+  double* bending = parts + tables_.num_patch_slices();
+  parallel_for(jobs, tables_.num_patch_slices(), kSlicesPerChunk,
                [&](int begin, int end) { kernels::mesh_membranes(m, begin, end, parts); });
   parallel_for(jobs, tables_.num_slices(), kSlicesPerChunk,
                [&](int begin, int end) { kernels::mesh_bending(m, begin, end, bending); });
@@ -279,6 +286,8 @@ double ElementPotential::linearise(const Vec3Array& x, const Vec3Array& z, JobSy
   m.x = kernels::rows(x);
   m.bent = kernels::rows(bent);
   m.force = kernels::rows(force);
+  parallel_for(jobs, tables_.num_patch_slices(), kSlicesPerChunk,
+               [&](int begin, int end) { kernels::mesh_patches(m, begin, end); });
   parallel_for(jobs, tables_.num_slices(), kSlicesPerChunk,
                [&](int begin, int end) { kernels::mesh_blocks(m, begin, end); });
   return value;

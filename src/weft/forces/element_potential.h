@@ -3,7 +3,7 @@
 ///
 ///     Σ ½ A (eᵀ C e + η δeᵀ C δe) + ½ Σ b_ij (|x_j − x_i|² + η |z_j − z_i|²),      η = τ β/h
 ///
-/// e is a triangle's Green strain and δe its change in a step with β (see remember()): zero for rigid
+/// e is the Green strain of a grid's triangle or of a mesh's patch (forces/membrane_patch.h) with its difference, and δe its change in a step with β (see remember()): zero for rigid
 /// motions. Both squares of a triangle combine to ½ (1 + η) A (e − e*)ᵀ C (e − e*) and a constant, which is
 /// omitted. The second sum is bending by stencils (fabric/bending_rows.h), whose quadratic form has the
 /// constant couplings b_ij; z = x − y + (h/β) v_y as in potential.h. Its damping acts on the full relative
@@ -33,7 +33,7 @@ struct GridElements;
 struct MeshElements;
 }  // namespace kernels
 
-/// Contribution of a triangle's stiffness to a coupling: `share` of it.
+/// Contribution of a triangle's stiffness to a coupling: `share` of it. On a mesh it is that of its patch.
 struct TriangleCoupling {
   int coupling = 0, triangle = 0;
   double share = 0;  // cotangent weight [1]
@@ -91,6 +91,7 @@ class ElementPotential {
   ElementTables tables_;   // on a mesh
   AlignedFloats past_;     // η/(1 + η) times the strain without δe: e*
   AlignedFloats stress_;   // on a grid; on a mesh also the frames
+  AlignedFloats patch_;    // on a mesh, slopes and blocks of the patches' couplings
   AlignedFloats slope_;
   AlignedFloats tangent_, peak_;  // of stiffening
   std::vector<TriangleCoupling> triangle_couplings_;

@@ -1,6 +1,7 @@
 #include "weft/forces/element_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "weft/forces/element_kernels.h"
@@ -12,12 +13,38 @@ using kernels::MeshElements;
 
 constexpr int kLanes = kPackLanes;
 
-/// An edge from one of its ends, with one or two of its triangles.
+/// A patch with its common edge first, as in MeshElements.
+struct OrderedPatch {
+  std::array<int, 4> vertices = {};
+  std::array<Vec2, 4> gradients = {};  // of vertices 1, 2 in the first triangle, 1, 3 in the second
+  std::array<double, 2> areas = {};
+};
+
+OrderedPatch order(const MembranePatch& patch) {
+  int start = 0;  // corner of the first triangle at which the common edge begins
+  if (patch.num_triangles == 2) {
+    const auto& second = patch.corners[1];
+    while (std::find(second.begin(), second.end(), (start + 2) % 3) != second.end()) ++start;
+  }
+  const std::array<int, 3> first = {start, (start + 1) % 3, (start + 2) % 3};
+  OrderedPatch ordered;
+  for (int c = 0; c < 3; ++c) ordered.vertices[c] = patch.vertices[first[c]];
+  ordered.vertices[3] = patch.vertices[patch.num_triangles == 2 ? 3 : first[0]];
+  ordered.gradients = {patch.rest[0].gradient[first[1]], patch.rest[0].gradient[first[2]], Vec2::Zero(),
+                       Vec2::Zero()};
+  ordered.areas = {patch.rest[0].area, patch.rest[1].area};
+  for (int c = 0; c < 3 && patch.num_triangles == 2; ++c) {
+    if (patch.corners[1][c] == first[1]) ordered.gradients[2] = patch.rest[1].gradient[c];
+    if (patch.corners[1][c] == 3) ordered.gradients[3] = patch.rest[1].gradient[c];
+  }
+  return ordered;
+}
+
+/// An edge from one of its ends, with one or two couplings of patches.
 struct Entry {
   int neighbour = 0;
-  int triangle[2] = {0, 0};
-  int num_triangles = 0;
-  double gradients[2][4] = {};  // √area times (own 1, own 2, neighbour's 1, neighbour's 2)
+  int coupling[2] = {-1, -1};  // as in MeshElements; -1: none
+  int num_couplings = 0;
   double bending = 0;
 };
 
@@ -26,26 +53,25 @@ struct FarEntry {
   double bending = 0;
 };
 
-void add_triangle(std::vector<Entry>& entries, int neighbour, int triangle, double root, const Vec2& own,
-                  const Vec2& other) {
+void add_coupling(std::vector<Entry>& entries, int neighbour, int coupling) {
   auto entry = std::find_if(entries.begin(), entries.end(),
-                            [&](const Entry& e) { return e.neighbour == neighbour && e.num_triangles < 2; });
+                            [&](const Entry& e) { return e.neighbour == neighbour && e.num_couplings < 2; });
   if (entry == entries.end()) entry = entries.insert(entries.end(), Entry{.neighbour = neighbour});
-  const int k = entry->num_triangles++;
-  entry->triangle[k] = triangle;
-  const double gradients[4] = {root * own.x(), root * own.y(), root * other.x(), root * other.y()};
-  std::copy(gradients, gradients + 4, entry->gradients[k]);
+  entry->coupling[entry->num_couplings++] = coupling;
 }
 
-std::vector<std::vector<Entry>> find_entries(const ClothElements& elements, int num_particles) {
+std::vector<std::vector<Entry>> find_entries(const std::vector<OrderedPatch>& patches, int num_particles) {
   std::vector<std::vector<Entry>> around(num_particles);
-  for (std::size_t t = 0; t < elements.membranes.size(); ++t) {
-    const auto& [vertices, rest] = elements.membranes[t];
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const int slice = static_cast<int>(p) / kLanes, lane = static_cast<int>(p) % kLanes;
+    const bool is_pair = patches[p].areas[1] > 0;
+    int place = slice * MeshElements::kPatchSize * kLanes + lane;
     for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < 3; ++b) {
-        if (a == b) continue;
-        add_triangle(around[vertices[a]], vertices[b], static_cast<int>(t), std::sqrt(rest.area),
-                     rest.gradient[a], rest.gradient[b]);
+      for (int b = a + 1; b < 4; ++b, place += MeshElements::kCouplingSize * kLanes) {
+        if (b == 3 && !is_pair) continue;
+        const int i = patches[p].vertices[a], j = patches[p].vertices[b];
+        add_coupling(around[i], j, 2 * place);
+        add_coupling(around[j], i, 2 * place + 1);
       }
     }
   }
@@ -87,38 +113,47 @@ std::vector<int> slice_rows(const std::vector<std::vector<Item>>& lists) {
   return begin;
 }
 
-void lay_out_triangles(const ClothElements& elements, ElementTables& tables) {
-  const int count = round_up_to_pack(static_cast<int>(elements.membranes.size()));
-  tables.corner.assign(3 * static_cast<std::size_t>(count), 0);
-  tables.shape.assign(MeshElements::kShapeSize * static_cast<std::size_t>(count), 0.0f);
-  for (std::size_t t = 0; t < elements.membranes.size(); ++t) {
-    const auto& [vertices, rest] = elements.membranes[t];
-    const std::size_t slice = t / kLanes, lane = t % kLanes;
-    for (int c = 0; c < 3; ++c) tables.corner[(slice * 3 + c) * kLanes + lane] = vertices[c];
-    const double shape[] = {rest.gradient[1].x(), rest.gradient[1].y(), rest.gradient[2].x(),
-                            rest.gradient[2].y(), rest.area};
+void lay_out_patches(const std::vector<OrderedPatch>& patches, ElementTables& tables) {
+  // At least one more than there are: its couplings are zero.
+  const auto count = static_cast<std::size_t>(round_up_to_pack(static_cast<int>(patches.size()) + 1));
+  tables.corner.assign(4 * count, 0);
+  tables.shape.assign(MeshElements::kShapeSize * count, 0.0f);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const auto& [vertices, gradients, areas] = patches[p];
+    const std::size_t slice = p / kLanes, lane = p % kLanes;
+    for (int c = 0; c < 4; ++c) tables.corner[(slice * 4 + c) * kLanes + lane] = vertices[c];
+    const auto& [g1, g2, h1, h3] = gradients;
+    const double shape[] = {g1.x(),
+                            g1.y(),
+                            g2.x(),
+                            g2.y(),
+                            h1.x(),
+                            h1.y(),
+                            h3.x(),
+                            h3.y(),
+                            areas[0],
+                            areas[1],
+                            1 / (areas[0] + areas[1])};
     for (int k = 0; k < MeshElements::kShapeSize; ++k)
       tables.shape[(slice * MeshElements::kShapeSize + k) * kLanes + lane] = static_cast<float>(shape[k]);
   }
 }
 
-void lay_out_entries(const std::vector<std::vector<Entry>>& around, ElementTables& tables) {
+/// `none`: a coupling that is zero.
+void lay_out_entries(const std::vector<std::vector<Entry>>& around, int none, ElementTables& tables) {
   tables.slice_begin = slice_rows(around);
   const std::size_t rows = tables.slice_begin.back();
   tables.neighbour.assign(rows * kLanes, 0);
-  tables.triangle.assign(rows * 2 * kLanes, 0);
-  tables.entry.assign(rows * MeshElements::kEntrySize * kLanes, 0.0f);
+  tables.coupling.assign(rows * 2 * kLanes, none);
+  tables.bending.assign(rows * kLanes, 0.0f);
   for (std::size_t i = 0; i < around.size(); ++i) {
     const std::size_t lane = i % kLanes;
     std::size_t row = tables.slice_begin[i / kLanes];
     for (const Entry& e : around[i]) {
       tables.neighbour[row * kLanes + lane] = e.neighbour;
-      float* numbers = &tables.entry[row * MeshElements::kEntrySize * kLanes + lane];
-      for (int t = 0; t < 2; ++t) {
-        tables.triangle[(row * 2 + t) * kLanes + lane] = e.triangle[t];
-        for (int k = 0; k < 4; ++k) numbers[(4 * t + k) * kLanes] = static_cast<float>(e.gradients[t][k]);
-      }
-      numbers[8 * kLanes] = static_cast<float>(e.bending);
+      for (int k = 0; k < e.num_couplings; ++k)
+        tables.coupling[(row * 2 + k) * kLanes + lane] = e.coupling[k];
+      tables.bending[row * kLanes + lane] = static_cast<float>(e.bending);
       ++row;
     }
   }
@@ -143,10 +178,19 @@ void lay_out_far(const std::vector<std::vector<FarEntry>>& far, ElementTables& t
 
 ElementTables build_element_tables(const ClothElements& elements, int num_particles) {
   ElementTables tables;
-  std::vector<std::vector<Entry>> around = find_entries(elements, num_particles);
+  std::vector<OrderedPatch> patches;
+  tables.patch_of_triangle.resize(elements.membranes.size());
+  for (const MembranePatch& patch : elements.patches) {
+    for (int t = 0; t < patch.num_triangles; ++t)
+      tables.patch_of_triangle[patch.triangles[t]] = static_cast<int>(patches.size());
+    patches.push_back(order(patch));
+  }
+  std::vector<std::vector<Entry>> around = find_entries(patches, num_particles);
   const std::vector<std::vector<FarEntry>> far = add_bending(elements.bending, around);
-  lay_out_triangles(elements, tables);
-  lay_out_entries(around, tables);
+  lay_out_patches(patches, tables);
+  const int padding = tables.num_patch_slices() * kLanes - 1;
+  lay_out_entries(around, 2 * (padding / kLanes * MeshElements::kPatchSize * kLanes + padding % kLanes),
+                  tables);
   lay_out_far(far, tables);
   return tables;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Element tables of a mesh for vector registers, sixteen triangles or particles per slice (see
+/// Element tables of a mesh for vector registers, sixteen patches or particles per slice (see
 /// kernels::MeshElements).
 
 #include <vector>
@@ -13,12 +13,13 @@ namespace weft::engine {
 struct ElementTables {
   std::vector<int> corner;
   AlignedFloats shape;
-  std::vector<int> slice_begin, neighbour, triangle;
-  AlignedFloats entry;
+  std::vector<int> patch_of_triangle;
+  std::vector<int> slice_begin, neighbour, coupling;
+  AlignedFloats bending;
   std::vector<int> far_begin, far_neighbour;
   AlignedFloats far_bending;
 
-  int num_triangle_slices() const { return static_cast<int>(corner.size()) / (3 * kPackLanes); }
+  int num_patch_slices() const { return static_cast<int>(corner.size()) / (4 * kPackLanes); }
   int num_slices() const { return slice_begin.empty() ? 0 : static_cast<int>(slice_begin.size()) - 1; }
   int num_entry_rows() const { return slice_begin.empty() ? 0 : slice_begin.back(); }
 };

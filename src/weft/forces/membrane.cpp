@@ -1,5 +1,6 @@
 #include "weft/forces/membrane.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::engine {
@@ -50,13 +51,16 @@ std::array<double, 2> principal_stretches(const RestTriangle& rest, const Triang
   return {largest > 0 ? f.warp.cross(f.weft).norm() / largest : 0.0, largest};
 }
 
-double membrane_energy(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
-  return rest.area * membrane_response(law, membrane_strain(rest, x)).energy;
+std::array<double, 2> principal_stretches(const Vec3& strain) {
+  const double mean = 0.5 * (strain[0] + strain[1]), half = 0.5 * (strain[0] - strain[1]),
+               shear = 0.5 * strain[2];
+  const double radius = std::sqrt(half * half + shear * shear);
+  return {std::sqrt(std::max(0.0, 1 + 2 * (mean - radius))),
+          std::sqrt(std::max(0.0, 1 + 2 * (mean + radius)))};
 }
 
-TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
+TriangleCorners stress_force(const RestTriangle& rest, const Vec3& s, const TriangleCorners& x) {
   const Deformation f = deformation(rest, x);
-  const Vec3 s = membrane_response(law, green_strain(f)).stress;
   const Vec3 pull_warp = rest.area * (s[0] * f.warp + s[2] * f.weft);
   const Vec3 pull_weft = rest.area * (s[2] * f.warp + s[1] * f.weft);
   TriangleCorners force;
@@ -67,32 +71,22 @@ TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law,
   return force;
 }
 
-MembraneHessian membrane_hessian(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x) {
-  const Deformation f = deformation(rest, x);
-  const MembraneResponse response = membrane_response(law, green_strain(f));
-  const Vec3& s = response.stress;
+std::array<double, 3> stress_weights(const RestTriangle& rest, const Vec3& s) {
   Eigen::Matrix2d tension;
   tension << s[0], s[2], s[2], s[1];
-  MembraneHessian hessian;
+  std::array<double, 3> weights;
   for (int a = 0; a < 3; ++a) {
-    const Mat3 ba = strain_derivative(f, rest.gradient[a]);
-    for (int b = 0; b < 3; ++b) {
-      const Mat3 bb = strain_derivative(f, rest.gradient[b]);
-      hessian.material[a][b] = rest.area * ba.transpose() * response.tangent * bb;
-    }
     const Vec2 &g1 = rest.gradient[(a + 1) % 3], &g2 = rest.gradient[(a + 2) % 3];
-    hessian.edge_weight[a] = -rest.area * g1.dot(tension * g2);
+    weights[a] = -rest.area * g1.dot(tension * g2);
   }
-  return hessian;
+  return weights;
 }
 
-Mat3 membrane_block(const MembraneHessian& hessian, int a, int b, StressFilter filter) {
+double stress_block(const std::array<double, 3>& weights, int a, int b, StressFilter filter) {
   const auto weight = [&](int opposite) {
-    const double w = hessian.edge_weight[opposite];
-    return filter == StressFilter::absolute ? std::abs(w) : w;
+    return filter == StressFilter::absolute ? std::abs(weights[opposite]) : weights[opposite];
   };
-  const double stress = a == b ? weight((a + 1) % 3) + weight((a + 2) % 3) : -weight(3 - a - b);
-  return hessian.material[a][b] + stress * Mat3::Identity();
+  return a == b ? weight((a + 1) % 3) + weight((a + 2) % 3) : -weight(3 - a - b);
 }
 
 }  // namespace weft::engine

@@ -34,31 +34,22 @@ std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const T
 /// Smallest and largest stretch over all directions in the triangle: length over rest length [1].
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x);
 
-/// W [J]. With a strain limit, `law` gives another W, s = ∂W/∂e and C = ∂s/∂e; all else is unchanged.
-double membrane_energy(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
+/// The same of a Green strain.
+std::array<double, 2> principal_stretches(const Vec3& strain);
 
-/// Force on each corner: f_c = −A F S g_c [N]. Forces and their moments sum to zero.
-TriangleCorners membrane_force(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
+/// Force on each corner by a stress: f_c = −A F S g_c [N]. Forces and their moments sum to zero.
+TriangleCorners stress_force(const RestTriangle& rest, const Vec3& stress, const TriangleCorners& x);
 
-/// Second derivatives of W, split for solvers that require a positive semidefinite Hessian:
-///
-///     ∂²W/∂x_a ∂x_b = A B_aᵀ C B_b + (A g_a·S g_b) I,   B_c = ∂e/∂x_c (3×3)
-///
-/// The first term is always positive semidefinite. The second one is the Laplacian of three scalar
-/// zero-length springs, of stiffness w_ab = −A g_a·S g_b along the edges.
-struct MembraneHessian {
-  std::array<std::array<Mat3, 3>, 3> material;  // [a][b] [N/m]
-  std::array<double, 3> edge_weight;            // opposite to corners 0, 1, 2; may be negative [N/m]
-};
-
-MembraneHessian membrane_hessian(const RestTriangle& rest, const MembraneLaw& law, const TriangleCorners& x);
+/// Second derivatives of A s·e at constant stress are the Laplacian of three scalar zero-length springs, along
+/// the edges opposite to corners 0, 1, 2: w_ab = −A g_a·S g_b, maybe negative [N/m].
+std::array<double, 3> stress_weights(const RestTriangle& rest, const Vec3& stress);
 
 enum class StressFilter {
   exact,     // the true Hessian: indefinite where the triangle is compressed
   absolute,  // |w_ab|: positive semidefinite, and stable where the linear system is solved accurately
 };
 
-/// The 3×3 block of corners a and b [N/m].
-Mat3 membrane_block(const MembraneHessian& hessian, int a, int b, StressFilter filter);
+/// Their block of corners a and b: this number times the identity [N/m].
+double stress_block(const std::array<double, 3>& weights, int a, int b, StressFilter filter);
 
 }  // namespace weft::engine

@@ -7,10 +7,6 @@
 namespace weft::engine {
 namespace {
 
-TriangleCorners corners_of(const MembraneElement& m, const std::vector<Vec3>& x) {
-  return {x[m.vertices[0]], x[m.vertices[1]], x[m.vertices[2]]};
-}
-
 HingeCorners corners_of(const HingeElement& h, const std::vector<Vec3>& x) {
   return {x[h.vertices[0]], x[h.vertices[1]], x[h.vertices[2]], x[h.vertices[3]]};
 }
@@ -29,22 +25,29 @@ void ElementTerms::begin_step(const ClothElements& elements, double step, const 
   damp_bending(elements.damping / step, shape);
 }
 
-/// δeᵀ C δe as three rows, by the Cholesky factorisation C = Σ d l lᵀ.
+/// δeᵀ C δe of the mean strain as three rows, by the Cholesky factorisation C = Σ d l lᵀ, and three rows of the
+/// difference.
 void ElementTerms::damp_membranes(double share, const std::vector<Vec3>& shape) {
-  for (const MembraneElement& m : elements_->membranes) {
-    const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, corners_of(m, shape));
+  for (const MembranePatch& patch : elements_->patches) {
+    const PatchDerivative derivative = patch_strain_derivative(patch, corners_of(patch, shape));
+    const auto add_row = [&](const std::array<Mat3, 4>& of_strain, const Vec3& l, double stiffness) {
+      const int begin = static_cast<int>(vertex_.size());
+      for (int v = 0; v < patch.num_vertices(); ++v) {
+        vertex_.push_back(patch.vertices[v]);
+        weight_.push_back(of_strain[v].transpose() * l);
+      }
+      damped_.push_back({begin, static_cast<int>(vertex_.size()), stiffness});
+    };
     Mat3 rest = elements_->stiffness;
     for (int c = 0; c < 3; ++c) {
       const double pivot = rest(c, c);
       const Vec3 l = rest.col(c) / pivot;
       rest -= pivot * l * l.transpose();
-      const int begin = static_cast<int>(vertex_.size());
-      for (int k = 0; k < 3; ++k) {
-        vertex_.push_back(m.vertices[k]);
-        weight_.push_back(derivative[k].transpose() * l);
-      }
-      damped_.push_back({begin, begin + 3, share * m.rest.area * pivot});
+      add_row(derivative.mean, l, share * patch.area() * pivot);
     }
+    if (patch.num_triangles == 1) continue;
+    const double stiffness = share * difference_area(patch) * elements_->difference.stiffness;
+    for (int c = 0; c < 3; ++c) add_row(derivative.difference, Vec3::Unit(c), stiffness);
   }
 }
 
@@ -71,11 +74,10 @@ void ElementTerms::damp_bending(double share, const std::vector<Vec3>& shape) {
 }
 
 double ElementTerms::energy(const std::vector<Vec3>& x) const {
-  const MembraneLaw law = elements_->law();
+  const PatchLaw law = elements_->law();
   double energy = bending_energy(elements_->bending, x);
-  for (const MembraneElement& m : elements_->membranes) {
-    energy += membrane_energy(m.rest, law, corners_of(m, x));
-  }
+  for (const MembranePatch& patch : elements_->patches)
+    energy += patch_energy(patch, law, corners_of(patch, x));
   for (const HingeElement& h : elements_->hinges) energy += hinge_energy(h.stiffness, 0, corners_of(h, x));
   for (const DampedRow& row : damped_) {
     double change = 0;
@@ -87,17 +89,18 @@ double ElementTerms::energy(const std::vector<Vec3>& x) const {
 
 bool ElementTerms::is_beyond_limit(const std::vector<Vec3>& x) const {
   if (elements_->limit.stiffness == 0) return false;
-  const auto is_beyond = [&](const MembraneElement& m) {
-    return principal_stretches(m.rest, corners_of(m, x))[1] > 1 + elements_->limit.allowed();
+  const auto is_beyond = [&](const MembranePatch& patch) {
+    const Vec3 strain = patch_strain(patch, corners_of(patch, x)).mean;
+    return principal_stretches(strain)[1] > 1 + elements_->limit.allowed();
   };
-  return std::any_of(elements_->membranes.begin(), elements_->membranes.end(), is_beyond);
+  return std::any_of(elements_->patches.begin(), elements_->patches.end(), is_beyond);
 }
 
 void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const {
-  const MembraneLaw law = elements_->law();
-  for (const MembraneElement& m : elements_->membranes) {
-    const TriangleCorners force = membrane_force(m.rest, law, corners_of(m, x));
-    for (int c = 0; c < 3; ++c) gradient[m.vertices[c]] -= force[c];
+  const PatchLaw law = elements_->law();
+  for (const MembranePatch& patch : elements_->patches) {
+    const PatchCorners force = patch_force(patch, law, corners_of(patch, x));
+    for (int v = 0; v < patch.num_vertices(); ++v) gradient[patch.vertices[v]] -= force[v];
   }
   for (const HingeElement& h : elements_->hinges) {
     const HingeCorners force = hinge_force(h.stiffness, 0, corners_of(h, x));
@@ -117,11 +120,12 @@ void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& g
 }
 
 void ElementTerms::add_hessian(const std::vector<Vec3>& x, StressFilter filter, const AddBlock& add) const {
-  const MembraneLaw law = elements_->law();
-  for (const MembraneElement& m : elements_->membranes) {
-    const MembraneHessian hessian = membrane_hessian(m.rest, law, corners_of(m, x));
-    for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b <= a; ++b) add(m.vertices[a], m.vertices[b], membrane_block(hessian, a, b, filter));
+  const PatchLaw law = elements_->law();
+  for (const MembranePatch& patch : elements_->patches) {
+    const PatchHessian hessian = patch_hessian(patch, law, corners_of(patch, x));
+    for (int a = 0; a < patch.num_vertices(); ++a) {
+      for (int b = 0; b <= a; ++b)
+        add(patch.vertices[a], patch.vertices[b], patch_block(patch, hessian, a, b, filter));
     }
   }
   for (const HingeElement& h : elements_->hinges) {
@@ -155,7 +159,7 @@ std::vector<std::pair<int, int>> ElementTerms::find_pairs(const ClothElements& e
       for (int b = 0; b < a; ++b) pairs.push_back(std::minmax(vertices[a], vertices[b]));
     }
   };
-  for (const MembraneElement& m : elements.membranes) add_all(m.vertices.data(), 3);
+  for (const MembranePatch& patch : elements.patches) add_all(patch.vertices.data(), patch.num_vertices());
   for (const HingeElement& h : elements.hinges) add_all(h.vertices.data(), 4);
   const BendingRows& rows = elements.bending;
   for (int r = 0; r < rows.num_rows(); ++r) {

@@ -3,7 +3,7 @@
 ///
 ///     Σ ½ A eᵀ C e + Σ ½ k |c|² (or Σ ½ k θ²) + τ/(2h) Σ (A δeᵀ C δe + k δc²)
 ///
-/// Damping acts on the change since the start of the step: δe = B₀ (x − x₀), B₀ the strain's derivative
+/// e is the strain of a patch (forces/membrane_patch.h), whose difference has corresponding terms. Damping acts on the change since the start of the step: δe = B₀ (x − x₀), B₀ the strain's derivative
 /// there, and δc = ĉ₀·Σ w (x − x₀), the change of the curvature's length: both are zero for a rigid rotation.
 /// Hinges are damped like stencils, by the change of their angle.
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "weft/forces/hinge.h"
-#include "weft/forces/membrane.h"
+#include "weft/forces/membrane_patch.h"
 #include "weft/model/cloth_elements.h"
 
 namespace weft::engine {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "weft/forces/hinge.h"
-#include "weft/forces/membrane.h"
+#include "weft/forces/membrane_patch.h"
 
 namespace weft::engine {
 namespace {
@@ -28,27 +28,40 @@ double multiplier(const Step& step, const Scalar& response, double compliance, d
   return (h2 * response.force + step.damping * k * grown) / (1 + (1 + step.damping) * k * compliance);
 }
 
-void project_membrane(const MembraneElement& m, const MembraneLaw& law, const Step& step,
-                      XpbdParticles& particles) {
-  TriangleCorners x;
-  for (int c = 0; c < 3; ++c) x[c] = particles.position(m.vertices[c]);
-  const MembraneResponse response = membrane_response(law, membrane_strain(m.rest, x));
-  const std::array<Mat3, 3> derivative = membrane_strain_derivative(m.rest, x);
+/// Projects three strains of a patch with their derivatives at its vertices.
+void project_strains(const MembranePatch& patch, const std::array<Mat3, 4>& derivative, double area,
+                     const MembraneResponse& response, const Step& step, XpbdParticles& particles) {
   Mat3 compliance = Mat3::Zero();
   Vec3 grown = Vec3::Zero();
-  for (int c = 0; c < 3; ++c) {
-    const int i = m.vertices[c];
-    compliance += particles.particle[i].inv_mass() * derivative[c] * derivative[c].transpose();
-    grown += derivative[c] * particles.moved(i);
+  for (int v = 0; v < patch.num_vertices(); ++v) {
+    const int i = patch.vertices[v];
+    compliance += particles.particle[i].inv_mass() * derivative[v] * derivative[v].transpose();
+    grown += derivative[v] * particles.moved(i);
   }
-  const double h2_area = step.h * step.h * m.rest.area;
+  const double h2_area = step.h * step.h * area;
   const Mat3 k = h2_area * response.tangent;
   const Mat3 system = Mat3::Identity() + (1 + step.damping) * k * compliance;
   const Vec3 lambda = system.inverse() * (h2_area * response.stress + step.damping * (k * grown));
-  for (int c = 0; c < 3; ++c) {
-    const int i = m.vertices[c];
-    particles.move(i, -particles.particle[i].inv_mass() * (derivative[c].transpose() * lambda));
+  for (int v = 0; v < patch.num_vertices(); ++v) {
+    const int i = patch.vertices[v];
+    particles.move(i, -particles.particle[i].inv_mass() * (derivative[v].transpose() * lambda));
   }
+}
+
+/// The mean strain, then the difference.
+void project_patch(const MembranePatch& patch, const PatchLaw& law, const Step& step,
+                   XpbdParticles& particles) {
+  PatchCorners x;
+  const auto read = [&] {
+    for (int v = 0; v < patch.num_vertices(); ++v) x[v] = particles.position(patch.vertices[v]);
+  };
+  read();
+  project_strains(patch, patch_strain_derivative(patch, x).mean, patch.area(),
+                  membrane_response(law.mean, patch_strain(patch, x).mean), step, particles);
+  if (patch.num_triangles == 1) return;
+  read();
+  project_strains(patch, patch_strain_derivative(patch, x).difference, difference_area(patch),
+                  difference_response(law.difference, patch_strain(patch, x).difference), step, particles);
 }
 
 void project_stencil(const BendingRows& rows, int row, const Step& step, XpbdParticles& particles) {
@@ -121,8 +134,9 @@ XpbdElements::XpbdElements(const ClothModel& model)
     : topology_(model.topology), elements_(model.elements), law_(elements_->law()) {
   const int num_particles = model.num_particles();
   const ClothElements& e = *elements_;
-  membranes_ = colour_items(static_cast<int>(e.membranes.size()), num_particles,
-                            [&](int k) -> const Triangle& { return e.membranes[k].vertices; });
+  patches_ = colour_items(static_cast<int>(e.patches.size()), num_particles, [&](int k) {
+    return std::span(e.patches[k].vertices).first(static_cast<std::size_t>(e.patches[k].num_vertices()));
+  });
   stencils_ = colour_items(e.bending.num_rows(), num_particles, [&](int r) {
     return std::span(e.bending.vertex)
         .subspan(e.bending.begin[r], e.bending.begin[r + 1] - e.bending.begin[r]);
@@ -144,7 +158,7 @@ void XpbdElements::project(double step, JobSystem& jobs, XpbdParticles& particle
   const Step damped{step, e.damping / step};
   for_colours(stencils_, jobs, [&](int r) { project_stencil(e.bending, r, damped, particles); });
   for_colours(hinges_, jobs, [&](int k) { project_hinge(e.hinges[k], damped, particles); });
-  for_colours(membranes_, jobs, [&](int k) { project_membrane(e.membranes[k], law_, damped, particles); });
+  for_colours(patches_, jobs, [&](int k) { project_patch(e.patches[k], law_, damped, particles); });
   for_colours(limits_, jobs, [&](int k) {
     project_limit(topology_->springs[limited_[k]], e.spring_limit, step, particles);
   });

@@ -6,7 +6,7 @@
 /// simultaneous constraints as the element has strains. With B_c = ∂e/∂x_c, r_c the motion of corner c in the
 /// substep so far, and τ the fabric's damping time:
 ///
-///     membrane   K = h² A ∂s/∂e,  S = Σ_c B_c B_cᵀ/m_c     e Green strain, s its stress (forces/membrane.h)
+///     membrane   K = h² A ∂s/∂e,  S = Σ_c B_c B_cᵀ/m_c     e strain of a patch, s its stress (forces/membrane_patch.h)
 ///                (1 + (1 + τ/h) K S) λ = h² A s + (τ/h) K Σ_c B_c r_c,          x_c −= B_cᵀ λ/m_c
 ///     bending    the same with one strain: the length of a stencil's curvature Σ w x
 ///                (fabric/bending_rows.h), or a hinge's angle (forces/hinge.h)
@@ -32,9 +32,9 @@ class XpbdElements {
  private:
   std::shared_ptr<const ClothTopology> topology_;
   std::shared_ptr<const ClothElements> elements_;
-  MembraneLaw law_;
+  PatchLaw law_;
   std::vector<int> limited_;  // springs that have the limit
-  Colours membranes_, stencils_, hinges_, limits_;
+  Colours patches_, stencils_, hinges_, limits_;
 };
 
 }  // namespace weft::engine

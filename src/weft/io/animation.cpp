@@ -15,7 +15,8 @@ Animation without_frames(const Animation& animation) {
                              .triangles = cloth.triangles,
                              .color = cloth.color,
                              .frames = {},
-                             .fabric_coordinates = cloth.fabric_coordinates});
+                             .fabric_coordinates = cloth.fabric_coordinates,
+                             .shown = cloth.shown});
   for (const AnimatedBody& body : animation.bodies)
     meshes.bodies.push_back({.name = body.name,
                              .mesh = body.mesh,
@@ -65,6 +66,36 @@ void replace_frames(AnimationFrame frame, Animation& animation) {
     body.frames.clear();
   }
   append_frame(std::move(frame), animation);
+}
+
+FramesInMemory::FramesInMemory(const Animation& animation)
+    : animation_(animation), meshes_(without_frames(animation)) {}
+
+int FramesInMemory::num_frames() { return static_cast<int>(count_frames(animation_)); }
+
+AnimationFrame FramesInMemory::read(int frame) {
+  return get_frame(animation_, static_cast<std::size_t>(frame));
+}
+
+Animation read_all(FrameSource& source) {
+  Animation animation = source.meshes();
+  const int count = source.num_frames();
+  for (int k = 0; k < count; ++k) {
+    AnimationFrame frame = source.read(k);
+    for (std::size_t c = 0; c < animation.cloths.size(); ++c)
+      animation.cloths[c].frames.push_back(std::move(frame.cloths[c]));
+    for (std::size_t b = 0; b < animation.bodies.size(); ++b) {
+      animation.bodies[b].poses.push_back(frame.poses[b]);
+      if (!frame.body_vertices[b].empty())
+        animation.bodies[b].frames.push_back(std::move(frame.body_vertices[b]));
+    }
+  }
+  for (AnimatedBody& body : animation.bodies) {
+    const bool is_at_rest = std::all_of(body.poses.begin(), body.poses.end(),
+                                        [&](const auto& pose) { return pose == body.poses[0]; });
+    if (is_at_rest) body.poses.resize(1);
+  }
+  return animation;
 }
 
 }  // namespace weft::engine

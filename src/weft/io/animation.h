@@ -11,13 +11,23 @@
 
 namespace weft::engine {
 
+/// The vertices that files show of a cloth in place of its particles: first those of the user's mesh, in their
+/// order. A vertex that has several texture coordinates is repeated behind them, as glTF has one for each.
+struct ShownVertices {
+  std::vector<int> particles;       // (num_shown) -1: none, the vertex is at rest
+  std::vector<Triangle> triangles;  // (num_triangles) the cloth's, by shown vertices
+  std::vector<float> rest;          // (num_shown x 3) in use without a particle [m]
+  std::vector<float> texture;       // (num_shown x 2) u, v up; empty: none
+};
+
 /// A mesh with a position per vertex and frame.
 struct AnimatedCloth {
   std::string name;
   std::vector<Triangle> triangles;
   std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear red, green, blue in [0, 1]
   std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
-  std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+  std::vector<float> fabric_coordinates;    // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+  std::optional<ShownVertices> shown = {};  // empty: its own
 };
 
 /// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, from mesh to world
@@ -61,6 +71,31 @@ struct AnimationFrame {
   std::vector<std::vector<float>> body_vertices;  // (num_bodies) as in AnimatedBody::frames; empty for a body
                                                   // that does not deform [m]
 };
+
+/// Frames in memory or in a file, read one by one.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  virtual const Animation& meshes() const = 0;  // without frames
+  virtual int num_frames() = 0;                 // >= 1; of an animation that is still written it grows
+  virtual AnimationFrame read(int frame) = 0;   // in [0, num_frames())
+};
+
+/// The frames of an animation, which must outlive this.
+class FramesInMemory final : public FrameSource {
+ public:
+  explicit FramesInMemory(const Animation& animation);
+  const Animation& meshes() const override { return meshes_; }
+  int num_frames() override;
+  AnimationFrame read(int frame) override;
+
+ private:
+  const Animation& animation_;
+  Animation meshes_;
+};
+
+/// All frames together.
+Animation read_all(FrameSource& source);
 
 /// A copy with meshes only.
 Animation without_frames(const Animation& animation);

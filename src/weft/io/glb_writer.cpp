@@ -31,7 +31,8 @@ struct Layout {
 };
 constexpr Layout kPositions{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, true};
 constexpr Layout kNormals{TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER, false};
-constexpr Layout kFabricCoordinates{TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER, false};
+constexpr Layout kTexture{TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER, false};
+constexpr Layout kParticles{TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ARRAY_BUFFER, false};
 constexpr Layout kTimes{TINYGLTF_TYPE_SCALAR, 1, 0, true};
 constexpr Layout kWeights{TINYGLTF_TYPE_SCALAR, 1, 0, false};
 constexpr Layout kTranslations{TINYGLTF_TYPE_VEC3, 3, 0, false};
@@ -54,6 +55,19 @@ void require_count(const std::string& name, const char* what, size_t count, size
   if (count == expected) return;
   throw InputError("mesh '" + name + "' has " + std::to_string(count) + " " + what + "; expected " +
                    std::to_string(expected));
+}
+
+void require_shown(const AnimatedCloth& cloth, size_t num_particles) {
+  const ShownVertices& shown = *cloth.shown;
+  require_triangles(cloth.name, shown.triangles, shown.particles.size());
+  require_count(cloth.name, "coordinates at rest", shown.rest.size(), 3 * shown.particles.size());
+  if (!shown.texture.empty())
+    require_count(cloth.name, "texture coordinates", shown.texture.size(), 2 * shown.particles.size());
+  for (const int particle : shown.particles) {
+    if (particle >= -1 && particle < static_cast<int>(num_particles)) continue;
+    throw InputError("mesh '" + cloth.name + "' shows particle " + std::to_string(particle) + " of " +
+                     std::to_string(num_particles));
+  }
 }
 
 void require_finite(const std::string& name, size_t frame, std::span<const float> numbers) {
@@ -90,6 +104,22 @@ std::vector<float> flatten(const std::vector<Vec3>& positions) {
   result.reserve(3 * positions.size());
   for (const Vec3& x : positions) {
     for (const double coordinate : x) result.push_back(static_cast<float>(coordinate));
+  }
+  return result;
+}
+
+/// Numbers of particles, `width` each, as those of the shown vertices; those without a particle have `otherwise`,
+/// of which there are `width` for each vertex or for all.
+std::vector<float> spread(const std::vector<float>& of_particles, const AnimatedCloth& cloth, size_t width,
+                          const std::vector<float>& otherwise) {
+  if (!cloth.shown) return of_particles;
+  std::vector<float> result;
+  result.reserve(width * cloth.shown->particles.size());
+  for (size_t v = 0; v < cloth.shown->particles.size(); ++v) {
+    const int particle = cloth.shown->particles[v];
+    const float* from = particle >= 0 ? &of_particles[width * static_cast<size_t>(particle)]
+                                      : &otherwise[width * v % otherwise.size()];
+    result.insert(result.end(), from, from + width);
   }
   return result;
 }
@@ -133,9 +163,13 @@ Extras shape_extras(const OrientedBox& b) {
           {"rotation", numbers(std::span<const double>(rows.data(), 9))}};
 }
 
-tinygltf::Value extras_of(const AnimatedCloth&) {
-  return tinygltf::Value(
-      Extras{{"weft", tinygltf::Value(Extras{{"role", tinygltf::Value(std::string("cloth"))}})}});
+bool has_texture(const AnimatedCloth& cloth) { return cloth.shown && !cloth.shown->texture.empty(); }
+
+tinygltf::Value extras_of(const AnimatedCloth& cloth) {
+  Extras weft = {{"role", tinygltf::Value(std::string("cloth"))}};
+  if (!cloth.fabric_coordinates.empty())
+    weft["fabric"] = tinygltf::Value(std::string(has_texture(cloth) ? "TEXCOORD_1" : "TEXCOORD_0"));
+  return tinygltf::Value(Extras{{"weft", tinygltf::Value(std::move(weft))}});
 }
 
 tinygltf::Value extras_of(const AnimatedBody& body) {
@@ -167,7 +201,7 @@ class GlbWriter::Builder {
   void add_frame(const AnimationFrame& frame) {
     for (size_t c = 0; c < meshes_.cloths.size(); ++c) {
       if (num_frames_ == 0) add_cloth(meshes_.cloths[c], frame.cloths[c]);
-      add_vertices(meshes_.cloths[c].name, meshes_.cloths[c].triangles, frame.cloths[c], meshes_in_file_[c]);
+      add_positions(meshes_.cloths[c], frame.cloths[c], meshes_in_file_[c]);
     }
     for (size_t b = 0; b < meshes_.bodies.size(); ++b) {
       const AnimatedBody& body = meshes_.bodies[b];
@@ -176,9 +210,9 @@ class GlbWriter::Builder {
       require_valid(frame.poses[b], body.name, num_frames_);
       poses_[b].push_back(frame.poses[b]);
       if (own.is_moving)
-        add_vertices(body.name, body.mesh.triangles, moved, own);
+        add_positions(body, moved, own);
       else if (num_frames_ == 0)
-        add_vertices(body.name, body.mesh.triangles, flatten(body.mesh.positions), own);
+        add_positions(body, flatten(body.mesh.positions), own);
     }
     if (++num_frames_ == 1) size_of_first_ = bytes_.size();
     if (num_frames_ > max_frames())
@@ -217,7 +251,8 @@ class GlbWriter::Builder {
   /// A mesh of the document, and the base for differences of further frames.
   struct MeshInFile {
     int mesh = -1, node = -1;
-    bool is_moving = false;  // a frame is a morph target
+    bool is_moving = false;      // a frame is a morph target
+    size_t num_coordinates = 0;  // of the particles or vertices in each frame
     std::vector<float> base, normals;
   };
 
@@ -234,14 +269,28 @@ class GlbWriter::Builder {
   }
 
   void add_cloth(const AnimatedCloth& cloth, const std::vector<float>& positions) {
-    require_triangles(cloth.name, cloth.triangles, positions.size() / 3);
-    MeshInFile& own = add_mesh(cloth.name, cloth.triangles, cloth.color, extras_of(cloth));
+    const size_t num_particles = positions.size() / 3;
+    require_triangles(cloth.name, cloth.triangles, num_particles);
+    if (cloth.shown) require_shown(cloth, num_particles);
+    MeshInFile& own = add_mesh(cloth.name, cloth.shown ? cloth.shown->triangles : cloth.triangles,
+                               cloth.color, extras_of(cloth));
     own.is_moving = true;
-    if (cloth.fabric_coordinates.empty()) return;
-    require_count(cloth.name, "fabric coordinates", cloth.fabric_coordinates.size(),
-                  positions.size() / 3 * 2);
-    require_finite(cloth.name, 0, cloth.fabric_coordinates);
-    primitive(own).attributes["TEXCOORD_0"] = add_floats(cloth.fabric_coordinates, kFabricCoordinates);
+    std::vector<std::vector<float>> textures;
+    if (has_texture(cloth)) {
+      textures.push_back(cloth.shown->texture);
+      for (size_t k = 1; k < textures[0].size(); k += 2) textures[0][k] = 1 - textures[0][k];  // glTF: v down
+    }
+    if (!cloth.fabric_coordinates.empty()) {
+      require_count(cloth.name, "fabric coordinates", cloth.fabric_coordinates.size(), num_particles * 2);
+      textures.push_back(spread(cloth.fabric_coordinates, cloth, 2, {0, 0}));
+    }
+    for (size_t k = 0; k < textures.size(); ++k) {
+      require_finite(cloth.name, 0, textures[k]);
+      primitive(own).attributes["TEXCOORD_" + std::to_string(k)] = add_floats(textures[k], kTexture);
+    }
+    if (!cloth.shown) return;
+    const std::vector<float> particles(cloth.shown->particles.begin(), cloth.shown->particles.end());
+    primitive(own).attributes["_PARTICLE"] = add_floats(particles, kParticles);
   }
 
   MeshInFile& add_body(const AnimatedBody& body, bool is_deforming) {
@@ -251,18 +300,34 @@ class GlbWriter::Builder {
     return own;
   }
 
+  /// Checks that every frame has as many coordinates as the first.
+  void require_same(const std::string& name, MeshInFile& own, size_t num_coordinates) const {
+    if (num_frames_ == 0) own.num_coordinates = num_coordinates;
+    require_count(name, "coordinates in a frame", num_coordinates, own.num_coordinates);
+  }
+
+  void add_positions(const AnimatedCloth& cloth, const std::vector<float>& positions, MeshInFile& own) {
+    require_same(cloth.name, own, positions.size());
+    const std::vector<float> normals = compute_vertex_normals(cloth.triangles, positions);
+    add_vertices(cloth.name, spread(positions, cloth, 3, cloth.shown ? cloth.shown->rest : positions),
+                 spread(normals, cloth, 3, {0, 1, 0}), own);
+  }
+
+  void add_positions(const AnimatedBody& body, const std::vector<float>& positions, MeshInFile& own) {
+    require_same(body.name, own, positions.size());
+    add_vertices(body.name, positions, compute_vertex_normals(body.mesh.triangles, positions), own);
+  }
+
   /// The first frame as the vertices, the others as morph targets.
-  void add_vertices(const std::string& name, const std::vector<Triangle>& triangles,
-                    const std::vector<float>& positions, MeshInFile& own) {
+  void add_vertices(const std::string& name, std::vector<float> positions, std::vector<float> normals,
+                    MeshInFile& own) {
     require_finite(name, num_frames_, positions);
-    std::vector<float> normals = compute_vertex_normals(triangles, positions);
     if (num_frames_ == 0) {
       primitive(own).attributes.merge(write_vertices(positions, normals));
-      own.base = positions;
+      own.base = std::move(positions);
       own.normals = std::move(normals);
       return;
     }
-    require_count(name, "coordinates in a frame", positions.size(), own.base.size());
     primitive(own).targets.push_back(
         write_vertices(difference(positions, own.base), difference(normals, own.normals)));
   }

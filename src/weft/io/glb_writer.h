@@ -16,8 +16,12 @@ namespace weft::engine {
 /// Writes an animation frame by frame. Frames are spooled to disk, beside the file: memory grows by some
 /// kilobytes per frame and mesh, independent of the number of vertices.
 ///
-/// Materials are double-sided, fabric coordinates become texture coordinates in metres. Data without a glTF
-/// equivalent is in the nodes' extras, as `"weft": {"role": "cloth"}` or `{"role": "collider", "shape":
+/// Materials are double-sided. A cloth has the texture coordinates of its file, and behind them the fabric
+/// coordinates in metres. The attribute `_PARTICLE` of a cloth with ShownVertices is the particle of each
+/// vertex.
+///
+/// Data without a glTF equivalent is in the nodes' extras. Of cloth that is `"weft": {"role": "cloth", "fabric":
+/// "TEXCOORD_1"}`, with the attribute of its fabric coordinates. Of bodies it is `{"role": "collider", "shape":
 /// "sphere", "center": [0, 0, 0], "radius": 0.3}`. Other shapes are `plane` (point, normal), `capsule` (a, b,
 /// radius), `box` (center, half_size, rotation: nine numbers row by row) and `mesh`. The asset's extras hold
 /// `title` and `passing`.

@@ -45,14 +45,7 @@ std::vector<std::string> read_names(const GltfFile& file, const char* list, cons
   return names;
 }
 
-std::string join(const std::vector<std::string>& names) {
-  constexpr std::size_t kMaxNames = 30;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(kMaxNames, names.size()); ++k)
-    list += (k > 0 ? ", \"" : "\"") + names[k] + '"';
-  return names.size() > kMaxNames ? list + " and " + std::to_string(names.size() - kMaxNames) + " more"
-                                  : list;
-}
+constexpr std::size_t kMaxNames = 30;  // in a message
 
 /// The index of a name. `available`: the names to list in the message.
 int find_named(const GltfFile& file, const char* kind, const std::vector<std::string>& names,
@@ -63,9 +56,10 @@ int find_named(const GltfFile& file, const char* kind, const std::vector<std::st
   if (count > 1)
     file.fail("", std::to_string(count) + " " + kind + "s are named " + quoted + ", expected one");
   const std::string nearest = find_nearest(name, names);
-  file.fail("", std::string("no ") + kind + " is named " + quoted +
-                    (available.empty() ? "; there are none" : "; available: " + join(available)) +
-                    (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+  file.fail(
+      "", std::string("no ") + kind + " is named " + quoted +
+              (available.empty() ? "; there are none" : "; available: " + list_names(available, kMaxNames)) +
+              (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
 }
 
 // ---- Clips ----
@@ -273,7 +267,7 @@ class BodyReader {
       file_.fail("", options_.node.empty()
                          ? "the default scene has no triangles"
                          : "node \"" + options_.node + "\" and those below it have no triangles; " +
-                               "nodes with meshes: " + join(contents.nodes));
+                               "nodes with meshes: " + list_names(contents.nodes, kMaxNames));
     const int clip = find_clip(contents);
     if (clip >= 0) add_clip(contents.clips[clip], clip);
     SkinnedMesh vertices(std::move(desc_));
@@ -613,7 +607,8 @@ MeshFromFile mesh_at_start(const GltfBody& body) {
   for (const Triangle& triangle : body.triangles) {
     if (body.uv.empty()) break;
     CornerUv& corners = result.uv.emplace_back();
-    for (int c = 0; c < 3; ++c) corners[c] = body.uv[triangle[c]];
+    for (int c = 0; c < 3; ++c)
+      corners[c] = {body.uv[triangle[c]].x(), 1 - body.uv[triangle[c]].y()};  // v up
   }
   result.faces = make_faces(result.mesh.triangles, result.uv);
   return result;

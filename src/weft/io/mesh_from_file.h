@@ -31,7 +31,7 @@ struct MeshGroup {
 struct MeshFaces {
   std::vector<int> corners;         // vertices of the first face, then of the second, …
   std::vector<std::size_t> ends;    // (faces) end of each face in `corners`
-  std::vector<Eigen::Vector2d> uv;  // (corners), NaN where the file has none; empty if it has none at all
+  std::vector<Eigen::Vector2d> uv;  // (corners) v up, NaN where the file has none; empty if it has none
   std::vector<MeshGroup> groups;    // in the order of their first faces
 
   std::size_t size() const { return ends.size(); }
@@ -60,7 +60,7 @@ MeshFaces make_faces(const std::vector<Triangle>& triangles, const std::vector<C
 
 struct MeshFromFile {
   TriangleMesh mesh;         // everything in the file together
-  std::vector<CornerUv> uv;  // (num_triangles) of the triangles' corners, NaN where the file has none; empty
+  std::vector<CornerUv> uv;  // (num_triangles) of the corners, v up, NaN where the file has none; empty
                              // if it has none at all
   MeshFaces faces;           // of which the triangles are cut
   std::vector<std::string> warnings;  // ignored contents, one message for each kind, with counts

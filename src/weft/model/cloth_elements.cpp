@@ -39,6 +39,8 @@ ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, con
   elements.stretch_warp = make_stretch_kinks(fabric.stretch_warp, fabric.c11);
   elements.stretch_weft = make_stretch_kinks(fabric.stretch_weft, fabric.c22);
   elements.damping = fabric.damping;
+  elements.patches = make_single_patches(elements.membranes);
+  elements.difference = make_patch_difference(fabric);
   elements.couplings = find_couplings(elements);
   if (bending == BendingModel::hinges) elements.hinges = build_hinges(mesh, warp, fabric);
   return elements;
@@ -79,6 +81,7 @@ std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleM
 std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric, BendingModel bending) {
   ClothElements elements = make_elements(mesh, warp, fabric, bending);
+  elements.patches = pair_triangles(mesh, warp, elements.membranes);
   if (bending == BendingModel::stencils) elements.bending = build_mesh_bending(mesh, warp, fabric);
   return std::make_shared<ClothElements>(std::move(elements));
 }

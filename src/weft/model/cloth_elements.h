@@ -22,6 +22,8 @@ struct ClothElements {
   StrainLimit spring_limit;       // of structural and shear springs that replace membranes
   std::vector<StretchKink> stretch_warp, stretch_weft;  // of every membrane
   std::vector<MembraneElement> membranes;               // one per triangle
+  std::vector<MembranePatch> patches;                   // of membranes: pairs on meshes, single ones on grids
+  PatchDifference difference;                           // of every pair
   BendingRows bending;                                  // curvature stencils; empty with hinges
   std::vector<HingeElement> hinges;                     // flat at rest; empty with stencils
   double damping = 0;                                   // time constant τ of all of them [s]
@@ -30,7 +32,7 @@ struct ClothElements {
   /// (Eq. 11): the positive cotangent weights times (C11 + C22)/2, by ascending i and j.
   std::vector<Coupling> couplings;
 
-  MembraneLaw law() const { return {stiffness, limit, stretch_warp, stretch_weft}; }
+  PatchLaw law() const { return {{stiffness, limit, stretch_warp, stretch_weft}, difference}; }
   bool has_curves() const { return !stretch_warp.empty() || !stretch_weft.empty(); }
 };
 

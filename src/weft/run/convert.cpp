@@ -1,7 +1,6 @@
 /// Public functions: conversion of files.
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -55,24 +54,34 @@ void convert_mesh(const fs::path& in, const fs::path& out, const ConvertOptions&
   done.files.push_back(out.string());
 }
 
+struct FrameSpan {
+  int first = 0, count = 0;
+};
+
+/// The frames to be converted, of `count`.
+FrameSpan choose_frames(const fs::path& in, int count, const ConvertOptions& options) {
+  const int first = options.first_frame, last = options.last_frame.value_or(count - 1);
+  if (first < 0 || last < first || last >= count)
+    throw InputError(in.string() + " has the frames 0 to " + std::to_string(count - 1) + "; it has not " +
+                     std::to_string(first) + " to " + std::to_string(last));
+  return {first, last - first + 1};
+}
+
 /// Frames of a point cache, in the output's coordinates.
 class Frames {
  public:
   Frames(const fs::path& in, const ConvertOptions& options)
-      : in_(in), options_(options), cache_(in.string()), first_(options.first_frame) {
-    const int last = options.last_frame.value_or(cache_.num_frames() - 1);
-    if (first_ < 0 || last < first_ || last >= cache_.num_frames())
-      throw InputError(in.string() + " has the frames 0 to " + std::to_string(cache_.num_frames() - 1) +
-                       "; it has not " + std::to_string(first_) + " to " + std::to_string(last));
-    count_ = last - first_ + 1;
-  }
+      : in_(in),
+        options_(options),
+        cache_(in.string()),
+        span_(choose_frames(in, cache_.num_frames(), options)) {}
 
   int num_points() const { return cache_.num_points(); }
-  int count() const { return count_; }
-  int number(int k) const { return first_ + k; }  // in the cache
+  int count() const { return span_.count; }
+  int number(int k) const { return span_.first + k; }  // in the cache
 
   std::vector<float> at(int k, std::vector<std::string>& notes) {
-    std::vector<float> frame = cache_.frame(first_ + k);
+    std::vector<float> frame = cache_.frame(number(k));
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < frame.size(); i += 3) {
       const Vec3 p = to_world(Vec3(frame[i], frame[i + 1], frame[i + 2]), options_.up_is_z, options_.scale);
@@ -90,7 +99,7 @@ class Frames {
       notes.push_back(in_.string() + " does not say its frames per second: 60 (--fps)");
     const double fps = options_.fps.value_or(fps_of_run.value_or(kUsualFps));
     std::vector<float> times;
-    for (int k = first_; k < first_ + count_; ++k)
+    for (int k = number(0); k < number(count()); ++k)
       times.push_back(own.empty() ? static_cast<float>(k / fps) : own[k]);
     return times;
   }
@@ -99,7 +108,7 @@ class Frames {
   fs::path in_;
   ConvertOptions options_;
   PointCacheFile cache_;
-  int first_, count_ = 0;
+  FrameSpan span_;
 };
 
 void convert_cache(const fs::path& in, const fs::path& out, const ConvertOptions& options,
@@ -152,16 +161,15 @@ void convert_motion(const fs::path& in, const fs::path& out, const ConvertOption
   if (!options.fps)
     done.notes.push_back(in.string() + " has no frames, but keys: 60 frames per second (--fps)");
   const double seconds = body.vertices.end() - body.vertices.start();
-  const int last_key = static_cast<int>(std::min(std::floor(seconds * fps + kRounding), kMaxFrames));
-  const int first = options.first_frame, last = options.last_frame.value_or(last_key);
-  if (first < 0 || last < first || last > last_key)
-    throw InputError(in.string() + " has the frames 0 to " + std::to_string(last_key) + "; it has not " +
-                     std::to_string(first) + " to " + std::to_string(last));
+  const double num_frames = std::floor(seconds * fps + kRounding) + 1;
+  if (num_frames > kMaxFrames)
+    throw InputError(in.string() + " has more than a million frames; --fps makes fewer of them");
+  const auto [first, count] = choose_frames(in, static_cast<int>(num_frames), options);
   std::vector<float> times;
-  for (int k = first; k <= last; ++k) times.push_back(static_cast<float>(k / fps));
+  for (int k = first; k < first + count; ++k) times.push_back(static_cast<float>(k / fps));
   PointCacheWriter writer(out.string(), body.vertices.num_vertices(), times);
   std::vector<Vec3> positions;
-  for (int k = first; k <= last; ++k) {
+  for (int k = first; k < first + count; ++k) {
     body.vertices.evaluate(body.vertices.start() + k / fps, positions);
     std::vector<float> frame;
     Eigen::AlignedBox3d box;

@@ -6,6 +6,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
+#include "weft/run/shown_vertices.h"
 #include "weft/scene/cloth_faces.h"
 
 namespace weft::engine {
@@ -39,8 +40,16 @@ std::vector<float> to_floats(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-void GlbSink::begin(SceneRun& run, RunReport& report) {
+/// With the vertices of the cloths' files.
+void GlbSink::make_meshes(const SceneRun& run) {
   meshes_ = make_animation(run.scene(), run.world());
+  const weft::World& world = run.public_world();
+  for (std::size_t c = 0; c < meshes_.cloths.size(); ++c)
+    meshes_.cloths[c].shown = show_vertices(world, world.cloth(static_cast<int>(c)));
+}
+
+void GlbSink::begin(SceneRun& run, RunReport& report) {
+  make_meshes(run);
   const AnimationFrame start = capture_frame(run.world());
   frames_.emplace(file_, frames_file_, start);
   frames_->append(start);
@@ -57,7 +66,7 @@ void GlbSink::begin(SceneRun& run, RunReport& report) {
 }
 
 void GlbSink::resume(SceneRun& run, RunReport&, Reader&) {
-  meshes_ = make_animation(run.scene(), run.world());
+  make_meshes(run);
   frames_.emplace(file_, frames_file_, capture_frame(run.world()), run.frame() + 1);
 }
 

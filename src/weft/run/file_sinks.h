@@ -34,6 +34,7 @@ class GlbSink : public FrameSink {
   void replace() { glb_->replace(); }
 
  private:
+  void make_meshes(const SceneRun& run);
   std::size_t find_room(const AnimationFrame& frame) const;
 
   std::filesystem::path file_, frames_file_;

@@ -116,6 +116,39 @@ void add_passages(const std::vector<verify::FeaturePair>& passages, const verify
   if (options.passages_offend) sum.is_clean = false;
 }
 
+/// Frames of an animation, whose meshes must outlive this.
+class AnimationFrames {
+ public:
+  explicit AnimationFrames(const Animation& meshes) : meshes_(meshes) {
+    for (const AnimatedBody& body : meshes.bodies)
+      is_closed_.push_back(!body.shape && verify::is_closed(body.mesh.triangles));
+  }
+
+  FrameToCheck at(const AnimationFrame& frame) const {
+    FrameToCheck result;
+    for (std::size_t c = 0; c < meshes_.cloths.size(); ++c) {
+      const AnimatedCloth& cloth = meshes_.cloths[c];
+      add_cloth(cloth.name, cloth.triangles, to_positions(frame.cloths[c]), result);
+    }
+    for (std::size_t b = 0; b < meshes_.bodies.size(); ++b) {
+      const AnimatedBody& body = meshes_.bodies[b];
+      const std::vector<float>& moved = frame.body_vertices[b];
+      const Placement placement{frame.poses[b].rotation.toRotationMatrix(), frame.poses[b].translation};
+      const Solid shape = body.shape
+                              ? std::visit(placement, *body.shape)
+                              : Solid(place_mesh(moved.empty() ? body.mesh.positions : to_positions(moved),
+                                                 body.mesh.triangles, placement, is_closed_[b], result));
+      result.frame.colliders.push_back({body.name, shape, placement.rotation});
+    }
+    result.frame.non_colliding = meshes_.passing;
+    return result;
+  }
+
+ private:
+  const Animation& meshes_;
+  std::vector<char> is_closed_;  // (bodies) meshes with an inside
+};
+
 }  // namespace
 
 WorldFrames::WorldFrames(const World& world) : world_(world) {
@@ -140,45 +173,12 @@ FrameToCheck WorldFrames::at(double time) const {
   return result;
 }
 
-AnimationFrames::AnimationFrames(const Animation& animation) : animation_(animation) {
-  for (const AnimatedBody& body : animation.bodies) {
-    is_closed_.push_back(!body.shape && verify::is_closed(body.mesh.triangles));
-  }
-}
-
-int AnimationFrames::num_frames() const {
-  std::size_t count = 0;
-  for (const AnimatedCloth& cloth : animation_.cloths) count = std::max(count, cloth.frames.size());
-  for (const AnimatedBody& body : animation_.bodies) count = std::max(count, body.poses.size());
-  return static_cast<int>(count);
-}
-
-FrameToCheck AnimationFrames::at(int frame) const {
-  FrameToCheck result;
-  for (const AnimatedCloth& cloth : animation_.cloths) {
-    add_cloth(cloth.name, cloth.triangles, to_positions(cloth.frames[frame]), result);
-  }
-  for (std::size_t k = 0; k < animation_.bodies.size(); ++k) {
-    const AnimatedBody& body = animation_.bodies[k];
-    const auto& [translation, rotation] = body.poses[body.poses.size() > 1 ? frame : 0];
-    const Placement placement{rotation.toRotationMatrix(), translation};
-    const Solid shape =
-        body.shape
-            ? std::visit(placement, *body.shape)
-            : Solid(place_mesh(body.frames.empty() ? body.mesh.positions : to_positions(body.frames[frame]),
-                               body.mesh.triangles, placement, is_closed_[k], result));
-    result.frame.colliders.push_back({body.name, shape, placement.rotation});
-  }
-  result.frame.non_colliding = animation_.passing;
-  return result;
-}
-
-AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options) {
-  const AnimationFrames frames(animation);
+AnimationCheck check_animation(FrameSource& animation, const AnimationCheckOptions& options) {
+  const AnimationFrames frames(animation.meshes());
   AnimationCheck sum;
   std::optional<verify::PassageWatch> watch;
-  for (int k = 0; k < frames.num_frames(); ++k) {
-    const FrameToCheck frame = frames.at(k);
+  for (int k = 0; k < animation.num_frames(); ++k) {
+    const FrameToCheck frame = frames.at(animation.read(k));
     add_frame(frame.frame, k, options, sum);
     if (watch) {
       add_passages(watch->advance(frame.frame), frame.frame, k, options, sum);

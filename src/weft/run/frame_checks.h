@@ -37,19 +37,6 @@ class WorldFrames {
   std::vector<char> is_closed_;  // (colliders) meshes with an inside
 };
 
-/// Frames of an animation, which must outlive this.
-class AnimationFrames {
- public:
-  explicit AnimationFrames(const Animation& animation);
-
-  int num_frames() const;
-  FrameToCheck at(int frame) const;
-
- private:
-  const Animation& animation_;
-  std::vector<char> is_closed_;  // (bodies) meshes with an inside
-};
-
 /// Results of the checker for an animation. Frame 0 is the start.
 ///
 /// Between frames the checker assumes straight paths (verify/passages.h), which real paths are not. A passage
@@ -80,6 +67,6 @@ struct AnimationCheckOptions {
 };
 
 /// Checks every frame.
-AnimationCheck check_animation(const Animation& animation, const AnimationCheckOptions& options = {});
+AnimationCheck check_animation(FrameSource& animation, const AnimationCheckOptions& options = {});
 
 }  // namespace weft::engine

@@ -24,7 +24,8 @@ struct PastRun {
   std::filesystem::path frames;     // of an unfinished run's animation, in a log (frame_log.h); empty: none
 };
 
-/// The results that the folder's run.json lists; without that file, those of its unfinished run so far. Throws InputError if there are none.
+/// The results that the folder's run.json lists; without that file, those of its unfinished run so far. Throws
+/// InputError if there are none.
 PastRun read_past_run(const std::filesystem::path& folder);
 
 /// Throws InputError for a cloth without a point cache, and for a damaged one.

@@ -8,6 +8,7 @@
 #include "weft/io/glb_reader.h"
 #include "weft/run/checkpoint.h"
 #include "weft/run/film.h"
+#include "weft/run/frame_log.h"
 #include "weft/run/run_folder.h"
 #include "weft/run/scene_run.h"
 
@@ -15,40 +16,45 @@ namespace weft::engine {
 
 namespace fs = std::filesystem;
 
-Playback::Playback(const fs::path& path) {
-  if (!fs::is_directory(path)) {
-    open(path);
-    return;
-  }
-  const PastRun run = read_past_run(path);
-  if (!run.frames.empty())
-    open_unfinished(run);
-  else if (!run.animation.empty())
-    open(run.animation);
-  else
-    throw InputError(path.string() + " has no frames to show: it was run with --no-glb");
+namespace {
+
+std::unique_ptr<FrameSource> open_glb(const fs::path& glb) {
+  auto frames = std::make_unique<GlbFrames>(glb);
+  if (frames->meshes().cloths.empty()) throw InputError(glb.string() + ": has no cloth to show");
+  return frames;
 }
 
-void Playback::open(const fs::path& glb) {
-  frames_ = read_glb(glb);
-  if (frames_.cloths.empty()) throw InputError(glb.string() + ": has no cloth to show");
-  meshes_ = without_frames(frames_);
-  replace_frames(get_frame(frames_, 0), meshes_);
-}
+/// The frames of an unfinished run so far.
+class FramesSoFar final : public FrameSource {
+ public:
+  FramesSoFar(Animation meshes, const fs::path& log, AnimationFrame like)
+      : meshes_(std::move(meshes)), log_(log, std::move(like)) {}
 
-void Playback::open_unfinished(const PastRun& run) {
+  const Animation& meshes() const override { return meshes_; }
+  int num_frames() override { return log_.num_frames(); }
+  AnimationFrame read(int frame) override { return log_.read(frame); }
+
+ private:
+  Animation meshes_;
+  FrameLogReader log_;
+};
+
+std::unique_ptr<FrameSource> open_unfinished(const PastRun& run) {
   const SceneDesc scene = read_unfinished_run(run.folder).scene;
   const Checkpoint checkpoint = read_checkpoint(run.folder / kUnfinishedName / kCheckpointName);
   const weft::World world = load_world(checkpoint.run);
-  meshes_ = make_animation(scene, WorldAccess::engine(world));
-  log_.emplace(run.frames, capture_frame(WorldAccess::engine(world)));
-  replace_frames(read(0), meshes_);
+  return std::make_unique<FramesSoFar>(make_animation(scene, WorldAccess::engine(world)), run.frames,
+                                       capture_frame(WorldAccess::engine(world)));
 }
 
-int Playback::num_frames() { return log_ ? log_->num_frames() : static_cast<int>(count_frames(frames_)); }
+}  // namespace
 
-AnimationFrame Playback::read(int frame) {
-  return log_ ? log_->read(frame) : get_frame(frames_, static_cast<std::size_t>(frame));
+std::unique_ptr<FrameSource> open_frames(const fs::path& path) {
+  if (!fs::is_directory(path)) return open_glb(path);
+  const PastRun run = read_past_run(path);
+  if (!run.frames.empty()) return open_unfinished(run);
+  if (!run.animation.empty()) return open_glb(run.animation);
+  throw InputError(path.string() + " has no frames to show: it was run with --no-glb");
 }
 
 void PlayHead::advance(double seconds, int num_frames) {

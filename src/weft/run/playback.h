@@ -2,32 +2,16 @@
 /// Frames of a run that are shown again, in their time.
 
 #include <filesystem>
-#include <optional>
+#include <memory>
 
 #include "weft/io/animation.h"
-#include "weft/run/frame_log.h"
 #include "weft/run/past_run.h"
 
 namespace weft::engine {
 
-/// The frames of a run, from its animation; of an unfinished run those so far, which stay on disk.
-class Playback {
- public:
-  /// `path`: the folder of a run, or a .glb file of one. Throws InputError if it has no animation.
-  explicit Playback(const std::filesystem::path& path);
-
-  const Animation& meshes() const { return meshes_; }  // with one frame: the start
-  int num_frames();                                    // with the start; of an unfinished run it grows
-  AnimationFrame read(int frame);                      // in [0, num_frames())
-
- private:
-  void open(const std::filesystem::path& glb);
-  void open_unfinished(const PastRun& run);
-
-  Animation meshes_;
-  Animation frames_;                   // of a .glb
-  std::optional<FrameLogReader> log_;  // of an unfinished run
-};
+/// The frames of a run, from its animation; of an unfinished run those so far. They stay on disk. `path`: the
+/// folder of a run, or a .glb file of one. Throws InputError if it has no animation, or that has no cloth.
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path);
 
 /// The frame that is shown.
 struct PlayHead {

@@ -44,7 +44,7 @@ std::vector<std::string> find_cloth_files(const fs::path& folder) {
   if (!run.is_object() || !run.contains("cloths")) return names;
   for (const Json& cloth : run["cloths"]) {
     if (!cloth.is_object()) continue;
-    for (const auto& [key, ending] : {std::pair("positions", ".pc2"), std::pair("mesh", ".mesh.obj")}) {
+    for (const auto& [key, ending] : {std::pair("positions", kCacheEnding), std::pair("mesh", kMeshEnding)}) {
       if (!cloth.contains(key) || !cloth[key].is_string()) continue;
       const fs::path name = cloth[key].get<std::string>();
       if (name == name.filename() && name.string().ends_with(ending)) names.push_back(name.string());

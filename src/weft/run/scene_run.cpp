@@ -17,6 +17,21 @@ namespace weft::engine {
 namespace {
 
 constexpr const char* kSaved = "a saved run";
+
+/// What SceneRun::save() returns, before the parts of the sinks.
+struct SavedRun {
+  RunReport report;
+  double spent = 0;  // [s]
+  std::vector<double> frame_ms;
+  double cpu_seconds = 0;
+  std::vector<std::byte> world;
+};
+
+template <class Archive>
+void describe(Archive& archive, SavedRun& run) {
+  members(archive, run.report, run.spent, run.frame_ms, run.cpu_seconds, run.world);
+}
+
 constexpr std::size_t kMaxInfeasible = 100;  // listed in a report
 
 RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const World& world) {
@@ -52,11 +67,13 @@ SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector
                    int num_frames, std::span<const std::byte> saved)
     : scene_(std::move(scene)), num_frames_(num_frames), sinks_(std::move(sinks)) {
   Reader in(saved, kSaved);
-  std::vector<std::byte> world_bytes;
-  double cpu_seconds = 0;
-  members(in, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
-  stopwatch_ = Stopwatch(cpu_seconds);
-  built_.world = weft::World::load(world_bytes);
+  SavedRun run;
+  describe(in, run);
+  report_ = std::move(run.report);
+  spent_ = run.spent;
+  frame_ms_ = std::move(run.frame_ms);
+  stopwatch_ = Stopwatch(run.cpu_seconds);
+  built_.world = weft::World::load(run.world);
   world().set_jobs(jobs);
   report_.threads = jobs->num_threads();
   for (FrameSink* sink : sinks_) sink->resume(*this, report_, in);
@@ -66,9 +83,8 @@ SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector
 std::vector<std::byte> SceneRun::save() {
   for (FrameSink* sink : sinks_) sink->sync();
   Writer out;
-  std::vector<std::byte> world_bytes = built_.world.save();
-  double cpu_seconds = stopwatch_.cpu_total();
-  members(out, report_, spent_, frame_ms_, cpu_seconds, world_bytes);
+  SavedRun run{report_, spent_, frame_ms_, stopwatch_.cpu_total(), built_.world.save()};
+  describe(out, run);
   for (FrameSink* sink : sinks_) sink->save(out);
   return std::move(out.bytes);
 }
@@ -163,12 +179,9 @@ const RunReport& SceneRun::finish() {
 
 weft::World load_world(std::span<const std::byte> saved) {
   Reader in(saved, kSaved);
-  RunReport report;
-  double spent = 0, cpu_seconds = 0;
-  std::vector<double> frame_ms;
-  std::vector<std::byte> world_bytes;
-  members(in, report, spent, frame_ms, cpu_seconds, world_bytes);
-  return weft::World::load(world_bytes);
+  SavedRun run;
+  describe(in, run);
+  return weft::World::load(run.world);
 }
 
 const RunReport& play(SceneRun& run, const RunOptions& options, const OnFrame& on_frame) {

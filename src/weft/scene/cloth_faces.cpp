@@ -11,6 +11,8 @@
 namespace weft::engine {
 namespace {
 
+constexpr std::size_t kMaxNames = 12;  // in a message
+
 std::string owner_of(const ClothSceneDesc& desc) { return "cloth \"" + desc.name + '"'; }
 
 MeshFaces make_grid_faces(const Grid& grid) {
@@ -21,16 +23,6 @@ MeshFaces make_grid_faces(const Grid& grid) {
           std::array{grid.index(i, j), grid.index(i, j + 1), grid.index(i + 1, j + 1), grid.index(i + 1, j)});
   }
   return cells;
-}
-
-/// `"front", "back" and 7 more`
-std::string list_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k)
-    list += (k > 0 ? ", \"" : "\"") + names[k] + '"';
-  if (names.size() > kMost) list += " and " + std::to_string(names.size() - kMost) + " more";
-  return list;
 }
 
 [[noreturn]] void fail_group(const ClothSceneDesc& desc, const std::string& name,
@@ -45,7 +37,7 @@ std::string list_names(const std::vector<std::string>& names) {
   if (names.empty()) throw InputError(message + "; the file names no groups (lines g or o of an OBJ file)");
   const std::string nearest = find_nearest(name, names);
   throw InputError(message + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
-                   (nearest.empty() ? "; there are " : " There are ") + list_names(names));
+                   (nearest.empty() ? "; there are " : " There are ") + list_names(names, kMaxNames));
 }
 
 }  // namespace

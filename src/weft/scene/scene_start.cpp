@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "weft/core/nearest_name.h"
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
 
 namespace weft::engine {
 namespace {
-
-std::string list_names(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "\"" : ", \"") + name + '"';
-  return list;
-}
 
 void set_start(const ClothStart& start, const std::string& source, ClothId cloth, weft::World& world) {
   const ClothNotes& notes = world.notes(cloth);
@@ -51,8 +46,9 @@ void set_start(const SceneStart& start, PublicScene& built) {
   for (const std::string& name : own)
     built.notes.push_back("cloth \"" + name + "\" starts as the scene says: it is not in " + start.source);
   if (own.size() == names.size())
-    throw InputError("no cloth starts from " + start.source + ": the scene has " + list_names(names) +
-                     ", the run has " + list_names(old_names) + "; cloths are matched by name");
+    throw InputError("no cloth starts from " + start.source + ": the scene has " +
+                     list_names(names, names.size()) + ", the run has " +
+                     list_names(old_names, old_names.size()) + "; cloths are matched by name");
 }
 
 }  // namespace weft::engine

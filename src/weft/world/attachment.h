@@ -47,6 +47,7 @@ class Attachments {
     model_ = nullptr;
   }
   void set_target(int attachment, const Vec3& target) { attachments_[attachment].target = target; }
+  void set_anchor(int attachment, const SurfaceAnchor& anchor) { attachments_[attachment].anchor = anchor; }
   int size() const { return static_cast<int>(attachments_.size()); }
   bool are_empty() const { return attachments_.empty(); }
   const std::vector<Attachment>& attachments() const { return attachments_; }

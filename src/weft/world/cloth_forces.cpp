@@ -6,7 +6,7 @@
 #include "weft/forces/collapse.h"
 #include "weft/forces/damping.h"
 #include "weft/forces/hinge.h"
-#include "weft/forces/membrane.h"
+#include "weft/forces/membrane_patch.h"
 #include "weft/forces/spring.h"
 
 namespace weft::engine {
@@ -31,24 +31,36 @@ void scatter(const std::array<int, N>& vertices, const std::array<Vec3, N>& own,
   for (std::size_t k = 0; k < N; ++k) force[vertices[k]] += own[k];
 }
 
+void add_patch_forces(const MembranePatch& patch, const PatchCorners& own, std::vector<Vec3>& force) {
+  for (int k = 0; k < patch.num_vertices(); ++k) force[patch.vertices[k]] += own[k];
+}
+
 void add_elastic_forces(const ClothElements& elements, const std::vector<Vec3>& x, std::vector<Vec3>& force) {
   add_bending_force(elements.bending, x, force);
-  const MembraneLaw law = elements.law();
-  for (const auto& [vertices, rest] : elements.membranes)
-    scatter(vertices, membrane_force(rest, law, gather(vertices, x)), force);
+  const PatchLaw law = elements.law();
+  for (const MembranePatch& patch : elements.patches)
+    add_patch_forces(patch, patch_force(patch, law, corners_of(patch, x)), force);
   for (const HingeElement& h : elements.hinges)
     scatter(h.vertices, hinge_force(h.stiffness, 0, gather(h.vertices, x)), force);
 }
 
-/// −τ A Bᵀ C B v, B the derivative of Green strain.
+/// −τ A Bᵀ C B v, B the derivative of the mean strain, and the same of the difference.
 void add_membrane_damping(const ClothElements& elements, const std::vector<Vec3>& x,
                           const std::vector<Vec3>& v, std::vector<Vec3>& force) {
-  for (const auto& [vertices, rest] : elements.membranes) {
-    const std::array<Mat3, 3> derivative = membrane_strain_derivative(rest, gather(vertices, x));
-    Vec3 rate = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) rate += derivative[k] * v[vertices[k]];
-    const Vec3 stress = elements.damping * rest.area * (elements.stiffness * rate);
-    for (int k = 0; k < 3; ++k) force[vertices[k]] -= derivative[k].transpose() * stress;
+  for (const MembranePatch& patch : elements.patches) {
+    const PatchDerivative derivative = patch_strain_derivative(patch, corners_of(patch, x));
+    const PatchCorners velocity = corners_of(patch, v);
+    Vec3 mean = Vec3::Zero(), difference = Vec3::Zero();
+    for (int k = 0; k < patch.num_vertices(); ++k) {
+      mean += derivative.mean[k] * velocity[k];
+      difference += derivative.difference[k] * velocity[k];
+    }
+    const Vec3 stress = elements.damping * patch.area() * (elements.stiffness * mean);
+    const Vec3 other = elements.damping * difference_area(patch) * elements.difference.stiffness * difference;
+    PatchCorners pull;
+    for (int k = 0; k < 4; ++k)
+      pull[k] = -(derivative.mean[k].transpose() * stress + derivative.difference[k].transpose() * other);
+    add_patch_forces(patch, pull, force);
   }
 }
 

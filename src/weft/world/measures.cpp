@@ -8,7 +8,7 @@
 #include "weft/forces/collapse.h"
 #include "weft/forces/gravity.h"
 #include "weft/forces/hinge.h"
-#include "weft/forces/membrane.h"
+#include "weft/forces/membrane_patch.h"
 #include "weft/forces/spring.h"
 
 namespace weft::engine {
@@ -30,9 +30,9 @@ void visit_energies(const ClothElements& elements, const ClothState& state, cons
   std::vector<Vec3> x;
   for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.x.get(i));
   add(ElasticKind::bending, bending_energy(elements.bending, x));
-  const MembraneLaw law = elements.law();
-  for (const auto& [v, rest] : elements.membranes)
-    add(ElasticKind::stretch, membrane_energy(rest, law, {x[v[0]], x[v[1]], x[v[2]]}));
+  const PatchLaw law = elements.law();
+  for (const MembranePatch& patch : elements.patches)
+    add(ElasticKind::stretch, patch_energy(patch, law, corners_of(patch, x)));
   for (const HingeElement& h : elements.hinges) {
     const auto& v = h.vertices;
     add(ElasticKind::bending, hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]}));

@@ -308,6 +308,12 @@ World World::clone() const {
 
 void World::set_pins(ClothId id, std::vector<Pin> pins) {
   Cloth& cloth = at(id);
+  place_pins(cloth, std::move(pins));
+  bind_pins(cloth);
+}
+
+/// Those that follow a collider are not bound yet.
+void World::place_pins(Cloth& cloth, std::vector<Pin> pins) {
   std::vector<char> is_pinned(cloth.state.x.size(), 0);
   std::vector<PinnedParticle> pinned;
   for (int p = 0; p < static_cast<int>(pins.size()); ++p) {
@@ -320,7 +326,9 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
       is_pinned[i] = 1;
       pinned.push_back({i, p, cloth.state.position(i), static_cast<int>(pinned.size()), {}});
     }
-    bind_pin(cloth, pins[p], pinned);
+    require(
+        pins[p].follow < 0 || (pins[p].follow < num_colliders() && pins[p].motion.is_still()),
+        "cloth \"" + cloth.name + "\": a pin follows a collider of the world, without a motion of its own");
   }
   std::sort(pinned.begin(), pinned.end(),
             [](const auto& a, const auto& b) { return a.particle < b.particle; });
@@ -330,17 +338,15 @@ void World::set_pins(ClothId id, std::vector<Pin> pins) {
   cloth.pin_guide = {};
 }
 
-/// Binds the particles of a pin that follows a collider; they are the last ones of `pinned`.
-void World::bind_pin(const Cloth& cloth, const Pin& pin, std::vector<PinnedParticle>& pinned) const {
-  if (pin.follow < 0) return;
-  require(pin.follow < num_colliders() && pin.motion.is_still(),
-          "cloth \"" + cloth.name + "\": a pin follows a collider of the world, without a motion of its own");
-  const auto first = pinned.end() - static_cast<std::ptrdiff_t>(pin.particles.size());
-  std::vector<Vec3> points;
-  for (auto p = first; p != pinned.end(); ++p) points.push_back(p->anchor);
-  const std::vector<SurfaceAnchor> anchors = bind(pin.follow, points);
-  for (std::size_t k = 0; k < anchors.size(); ++k)
-    first[static_cast<std::ptrdiff_t>(k)].on_surface = anchors[k];
+/// Binds the particles of pins that follow a collider to it, where their anchors are.
+void World::bind_pins(Cloth& cloth) const {
+  for (std::size_t k = 0; k < cloth.pins.size(); ++k) {
+    if (cloth.pins[k].follow < 0) continue;
+    const PlacedCollider body = place(colliders_[cloth.pins[k].follow], time_);
+    for (PinnedParticle& p : cloth.pinned) {
+      if (p.pin == static_cast<int>(k)) p.on_surface = bind_point(body, p.anchor);
+    }
+  }
 }
 
 std::vector<SurfaceAnchor> World::bind(int collider, const std::vector<Vec3>& points) const {
@@ -373,6 +379,8 @@ void World::set_attachment_target(ClothId id, int attachment, const Vec3& target
     throw InputError("cloth \"" + cloth.name + "\" has no grab " + std::to_string(attachment));
   if (!target.allFinite()) throw InputError("a grab's target must be finite");
   cloth.attachments.set_target(attachment, target);
+  const int follow = cloth.attachments.attachments()[attachment].follow;
+  if (follow >= 0) cloth.attachments.set_anchor(attachment, bind(follow, {target})[0]);
   cloth.attachment_guide = {};
 }
 
@@ -428,10 +436,10 @@ void World::set_positions(ClothId id, const std::vector<Vec3>& positions) {
   for (PinnedParticle& p : cloth.pinned) {
     const Pin& pin = cloth.pins[p.pin];
     p.anchor = apply_inverse(pin.motion.at(time_), pin.pivot, positions[p.particle]);
-    if (pin.follow >= 0) p.on_surface = bind(pin.follow, {p.anchor})[0];
     if (!cloth.pin_guide.is_empty())
       cloth.pin_guide.from[p.order] = cloth.pin_guide.to[p.order] = positions[p.particle];
   }
+  bind_pins(cloth);
 }
 
 void World::set_velocities(ClothId id, const std::vector<Vec3>& velocities) {
@@ -930,7 +938,7 @@ World::Held World::held(ClothId id) const {
 
 void World::hold(ClothId id, Held held) {
   Cloth& cloth = at(id);
-  set_pins(id, std::move(held.pins));
+  place_pins(cloth, std::move(held.pins));
   for (PinnedParticle& p : cloth.pinned) {
     p.anchor = held.anchors[p.order];
     p.on_surface = held.on_surface[p.order];

@@ -307,7 +307,8 @@ class World {
   void set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
                        double static_friction);
   void save(Snapshot& snapshot) const;
-  void bind_pin(const Cloth& cloth, const Pin& pin, std::vector<PinnedParticle>& pinned) const;
+  void place_pins(Cloth& cloth, std::vector<Pin> pins);
+  void bind_pins(Cloth& cloth) const;
   static void release_followers(int collider, Cloth& cloth);
   bool is_attached(const InfeasiblePair& pair) const;
   void place_followed(double time);
