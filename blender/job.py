@@ -21,6 +21,7 @@ from .gather import Gather, folder_of
 from .refused import Refused
 
 _GATHER_SECONDS = 0.1  # of a poll
+_PATIENCE = 0.5  # with an engine that has not begun [s]
 
 current: "Job | None" = None  # the one of the panel
 
@@ -50,7 +51,7 @@ class Job:
         self.frames, self.seconds_left, self.outcome, self.words = 0, None, "", list[str]()
         self.report: dict[str, Any] = {}
         self.gathering_seconds = 0.0
-        self._is_cancelled = False
+        self._cancelled_at: float | None = None
         self._scene, self._layer = scene.name, layer.name
         began = time.perf_counter()
         self._gather = Gather(scene, layer)
@@ -128,6 +129,9 @@ class Job:
         self._read_lines()
         if ended:
             self._finish()
+        elif self._cancelled_at is not None:
+            if self.frames == 0 and time.perf_counter() - self._cancelled_at > _PATIENCE:
+                self._process.kill()  # cloth is put on, which takes seconds; nothing is lost
         elif self._process.stdin and not self._process.stdin.closed:
             self._gather_some()
         return self.is_running
@@ -176,7 +180,7 @@ class Job:
     def cancel(self) -> None:
         """Asks the engine to end; poll() until it has. The frames that are there stay, and Resume goes on."""
         if self.is_running:
-            self._is_cancelled = True
+            self._cancelled_at = time.perf_counter()
             self._process.terminate()
 
     def _finish(self) -> None:
@@ -189,7 +193,7 @@ class Job:
             self.outcome = "failed" if self.words else self.report["outcome"]
             self.words += self.report["words"]
             self.frames = self.report.get("frames", self.frames)
-        elif self._is_cancelled:  # before it had begun
+        elif self._cancelled_at is not None:  # before it had begun
             self.outcome = "failed" if self.words else "cancelled"
             self.words.append("Cancelled: no frame is baked.")
         else:

@@ -253,6 +253,14 @@ def test_frames_are_seen_as_they_come_and_a_cancelled_bake_is_resumed(blend: Pat
     assert cache_of(cloth).read_bytes() == unbroken
 
 
+def test_a_bake_that_is_cancelled_at_once_ends() -> None:
+    add_cloth()
+    cancelled = begin()
+    cancelled.cancel()
+    finish(cancelled)
+    assert cancelled.outcome == "cancelled" and cancelled.words[0].startswith("Cancelled: "), cancelled.words
+
+
 def test_an_engine_that_is_killed_is_told_and_resumed() -> None:
     bpy.context.scene.frame_end = 40
     cloth = add_cloth(cells=12)
