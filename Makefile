@@ -2,7 +2,7 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help program lab build python wheel wheel-all demo test scenes pictures videos study docs cluster asan tsan fuzz format clean
+.PHONY: help program lab build python wheel wheel-all blender demo test scenes pictures videos study docs cluster asan tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
@@ -11,6 +11,7 @@ help:
 	@echo "make python  build the Python package: PYTHONPATH=build/release/python; for \$$WEFT_PYTHON, else python3"
 	@echo "make wheel   dist/weft-*.whl and the source distribution, tried in an environment of their own"
 	@echo "make wheel-all  a wheel for each of Python 3.10 to 3.13 that is there"
+	@echo "make blender  the Blender extension from dist/ (after make wheel), and its tests in the newest Blender of PyPI"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
@@ -36,6 +37,10 @@ wheel: python
 
 wheel-all: python
 	@tools/make_wheel.sh build/venv/bin/python $(foreach version,3.10 3.11 3.12 3.13,python$(version))
+
+blender:
+	@tools/install_deps.sh --blender
+	@tools/make_blender.sh
 
 demo: program
 	@build/release/bin/weft demo
