@@ -14,10 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
-  return read_scene(fs::path(WEFT_SOURCE_DIR) / "scenes" / (name + ".toml"), overrides);
-}
-
 /// Another valid value.
 struct Turn {
   const Parameter& parameter;
@@ -31,11 +27,27 @@ struct Turn {
   void operator()(NewtonQuality* v) const { *v = NewtonQuality::high; }
 };
 
+/// Files by one name each.
+SceneDesc canonical(SceneDesc scene) {
+  for (ClothSceneDesc& cloth : scene.cloths) {
+    if (MeshSource* mesh = std::get_if<MeshSource>(&cloth.shape)) mesh->file = fs::canonical(mesh->file);
+  }
+  for (ColliderSceneDesc& collider : scene.colliders) {
+    if (PlacedMesh* mesh = std::get_if<PlacedMesh>(&collider.shape))
+      mesh->source.file = fs::canonical(mesh->source.file);
+  }
+  return scene;
+}
+
+SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
+  return canonical(read_scene(fs::path(WEFT_SOURCE_DIR) / "scenes" / (name + ".toml"), overrides));
+}
+
 SceneDesc reread(const SceneDesc& scene) {
   const fs::path folder = fs::path(WEFT_OUTPUT_DIR) / "tunables";
   fs::create_directories(folder);
   write_scene(folder / "tuned.toml", scene);
-  SceneDesc back = read_scene(folder / "tuned.toml");
+  SceneDesc back = canonical(read_scene(folder / "tuned.toml"));
   back.name = scene.name;
   return back;
 }
