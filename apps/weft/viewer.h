@@ -56,7 +56,7 @@ class Viewer {
   bool is_asking() const { return static_cast<bool>(after_question_); }
   void answer(Answer answer);
 
-  void seek_step(std::int64_t step);  // of a simulation, among those that it remembers
+  void seek_step(std::int64_t step);  // of a simulation, of the last ten seconds
   void set_speed(double speed);       // of play, as a share of real time [1]
   double speed() const { return speed_; }
   void toggle_numbers() { shows_numbers_ = !shows_numbers_; }

@@ -465,11 +465,14 @@ TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosenOrTyped) {
     }
     return false;
   });
-  click("path");
+  move_to(state(), "path");  // from here to the end of the field J is a letter
+  xdotool("click 1");
+  pause_for(300);
   xdotool("type broken.toml");
   xdotool("key Return");
+  pause_for(300);
   move(1200, 40);
-  xdotool("click 1");  // out of the field, where J is a letter
+  xdotool("click 1");
   const Json refused = until("its mistakes are said", [](const Json& j) { return j["message"] != ""; });
   EXPECT_EQ(refused["gallery"], true);
   EXPECT_NE(refused["message"].get<std::string>().find("broken.toml"), std::string::npos);

@@ -295,7 +295,7 @@ void LiveSimulation::show_past(std::int64_t steps) {
   status_.failure.clear();
 }
 
-/// What was shown of the past becomes the present, with all changes and without a grab.
+/// The state shown from the past becomes the present, with all changes and without a grab.
 void LiveSimulation::leave_past() {
   if (status_.steps == last_step_) return;
   history_.forget_after(status_.steps);

@@ -32,13 +32,13 @@ class LiveHistory {
   /// Whether a moment is wanted after so many steps.
   bool wants(std::int64_t steps) const;
 
-  /// Forgets what is older than the span, or does not fit the memory.
+  /// Drops moments older than the span, and those beyond the memory.
   void add(LiveMoment moment, std::size_t num_particles);
 
   /// A change by the user before the next step; it is repeated with it.
   void add_change(std::int64_t steps, std::function<void()> change);
 
-  /// What lies after so many steps has not happened: other steps follow.
+  /// Drops all after so many steps: other steps follow.
   void forget_after(std::int64_t steps);
   void clear();
 

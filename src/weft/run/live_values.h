@@ -1,5 +1,5 @@
 #pragma once
-/// What goes in and out of a live simulation.
+/// Inputs and results of a live simulation.
 
 #include <cstdint>
 #include <memory>

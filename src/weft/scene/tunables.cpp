@@ -31,7 +31,7 @@ class Lister {
  private:
   void begin(std::string title, int cloth = -1) { groups_.push_back({std::move(title), cloth, {}}); }
 
-  /// `path`: with indices, which the keys of parameters lack.
+  /// `path`: with indices, unlike the keys of parameters.
   template <class Value>
   void add(const std::string& path, const std::string& name, Value* value, const std::string& form = "") {
     std::string key;

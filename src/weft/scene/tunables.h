@@ -10,7 +10,7 @@
 
 namespace weft::engine {
 
-/// A number of a scene, and its place there.
+/// A number of a scene.
 struct Tunable {
   std::string key;                       // as overrides name it: "cloth[0].fabric.c11"
   const Parameter* parameter = nullptr;  // unit, range, default and meaning
