@@ -50,9 +50,11 @@ Disc make_disc(const SpecimenSettings& settings) {
   return disc;
 }
 
-World make_world(const Fabric& fabric, const Disc& disc, std::uint64_t seed, int threads) {
+World make_world(const Fabric& fabric, const Disc& disc, double warp_deg, std::uint64_t seed, int threads) {
   const TriangleMesh& mesh = disc.mesh;
   const auto topology = build_mesh_topology(mesh);
+  const double angle = warp_deg * kPi / 180;
+  const Vec3 warp(std::cos(angle), 0, std::sin(angle));
   World world;
   world.set_jobs(make_jobs(threads));
   world.set_wind({Vec3::Zero(), kAirRate * fabric.density});
@@ -67,16 +69,16 @@ World make_world(const Fabric& fabric, const Disc& disc, std::uint64_t seed, int
       positions[i].y() += crease;
     }
   }
-  const ClothId cloth = world.add_cloth(
-      {.topology = topology,
-       .material = {.density = fabric.density,
-                    .structural = 0,
-                    .shear = 0,
-                    .bend = 0,
-                    .thickness = fabric.thickness,
-                    .friction = fabric.friction},
-       .elements = build_mesh_elements(mesh, warp_from_direction(mesh, Vec3::UnitX()), fabric),
-       .positions = positions});
+  const ClothId cloth =
+      world.add_cloth({.topology = topology,
+                       .material = {.density = fabric.density,
+                                    .structural = 0,
+                                    .shear = 0,
+                                    .bend = 0,
+                                    .thickness = fabric.thickness,
+                                    .friction = fabric.friction},
+                       .elements = build_mesh_elements(mesh, warp_from_direction(mesh, warp), fabric),
+                       .positions = positions});
   world.set_pins(cloth, {plates});
   return world;
 }
@@ -160,7 +162,7 @@ Animation show_specimen(const ClothModel& model, const ClothState& state) {
 Drape simulate_drape(const Fabric& fabric, const SpecimenSettings& settings, std::uint64_t seed,
                      int threads) {
   const Disc disc = make_disc(settings);
-  World world = make_world(fabric, disc, seed, threads);
+  World world = make_world(fabric, disc, settings.warp_deg, seed, threads);
   Drape drape;
   drape.is_at_rest = settle(world);
   const ClothModel& model = world.model(world.cloth(0));

@@ -199,6 +199,61 @@ Findings fabric_drape(const SectionOptions& options) {
   return result;
 }
 
+Findings fabric_locking(const SectionOptions& options) {
+  const auto percent = [&](double stiffness, SpecimenSettings settings) {
+    const Fabric fabric = {.density = 0.15,
+                           .c11 = stiffness,
+                           .c22 = stiffness,
+                           .c12 = 0,
+                           .g = 40,
+                           .bend_warp = 1e-6,
+                           .bend_weft = 1e-6,
+                           .bend_bias = 1e-6,
+                           .damping = 0,
+                           .strain_limit = 0};
+    const int num_seeds = options.quick ? 1 : 3;
+    options.report_progress(digits(stiffness, 5) + " N/m, " + std::to_string(settings.resolution) + " rings");
+    double sum = 0;
+    for (int seed = 1; seed <= num_seeds; ++seed)
+      sum += 100 *
+             simulate_drape(fabric, settings, static_cast<std::uint64_t>(seed), options.threads).coefficient;
+    return sum / num_seeds;
+  };
+  constexpr double kUsual = 2000;  // c11 = c22 [N/m]
+  const int fine = options.quick ? 15 : 30;
+  Findings result;
+  Table table{{"rings", "mesh", "c11 = c22 [N/m]", "warp [degrees]", "drape coefficient [%]"},
+              {},
+              "A fabric of 0.15 kg/m², g = 40 N/m, bending 1e-6 N·m"};
+  const auto measure = [&](double stiffness, const SpecimenSettings& settings) {
+    const double drape = percent(stiffness, settings);
+    table.rows.push_back({std::to_string(settings.resolution), name_of(settings.mesh), digits(stiffness, 5),
+                          digits(settings.warp_deg, 2), digits(drape, 3)});
+    return drape;
+  };
+  const double usual = measure(kUsual, {.resolution = fine});
+  if (!options.quick) {
+    const double finest = measure(kUsual, {.resolution = 45});
+    for (const auto& [rings, tolerated] : {std::pair(15, 10.0), std::pair(24, 6.0)})
+      result.metrics.push_back(expect("drape_" + std::to_string(rings) + "_rings_minus_45",
+                                      measure(kUsual, {.resolution = rings}) - finest, "%", 0, tolerated));
+    result.metrics.push_back(expect("drape_30_rings_minus_45", usual - finest, "%", 0, 3));
+  }
+  std::vector<double> of_stiffness = {usual}, of_warp = {usual};
+  for (const double stiffness : {400.0, 20000.0})
+    of_stiffness.push_back(measure(stiffness, {.resolution = fine}));
+  const double crooked = measure(kUsual, {.mesh = SpecimenMesh::random, .resolution = fine});
+  for (const double degrees : {15.0, 30.0, 45.0}) {
+    if (options.quick && degrees != 45) continue;
+    of_warp.push_back(measure(kUsual, {.resolution = fine, .warp_deg = degrees}));
+  }
+  result.metrics.push_back(expect("drape_spread_over_stiffness", spread_of(of_stiffness), "%", 0, 4));
+  result.metrics.push_back(expect("drape_crooked_minus_regular", crooked - usual, "%", 0, 4));
+  result.metrics.push_back(expect("drape_spread_over_warp", spread_of(of_warp), "%", 0, 3));
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
 Findings fabric_meshes(const SectionOptions& options) {
   Findings result;
   Fabric fabric = find_fabric("cotton_shirting");

@@ -14,6 +14,10 @@ Findings fabric_cantilever(const SectionOptions& options);
 /// The drape coefficient of denim against the number of rings of the disc's mesh.
 Findings fabric_drape(const SectionOptions& options);
 
+/// The drape of a soft, stiffly woven fabric against the mesh, the stiffness of its threads and their direction:
+/// membranes that lock hold it up.
+Findings fabric_locking(const SectionOptions& options);
+
 /// Drape, sag and period of one fabric on grids of 33², 65² and 129² particles and on random meshes.
 Findings fabric_meshes(const SectionOptions& options);
 

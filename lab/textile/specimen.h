@@ -23,6 +23,7 @@ struct SpecimenSettings {
   SpecimenMesh mesh = SpecimenMesh::grid;
   int resolution = 0;  // cells along the specimen, or rings of a disc; 0: the test's own [1]
   SpecimenMembrane membrane = SpecimenMembrane::triangle;  // of tensile and shear tests
+  double warp_deg = 0;  // of drape tests: direction of warp against the mesh [degrees]
 };
 
 /// A piece of fabric without contact, with its loads.
