@@ -11,7 +11,7 @@
 namespace weft::engine::app {
 
 struct ViewRequest {
-  std::string scene;  // or the folder of a run, or its .glb
+  std::string scene;  // or the folder of a run, or its .glb; empty: the gallery
   std::string size = "1280x720";
   std::vector<std::string> compare;  // integrators, none or two
   int threads = 0;                   // of each simulation; 0: the processors, except one for drawing

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "view_plots.h"
+#include "view_tuning.h"
 #include "viewer.h"
 #include "weft/parameters.h"
 
@@ -22,20 +24,9 @@ const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating
 
 float scale() { return ImGui::GetIO().FontGlobalScale; }
 
-/// Records the position of the last control.
-void note(Viewer& viewer, const std::string& name) {
-  const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
-  viewer.controls[name] = {a.x, a.y, b.x, b.y};
-}
-
 /// Description of the last control's parameter, while the pointer is on it.
 void explain(const char* key) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(kWidth * scale());
-  ImGui::TextUnformatted(find_parameter(key).description.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  if (ImGui::IsItemHovered()) show_tooltip(find_parameter(key).description);
 }
 
 /// Dear ImGui's default font has no Greek.
@@ -58,7 +49,7 @@ bool draw_button(Viewer& viewer, const char* words, const std::string& name, flo
   const float width = (ImGui::GetContentRegionAvail().x + ImGui::GetStyle().ItemSpacing.x) * share -
                       ImGui::GetStyle().ItemSpacing.x;
   const bool is_pressed = ImGui::Button(words, {width, 0});
-  note(viewer, name);
+  note_control(viewer, name);
   return is_pressed;
 }
 
@@ -83,10 +74,10 @@ void draw_frames(Viewer& viewer) {
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderInt("##frame", &frame, 0, side.num_frames() - 1, "frame %d", ImGuiSliderFlags_AlwaysClamp))
     viewer.seek(frame);
-  note(viewer, "frame");
+  note_control(viewer, "frame");
   bool loops = head.loops;
   if (ImGui::Checkbox("loop", &loops)) viewer.toggle_loop();
-  note(viewer, "loop");
+  note_control(viewer, "loop");
   ImGui::SameLine(kWidth * 0.52f * scale());
   ImGui::TextUnformatted(fmt::format("time {:.2f} s", head.frame() / head.frames_per_second).c_str());
   ImGui::TextUnformatted(
@@ -101,12 +92,12 @@ void draw_integrator(Viewer& viewer, int s) {
     for (const std::string_view name : integrator_names()) {
       if (ImGui::Selectable(std::string(name).c_str(), name == now))
         viewer.set_integrator(s, std::string(name));
-      note(viewer, "integrator " + std::to_string(s) + " " + std::string(name));
+      note_control(viewer, "integrator " + std::to_string(s) + " " + std::string(name));
     }
     ImGui::EndCombo();
   } else {
     explain("solver.integrator");
-    note(viewer, "integrator " + std::to_string(s));
+    note_control(viewer, "integrator " + std::to_string(s));
   }
 }
 
@@ -140,29 +131,57 @@ void draw_model(Viewer& viewer) {
 }
 
 void draw_wind(Viewer& viewer) {
-  const Vec3 now = viewer.wind().value_or(viewer.side(0).status()->wind.velocity);
-  Eigen::Vector3f wind = now.cast<float>();
+  Eigen::Vector3f wind = viewer.side(0).status()->wind.velocity.cast<float>();
   bool has_changed = false;
   const char* names[] = {"wind x", "wind y", "wind z"};
   for (int axis = 0; axis < 3; ++axis) {
     ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
     has_changed |= ImGui::SliderFloat(names[axis], &wind[axis], -kStrongestWind, kStrongestWind, "%.1f m/s");
+    if (ImGui::IsItemDeactivated()) viewer.settle_edits();
     explain("wind.velocity");
-    note(viewer, names[axis]);
+    note_control(viewer, names[axis]);
   }
   if (has_changed) viewer.set_wind(wind.cast<double>());
-  if (viewer.wind() && ImGui::SmallButton("the scene's own wind")) viewer.set_wind(std::nullopt);
+}
+
+/// The steps that can be shown again, and the speed of play.
+void draw_time(Viewer& viewer) {
+  const LiveStatus& status = *viewer.side(0).status();
+  int step = static_cast<int>(status.steps);
+  ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+  if (ImGui::SliderInt("past", &step, static_cast<int>(status.first_step), static_cast<int>(status.last_step),
+                       "step %d", ImGuiSliderFlags_AlwaysClamp))
+    viewer.seek_step(step);
+  if (ImGui::IsItemHovered())
+    show_tooltip("The last ten seconds. Play goes on from the step that is shown, with the present numbers.");
+  note_control(viewer, "past");
+  float speed = static_cast<float>(viewer.speed());
+  ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+  if (ImGui::SliderFloat("speed", &speed, 0.05f, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
+    viewer.set_speed(speed);
+  if (ImGui::IsItemHovered()) show_tooltip("Slow motion: simulated seconds per second, at most.");
+  note_control(viewer, "speed");
 }
 
 void draw_view(Viewer& viewer) {
   if (viewer.is_simulation()) {
     bool springs = viewer.shows_springs();
     if (ImGui::Checkbox("show springs", &springs)) viewer.toggle_springs();
-    note(viewer, "springs");
+    note_control(viewer, "springs");
     ImGui::SameLine(kWidth * 0.62f * scale());
   }
   if (ImGui::SmallButton("help (H)")) viewer.toggle_help();
-  note(viewer, "help");
+  note_control(viewer, "help");
+  if (viewer.is_simulation()) {
+    if (ImGui::SmallButton("numbers (N)")) viewer.toggle_numbers();
+    note_control(viewer, "numbers");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("plots (T)")) viewer.toggle_plots();
+    note_control(viewer, "plots");
+    ImGui::SameLine();
+  }
+  if (ImGui::SmallButton("scenes")) viewer.open_gallery();
+  note_control(viewer, "gallery");
 }
 
 /// `anchor`: the point of the box that is at (x, y), as shares of its size.
@@ -194,6 +213,8 @@ void draw_controls(Viewer& viewer) {
   draw_model(viewer);
   ImGui::Separator();
   draw_wind(viewer);
+  ImGui::Separator();
+  draw_time(viewer);
 }
 
 void draw_main_box(Viewer& viewer) {
@@ -231,6 +252,12 @@ constexpr KeyHelp kHelp[] = {
     {"I, shift+I", "next, previous integrator", KeyOf::simulation},
     {"M", "next spring model", KeyOf::simulation},
     {"G", "cloth or springs", KeyOf::simulation},
+    {"N", "numbers: fabric, solver, colliders", KeyOf::simulation},
+    {"T", "plots over time", KeyOf::simulation},
+    {"ctrl+Z, ctrl+Y", "undo, redo a change of numbers", KeyOf::simulation},
+    {"ctrl+S", "save the scene", KeyOf::simulation},
+    {"ctrl+R", "read the file again"},
+    {"ctrl+O", "other scenes"},
     {"C", "reset the view"},
     {"P", "save the picture as PNG"},
     {"J", "write the report (--report)"},
@@ -290,11 +317,54 @@ void set_panel_style(double window_scale) {
 }
 
 void draw_panel(Viewer& viewer) {
-  viewer.controls.clear();
   draw_divider(viewer);
   draw_main_box(viewer);
   for (int s = 0; viewer.num_sides() > 1 && s < viewer.num_sides(); ++s) draw_side_box(viewer, s);
+  if (viewer.is_simulation() && viewer.shows_numbers()) draw_tuning(viewer);
+  if (viewer.is_simulation() && viewer.shows_plots()) draw_plots(viewer);
   if (viewer.shows_help()) draw_help(viewer.is_simulation());
+}
+
+void draw_question(Viewer& viewer) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  begin_box("question", screen.x / 2, screen.y / 2, kWidth * scale(), {0.5f, 0.5f});
+  ImGui::SetWindowFocus();
+  ImGui::TextUnformatted(("Save the changes as " + viewer.save_as() + "?").c_str());
+  if (draw_button(viewer, "Save", "answer save", 1 / 3.0f)) viewer.answer(Viewer::Answer::save);
+  ImGui::SameLine();
+  if (draw_button(viewer, "Discard", "answer discard", 1 / 2.0f)) viewer.answer(Viewer::Answer::discard);
+  ImGui::SameLine();
+  if (draw_button(viewer, "Cancel", "answer cancel", 1)) viewer.answer(Viewer::Answer::cancel);
+  ImGui::End();
+}
+
+void note_control(Viewer& viewer, const std::string& name) {
+  const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+  viewer.controls[name] = {a.x, a.y, b.x, b.y};
+}
+
+void show_tooltip(const std::string& words) {
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(kWidth * scale());
+  ImGui::TextUnformatted(without_greek(words).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void show_alarm(const std::string& words) { say(kAlarm, words); }
+
+bool edit_text(const char* id, std::string& text) {
+  const auto grow = [](ImGuiInputTextCallbackData* data) {
+    std::string& grown = *static_cast<std::string*>(data->UserData);
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackResize) {
+      grown.resize(static_cast<std::size_t>(data->BufTextLen));
+      data->Buf = grown.data();
+    }
+    return 0;
+  };
+  return ImGui::InputText(id, text.data(), text.capacity() + 1,
+                          ImGuiInputTextFlags_CallbackResize | ImGuiInputTextFlags_EnterReturnsTrue, grow,
+                          &text);
 }
 
 }  // namespace weft::engine::app

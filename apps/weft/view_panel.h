@@ -1,6 +1,8 @@
 #pragma once
 /// Controls over the picture.
 
+#include <string>
+
 namespace weft::engine::app {
 
 class Viewer;
@@ -10,5 +12,15 @@ void set_panel_style(double scale);
 
 /// Call within a frame of the viewer's window.
 void draw_panel(Viewer& viewer);
+
+/// The question before changes are lost.
+void draw_question(Viewer& viewer);
+
+// Parts that all panels share.
+
+void note_control(Viewer& viewer, const std::string& name);  // records the place of the last control
+void show_tooltip(const std::string& words);
+void show_alarm(const std::string& words);
+bool edit_text(const char* id, std::string& text);  // true: ended by Enter
 
 }  // namespace weft::engine::app

@@ -4,6 +4,7 @@
 
 #include "viewer.h"
 #include "weft/core/staged_file.h"
+#include "weft/scene/tunables.h"
 
 namespace weft::engine::app {
 namespace {
@@ -27,6 +28,10 @@ Json to_json(const LiveStatus& s, const Vec3& center) {
           {"simulated_per_second", s.simulated_per_second},
           {"too_heavy", s.too_heavy},
           {"failure", s.failure.empty() ? Json() : Json(s.failure)},
+          {"first_step", s.first_step},
+          {"last_step", s.last_step},
+          {"speed", s.speed},
+          {"keys_for_restart", s.keys_for_restart},
           {"troubles", s.step_warnings},
           {"warnings", s.warnings}};
 }
@@ -49,13 +54,34 @@ Json to_json(const Camera& c) {
           {"target", to_json(c.target)}};
 }
 
+/// Numbers that a person tunes, by their keys.
+Json tuned(SceneDesc scene) {
+  Json json = Json::object();
+  for (const TunableGroup& group : list_tunables(scene)) {
+    for (const Tunable& t : group.values) {
+      if (const auto* number = std::get_if<double*>(&t.value)) json[t.key] = **number;
+      if (const auto* whole = std::get_if<int*>(&t.value)) json[t.key] = **whole;
+    }
+  }
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    if (scene.cloths[c].fabric)
+      json["cloth[" + std::to_string(c) + "].fabric"] = scene.cloths[c].fabric->name;
+  }
+  return json;
+}
+
 }  // namespace
 
 void write_view_report(const std::filesystem::path& file, const Viewer& viewer) {
-  Json json = {{"scene", viewer.side(0).title()},
+  Json json = {{"scene", viewer.shows_gallery() ? Json() : Json(viewer.side(0).title())},
                {"playing", viewer.is_playing()},
                {"view", viewer.shows_springs() ? "springs" : "cloth"},
                {"help", viewer.shows_help()},
+               {"gallery", viewer.shows_gallery()},
+               {"message", viewer.message()},
+               {"asking", viewer.is_asking()},
+               {"changed", viewer.edits() && viewer.edits()->is_changed()},
+               {"tuned", viewer.edits() ? tuned(viewer.edits()->now()) : Json::object()},
                {"grabbing", viewer.is_grabbing()},
                {"camera", to_json(viewer.camera())},
                {"size", {viewer.window().size().width, viewer.window().size().height}},

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kGroundBelow = 0.1;  // below all expected positions, as a share of their extent [1]
 constexpr Color kHand = {0.95, 0.35, 0.02};
-constexpr int kSampled = 60;  // frames of a run, evenly spaced, that the first view contains
+constexpr std::size_t kSamples = 600;  // of steps, in plots
+constexpr int kSampled = 60;           // frames of a run, evenly spaced, that the first view contains
 
 double find_ground(const std::vector<Vec3>& reach) {
   Eigen::AlignedBox3d box;
@@ -86,7 +87,14 @@ void LiveSide::step_frame(bool backwards) {
 
 bool LiveSide::update() {
   if (!live_.take_newest(frame_)) return false;
+  if (meshes_ != frame_.start) {
+    meshes_ = frame_.start;
+    animation_ = *meshes_;
+  }
   replace_frames(frame_.meshes, animation_);
+  for (const LiveSample& sample : frame_.samples) samples_.push_back(sample);
+  while (samples_.size() > kSamples) samples_.pop_front();
+  frame_.samples.clear();
   topologies_ = frame_.topologies;
   for (std::size_t c = 0; c < topologies_.size(); ++c)
     animation_.cloths[c].triangles = topologies_[c]->mesh.triangles;

@@ -2,6 +2,7 @@
 /// What the window, or one of its two halves, shows: a simulation, or the frames of a run.
 
 #include <chrono>
+#include <deque>
 
 #include "weft/pictures/scene_picture.h"
 #include "weft/render/pick.h"
@@ -33,9 +34,13 @@ class ViewSide {
 
   virtual LiveSimulation* live() { return nullptr; }            // null: frames of a run
   virtual const LiveStatus* status() const { return nullptr; }  // of live()
-  virtual PlayHead* head() { return nullptr; }                  // null: a simulation
-  virtual int num_frames() { return 0; }                        // of a run, with the start
-  virtual int frame() const { return 0; }                       // of a run: the current one
+  virtual const std::deque<LiveSample>& samples() const {       // of the last steps of live()
+    static const std::deque<LiveSample> kNone;
+    return kNone;
+  }
+  virtual PlayHead* head() { return nullptr; }  // null: a simulation
+  virtual int num_frames() { return 0; }        // of a run, with the start
+  virtual int frame() const { return 0; }       // of a run: the current one
 
   /// The current picture: cloth, or its springs; and the attachment, drawn towards `target`.
   Picture draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const;
@@ -73,10 +78,13 @@ class LiveSide : public ViewSide {
   bool is_going() const override { return frame_.status.failure.empty(); }
   LiveSimulation* live() override { return &live_; }
   const LiveStatus* status() const override { return &frame_.status; }
+  const std::deque<LiveSample>& samples() const override { return samples_; }
 
  private:
   LiveSimulation live_;
   LiveFrame frame_;
+  std::shared_ptr<const Animation> meshes_;  // of animation_
+  std::deque<LiveSample> samples_;
 };
 
 /// The frames of a run, in their time.

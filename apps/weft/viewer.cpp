@@ -4,9 +4,11 @@
 #include <thread>
 
 #include "apps/common/progress.h"
+#include "recent_files.h"
 #include "view_panel.h"
 #include "view_report.h"
 #include "weft/error.h"
+#include "weft/scene/tunables.h"
 
 namespace weft::engine::app {
 namespace {
@@ -26,21 +28,24 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 
 }  // namespace
 
-Viewer::Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options)
-    : sides_(std::move(sides)),
+Viewer::Viewer(Opened opened, const ViewRequest& request, const ViewOptions& options)
+    : request_(request),
       options_(options),
-      window_({.title = "Weft: " + sides_[0]->title(), .size = options.size}),
+      window_({.title = "Weft", .size = options.size}),
       renderer_(window_.make_device()),
       quality_(window_.is_software()) {
   set_panel_style(window_.scale());
-  frame_scene();
+  opened.sides.empty() ? open_gallery() : show(std::move(opened));
 }
 
 void Viewer::run() {
   const WindowEvents events = make_events();
-  for (const auto& side : sides_) side->play();
   drawn_at_ = second_began_ = Clock::now();
-  while (!window_.is_closing() && !interrupted()) {
+  while (!interrupted()) {
+    if (window_.is_closing()) {
+      if (!edits_ || !edits_->is_changed() || options_.frames > 0) break;
+      refuse_close();
+    }
     wait();
     window_.begin_frame(events);
     update();
@@ -59,6 +64,144 @@ void Viewer::update() {
     has_stopped |= !side->is_going();
   }
   if (has_stopped && is_playing_) toggle_play();
+}
+
+// ---- Files ----------------------------------------------------------------------------------------------
+
+void Viewer::show(Opened opened) {
+  sides_ = std::move(opened.sides);
+  edits_.reset();
+  if (opened.scene) edits_.emplace(std::move(*opened.scene), opened.file);
+  shown_file_ = opened.file.string();
+  save_as_ = opened.file.stem().string() + "_tuned.toml";
+  remember_file(opened.file);
+  window_.set_title("Weft: " + sides_[0]->title());
+  message_.clear();
+  drag_ = Drag::none;
+  grab_target_.reset();
+  is_playing_ = true;
+  if (is_simulation()) set_speed(speed_);
+  for (const auto& side : sides_) side->play();
+  frame_scene();
+}
+
+/// What is shown goes on existing until the other file has proved good.
+void Viewer::open(const std::string& file) {
+  leave([this, file] {
+    try {
+      ViewRequest request{.scene = file, .threads = request_.threads};
+      Opened opened = open_view(request);
+      if (!opened.fabric) return show(std::move(opened));
+      if (!edits_) throw InputError(file + " is a fabric: open a scene first, then drop it on its cloth");
+      SceneDesc next = edits_->now();
+      for (ClothSceneDesc& cloth : next.cloths) take_fabric(*opened.fabric, cloth);
+      settle_tunables(next);
+      edit(std::move(next), "fabric file");
+      settle_edits();
+      say("fabric " + opened.fabric->name);
+    } catch (const InputError& error) {
+      say(error.what());
+    }
+  });
+}
+
+void Viewer::open_gallery() {
+  leave([this] {
+    try {
+      gallery_ = make_gallery();
+      sides_.clear();
+      edits_.reset();
+      message_.clear();
+      window_.set_title("Weft");
+      has_news_ = true;
+    } catch (const InputError& error) {
+      say(error.what());
+    }
+  });
+}
+
+void Viewer::reload() {
+  if (!shown_file_.empty() && !sides_.empty()) open(shown_file_);
+}
+
+/// Does it now, or after the user's answer.
+void Viewer::leave(std::function<void()> then) {
+  has_news_ = true;
+  if (edits_ && edits_->is_changed())
+    after_question_ = std::move(then);
+  else
+    then();
+}
+
+void Viewer::refuse_close() {
+  window_.keep_open();
+  leave([this] {
+    edits_.reset();
+    window_.close();
+  });
+}
+
+void Viewer::answer(Answer answer) {
+  const std::function<void()> then = std::move(after_question_);
+  after_question_ = nullptr;
+  has_news_ = true;
+  if (answer == Answer::save) save_scene();
+  if (answer == Answer::cancel || (answer == Answer::save && edits_->is_changed())) return;
+  then();
+}
+
+// ---- Edits ----------------------------------------------------------------------------------------------
+
+void Viewer::edit(SceneDesc next, const std::string& what) {
+  edits_->edit(std::move(next), what);
+  apply_edits();
+}
+
+void Viewer::settle_edits() {
+  if (edits_) edits_->settle();
+}
+
+void Viewer::undo() {
+  if (!edits_) return;
+  edits_->undo();
+  apply_edits();
+}
+
+void Viewer::redo() {
+  if (!edits_) return;
+  edits_->redo();
+  apply_edits();
+}
+
+/// Of two sides each keeps its integrator.
+void Viewer::apply_edits() {
+  has_news_ = true;
+  for (const auto& side : sides_) {
+    SceneDesc scene = edits_->now();
+    if (num_sides() > 1) scene.solver.integrator = side->status()->integrator;
+    side->live()->change(std::move(scene));
+  }
+}
+
+void Viewer::save_scene() {
+  if (!edits_) return;
+  try {
+    edits_->save(save_as_);
+    remember_file(save_as_);
+    say("written " + save_as_);
+  } catch (const InputError& error) {
+    say(error.what());
+  }
+}
+
+void Viewer::seek_step(std::int64_t step) {
+  is_playing_ = false;
+  for (const auto& side : sides_) side->live()->seek(step);
+}
+
+void Viewer::set_speed(double speed) {
+  speed_ = speed;
+  for (const auto& side : sides_) side->live()->set_speed(speed);
 }
 
 // ---- User input -----------------------------------------------------------------------------------------
@@ -95,7 +238,17 @@ void Viewer::toggle_loop() {
   }
 }
 
-void Viewer::set_integrator(int side, const std::string& name) { sides_[side]->live()->set_integrator(name); }
+void Viewer::set_integrator(int side, const std::string& name) {
+  sides_[side]->live()->set_integrator(name);
+  const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
+  const auto& cloths = edits_->now().cloths;
+  if (num_sides() > 1 || (!supports_elements(name) && std::any_of(cloths.begin(), cloths.end(), is_fabric)))
+    return;
+  SceneDesc next = edits_->now();
+  next.solver.integrator = name;
+  edits_->edit(std::move(next), "integrator");
+  settle_edits();
+}
 
 void Viewer::cycle_integrator(bool backwards) {
   if (!is_simulation()) return;
@@ -107,22 +260,29 @@ void Viewer::cycle_integrator(bool backwards) {
 }
 
 void Viewer::set_model(SpringModel model) {
-  model_ = model;
-  for (const auto& side : sides_) side->live()->set_model(model);
+  SceneDesc next = edits_->now();
+  for (ClothSceneDesc& cloth : next.cloths) {
+    if (std::holds_alternative<Grid>(cloth.shape)) cloth.model = model;
+  }
+  edit(std::move(next), "model");
+  settle_edits();
 }
 
 void Viewer::cycle_model() {
   if (!is_simulation()) return;
-  const std::string now = model_ ? std::string(to_string(*model_)) : sides_[0]->status()->model;
-  const auto known = std::find_if(std::begin(kModels), std::end(kModels),
-                                  [&](SpringModel m) { return to_string(m) == now; });
-  if (known == std::end(kModels)) return say("mesh cloth: its edges are the only spring model");
+  const auto& cloths = edits_->now().cloths;
+  const auto grid = std::find_if(cloths.begin(), cloths.end(), [](const ClothSceneDesc& cloth) {
+    return std::holds_alternative<Grid>(cloth.shape);
+  });
+  if (grid == cloths.end()) return say("mesh cloth: its edges are the only spring model");
+  const auto known = std::find(std::begin(kModels), std::end(kModels), grid->model);
   set_model(kModels[(known - std::begin(kModels) + 1) % std::size(kModels)]);
 }
 
-void Viewer::set_wind(const std::optional<Vec3>& velocity) {
-  wind_ = velocity;
-  for (const auto& side : sides_) side->live()->set_wind(velocity);
+void Viewer::set_wind(const Vec3& velocity) {
+  SceneDesc next = edits_->now();
+  set_steady_wind(velocity, next);
+  edit(std::move(next), "wind");
 }
 
 void Viewer::toggle_springs() {
@@ -136,7 +296,7 @@ void Viewer::frame_scene() {
 
 WindowEvents Viewer::make_events() {
   const auto news = [this] { has_news_ = true; };
-  return {.on_key = [=, this](int key, bool shift) { news(), on_key(key, shift); },
+  return {.on_key = [=, this](int key, bool shift, bool control) { news(), on_key(key, shift, control); },
           .on_press = [=, this](MouseButton b, double x, double y,
                                 bool shift) { news(), on_press(b, x, y, shift); },
           .on_release =
@@ -149,10 +309,27 @@ WindowEvents Viewer::make_events() {
               [=, this](double clicks) {
                 news();
                 camera_.zoom(std::pow(kWheelFactor, clicks));
+              },
+          .on_drop =
+              [=, this](const std::vector<std::string>& files) {
+                news();
+                if (!files.empty()) open(files.front());
               }};
 }
 
-void Viewer::on_key(int key, bool shift) {
+void Viewer::on_key(int key, bool shift, bool control) {
+  if (is_asking()) return;
+  if (key == 'J') return write_report();
+  if (key == 'Q' || key == kKeyEscape) return window_.close();
+  if (control) {
+    if (key == 'Z') shift ? redo() : undo();
+    if (key == 'Y') redo();
+    if (key == 'S') save_scene();
+    if (key == 'R') reload();
+    if (key == 'O') open_gallery();
+    return;
+  }
+  if (shows_gallery()) return;
   switch (key) {
     case ' ':
       return toggle_play();
@@ -178,21 +355,20 @@ void Viewer::on_key(int key, bool shift) {
       return frame_scene();
     case 'P':
       return save_picture();
-    case 'J':
-      return write_report();
+    case 'N':
+      return toggle_numbers();
+    case 'T':
+      return toggle_plots();
     case 'H':
     case kKeyHelp:
       return toggle_help();
-    case 'Q':
-    case kKeyEscape:
-      return window_.close();
     default:
       break;
   }
 }
 
 void Viewer::on_press(MouseButton button, double x, double y, bool shift) {
-  if (drag_ != Drag::none) return;
+  if (drag_ != Drag::none || shows_gallery()) return;
   mouse_x_ = x;
   mouse_y_ = y;
   drag_button_ = button;
@@ -251,7 +427,8 @@ void Viewer::release() {
 
 WindowPart Viewer::part(int side) const {
   const PictureSize size = window_.size();
-  const int left = side * size.width / num_sides(), right = (side + 1) * size.width / num_sides();
+  const int left = side * size.width / std::max(num_sides(), 1),
+            right = (side + 1) * size.width / std::max(num_sides(), 1);
   return {left, 0, {std::max(right - left, 1), size.height}};
 }
 
@@ -289,7 +466,9 @@ void Viewer::draw() {
     const Picture picture = sides_[s]->draw(camera_, shows_springs_, grab_target_);
     renderer_.show(picture, quality_.scaled(where.size, is_still), where);
   }
-  draw_panel(*this);
+  controls.clear();
+  shows_gallery() ? draw_gallery(*this, gallery_) : draw_panel(*this);
+  if (is_asking()) draw_question(*this);
 }
 
 void Viewer::finish_frame() {

@@ -3,12 +3,17 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scene_edits.h"
+#include "view_command.h"
+#include "view_gallery.h"
+#include "view_open.h"
 #include "view_quality.h"
 #include "view_side.h"
 #include "weft/render/renderer.h"
@@ -24,12 +29,44 @@ struct ViewOptions {
 
 class Viewer {
  public:
-  /// `sides`: one or two simulations of one scene, or the frames of a run; at rest until run(). Throws
-  /// GraphicsError.
-  Viewer(std::vector<std::unique_ptr<ViewSide>> sides, const ViewOptions& options);
+  /// `opened`: one or two simulations of one scene, or the frames of a run, at rest until run(); nothing: the
+  /// gallery. Throws GraphicsError.
+  Viewer(Opened opened, const ViewRequest& request, const ViewOptions& options);
 
   /// Runs until the window is closed.
   void run();
+
+  /// Shows a file or a shipped scene instead; a fabric goes to the cloths of the scene. Mistakes in the file
+  /// become the message, and what is shown stays. Asks first if there are changes to save.
+  void open(const std::string& file);
+  void open_gallery();
+  void reload();  // the file, which was edited
+
+  // Edits of the scene that is simulated.
+  const std::optional<SceneEdits>& edits() const { return edits_; }  // empty: a run, or the gallery
+  void edit(SceneDesc next, const std::string& what);                // see SceneEdits
+  void settle_edits();
+  void undo();
+  void redo();
+  void save_scene();  // as save_as()
+  std::string& save_as() { return save_as_; }
+
+  // The question before changes are lost.
+  enum class Answer { save, discard, cancel };
+  bool is_asking() const { return static_cast<bool>(after_question_); }
+  void answer(Answer answer);
+
+  void seek_step(std::int64_t step);  // of a simulation, of the last ten seconds
+  void set_speed(double speed);       // of play, as a share of real time [1]
+  double speed() const { return speed_; }
+  void toggle_numbers() { shows_numbers_ = !shows_numbers_; }
+  void toggle_plots() { shows_plots_ = !shows_plots_; }
+  bool shows_numbers() const { return shows_numbers_; }
+  bool shows_plots() const { return shows_plots_; }
+  bool shows_gallery() const { return sides_.empty(); }
+  void ask_for_frame() { has_news_ = true; }
+  std::uint64_t make_texture(const Image& image) { return window_.make_texture(image); }
+  void say(const std::string& message);
 
   // Actions of the keys, the mouse and the panel.
   void toggle_play();
@@ -42,7 +79,7 @@ class Viewer {
   void cycle_integrator(bool backwards);  // of the side under the mouse
   void set_model(SpringModel model);
   void cycle_model();
-  void set_wind(const std::optional<Vec3>& velocity);  // empty: the scene's
+  void set_wind(const Vec3& velocity);  // uniform and constant [m/s]
   void toggle_springs();
   void toggle_help() { shows_help_ = !shows_help_; }
   void frame_scene();  // the initial camera
@@ -52,11 +89,12 @@ class Viewer {
   // Data for the panel and the report.
   int num_sides() const { return static_cast<int>(sides_.size()); }
   ViewSide& side(int s) const { return *sides_[s]; }
-  bool is_simulation() const { return sides_[0]->live() != nullptr; }  // else frames of a run
+  bool is_simulation() const {
+    return !sides_.empty() && sides_[0]->live() != nullptr;
+  }  // else frames of a run
   bool is_playing() const { return is_playing_; }
   bool shows_springs() const { return shows_springs_; }
   bool shows_help() const { return shows_help_; }
-  const std::optional<Vec3>& wind() const { return wind_; }
   const Camera& camera() const { return camera_; }
   const Window& window() const { return window_; }
   int quality_level() const { return quality_.level(); }
@@ -77,7 +115,7 @@ class Viewer {
 
   void update();
   WindowEvents make_events();
-  void on_key(int key, bool shift);
+  void on_key(int key, bool shift, bool control);
   void on_press(MouseButton button, double x, double y, bool shift);
   void on_move(double x, double y);
   bool grab(double x, double y);
@@ -88,9 +126,17 @@ class Viewer {
   void draw();
   void finish_frame();
   void wait();
-  void say(const std::string& message);
+  void show(Opened opened);
+  void leave(std::function<void()> then);
+  void apply_edits();
+  void refuse_close();
 
   std::vector<std::unique_ptr<ViewSide>> sides_;
+  std::optional<SceneEdits> edits_;
+  std::string save_as_, shown_file_;
+  std::function<void()> after_question_;
+  Gallery gallery_;
+  ViewRequest request_;
   ViewOptions options_;
   Window window_;
   Renderer renderer_;
@@ -98,8 +144,8 @@ class Viewer {
 
   Camera camera_;
   bool is_playing_ = true, shows_springs_ = false, shows_help_ = false, wants_picture_ = false;
-  std::optional<Vec3> wind_;
-  std::optional<SpringModel> model_;  // the requested one
+  bool shows_numbers_ = false, shows_plots_ = false;
+  double speed_ = 1;
 
   // The mouse.
   Drag drag_ = Drag::none;

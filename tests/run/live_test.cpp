@@ -137,15 +137,138 @@ TEST(Live, WindBlowsWhileItIsSet) {
                                                    "solver.integrator=paper_fixed"});
   scene.colliders.clear();
   LiveSimulation live(scene, {.playing = false});
-  live.set_wind(Vec3(4, 0, 0));
+  SceneDesc windy = scene;
+  windy.wind = {.drag = 0.25, .keys = {{0, Vec3(4, 0, 0)}}};
+  live.change(windy);
   live.step(60);
   const LiveFrame blown = wait_for_steps(live, 60);
   EXPECT_EQ(blown.status.wind.velocity.x(), 4);
-  EXPECT_GT(blown.status.wind.drag, 0) << "the scene has no drag of its own";
   EXPECT_GT(blown.meshes.cloths[0][0], live.start().cloths[0].frames[0][0]);
-  live.set_wind(std::nullopt);
+  live.change(scene);
   live.step();
   EXPECT_EQ(wait_for_steps(live, 61).status.wind.drag, 0);
+}
+
+/// The state after so many steps from the start, with another scene from `changed` on.
+std::uint64_t hash_after(const SceneDesc& scene, const SceneDesc& other, int changed, int steps) {
+  SceneRun run(scene, make_jobs(1));
+  for (int s = 0; s < steps; ++s) {
+    if (s == changed) run.change(other);
+    run.step();
+  }
+  return run.world().state_hash();
+}
+
+TEST(Live, ChangedNumbersAreThoseOfTheNextStepWithoutARestart) {
+  const SceneDesc scene = small_scene();
+  SceneDesc other = scene;
+  other.gravity = {0, -3, 1};
+  other.cloths[0].material.structural *= 2;
+  other.colliders[0].friction = 0.9;
+  LiveSimulation live(scene, {.playing = false});
+  live.step(20);
+  wait_for_steps(live, 20);
+  live.change(other);
+  live.step(20);
+  const LiveFrame after = wait_for_steps(live, 40);
+  EXPECT_TRUE(after.status.keys_for_restart.empty());
+  EXPECT_EQ(live.state_hash(), hash_after(scene, other, 20, 40));
+  EXPECT_NE(live.state_hash(), hash_after(scene, scene, 20, 40));
+}
+
+TEST(Live, WhatNeedsANewWorldWaitsForTheReset) {
+  const SceneDesc scene = small_scene();
+  SceneDesc finer = scene;
+  std::get<Grid>(finer.cloths[0].shape).cells_x = 16;
+  LiveSimulation live(scene, {.playing = false});
+  live.change(finer);
+  live.step(2);
+  const LiveFrame waiting = wait_for_steps(live, 2);
+  EXPECT_EQ(waiting.status.keys_for_restart, std::vector<std::string>{"cloth[0].grid"});
+  EXPECT_EQ(waiting.meshes.cloths[0].size(), 3u * 13 * 13);
+  live.reset();
+  const LiveFrame fresh = wait_for(live, [](const LiveFrame& f) { return f.status.steps == 0; });
+  EXPECT_TRUE(fresh.status.keys_for_restart.empty());
+  EXPECT_EQ(fresh.meshes.cloths[0].size(), 3u * 17 * 13);
+  EXPECT_EQ(live.state_hash(), SceneRun(finer, make_jobs(1)).world().state_hash());
+}
+
+TEST(Live, InvalidNumbersAreRefusedAndLeaveTheWorldAsItIs) {
+  const SceneDesc scene = small_scene();
+  SceneDesc bad = scene;
+  bad.gravity = {0, -1, 0};
+  bad.cloths[0].material.density = -1;
+  LiveSimulation live(scene, {.playing = false});
+  live.change(bad);
+  const LiveFrame refused = wait_for(live, [](const LiveFrame& f) { return !f.status.failure.empty(); });
+  EXPECT_NE(refused.status.failure.find("density"), std::string::npos) << refused.status.failure;
+  live.step(10);
+  wait_for_steps(live, 10);
+  EXPECT_EQ(live.state_hash(), hash_after(scene, scene, 0, 10));
+}
+
+TEST(Live, CollidersComeGoAndMoveWhileClothMoves) {
+  const SceneDesc scene = small_scene();
+  SceneDesc more = scene;
+  more.colliders.push_back({.name = "box", .shape = PlacedBox{.center = {0, -0.4, 0}}});
+  SceneDesc moved = more;
+  std::get<PlacedBox>(moved.colliders.back().shape).center.x() = 0.1;
+  LiveSimulation live(scene, {.playing = false});
+  live.change(more);
+  live.step(3);
+  LiveFrame frame = wait_for_steps(live, 3);
+  EXPECT_EQ(frame.start->bodies.size(), scene.colliders.size() + 1);
+  live.change(moved);
+  live.step(1);
+  frame = wait_for_steps(live, 4);
+  EXPECT_NEAR(frame.meshes.poses.back().translation.x(), 0.1, 1e-6);
+  EXPECT_EQ(frame.status.failure, "");
+  live.change(scene);
+  live.step(1);
+  EXPECT_EQ(wait_for_steps(live, 5).start->bodies.size(), scene.colliders.size());
+}
+
+TEST(Live, ThePastHasTheSameBitsWithAllChangesMadeInIt) {
+  const SceneDesc scene = small_scene();
+  SceneDesc light = scene;
+  light.gravity = {0, -2, 0};
+  LiveSimulation live(scene, {.playing = false});
+  std::vector<std::uint64_t> hashes = {live.state_hash()};
+  for (int s = 1; s <= 64; ++s) {
+    if (s == 24) live.change(light);
+    if (s == 40) live.grab({.cloth = 0, .triangle = 20});
+    if (s > 40 && s < 50) live.move_grab(Vec3(0.2, 1, 0.01 * s));
+    if (s == 50) live.release();
+    live.step();
+    hashes.push_back(live.state_hash());  // a step may not be done yet
+    while (hashes.back() == hashes[hashes.size() - 2]) hashes.back() = live.state_hash();
+  }
+  for (const int s : {64, 60, 41, 25, 24, 23, 7, 45, 10, 0}) {
+    live.seek(s);
+    EXPECT_EQ(live.state_hash(), hashes[s]) << "step " << s;
+  }
+  // Steps from the past take the newest numbers, and what came after is forgotten.
+  live.seek(12);
+  live.step(2);
+  const LiveFrame again = wait_for(live, [](const LiveFrame& f) { return f.status.steps == 14; });
+  EXPECT_EQ(again.status.last_step, 14);
+  EXPECT_EQ(live.state_hash(), hash_after(scene, light, 12, 14));
+  live.seek(12);
+  EXPECT_EQ(live.state_hash(), hashes[12]);
+}
+
+TEST(LiveHistory, KeepsTenSecondsAndAQuarterOfAGigabyte) {
+  LiveHistory history;
+  for (int s = 0; s <= 1200; ++s) {
+    if (history.wants(s)) history.add({.steps = s, .time = s / 60.0}, 100);
+  }
+  EXPECT_EQ(history.first(), 600);
+  EXPECT_EQ(history.moment_before(1199).steps, 1190);
+  EXPECT_EQ(history.moment_before(603).steps, 600);
+  LiveHistory heavy;
+  for (int s = 0; s <= 1200; s += LiveHistory::kSpacing) heavy.add({.steps = s}, 129 * 129);
+  const auto moments = static_cast<double>((1200 - heavy.first()) / LiveHistory::kSpacing);
+  EXPECT_LE(moments * LiveHistory::kBytesPerParticle * 129 * 129, 256e6);
 }
 
 TEST(Live, ClothThatIsGrabbedFollowsAndFallsWhenItIsLetGo) {

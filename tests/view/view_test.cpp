@@ -94,6 +94,8 @@ class Screen : public testing::Environment {
     close(ends[0]);
     ASSERT_FALSE(number.empty()) << "Xvfb does not start";
     setenv("DISPLAY", (":" + number).c_str(), 1);
+    setenv("XDG_STATE_HOME", (fs::path(WEFT_OUTPUT_DIR) / "state").c_str(), 1);  // not the user's own files
+    fs::remove_all(fs::path(WEFT_OUTPUT_DIR) / "state");
   }
 
   void TearDown() override { server_.reset(); }
@@ -196,6 +198,21 @@ class View : public testing::Test {
     move(to_x, to_y);
     state();
     xdotool("mouseup " + button);
+  }
+
+  /// The middle of a control.
+  static void move_to(const Json& state, const std::string& control) {
+    ASSERT_TRUE(state["controls"].contains(control)) << control;
+    const Json& c = state["controls"][control];
+    move((c[0].get<int>() + c[2].get<int>()) / 2, (c[1].get<int>() + c[3].get<int>()) / 2);
+  }
+
+  void click(const std::string& control) {
+    move_to(state(), control);
+    state();
+    xdotool("mousedown 1");
+    state();
+    xdotool("mouseup 1");
   }
 
   static void move(int x, int y) { xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y)); }
@@ -432,6 +449,85 @@ TEST_F(View, OfARunRefusesWhatIsForScenes) {
   refused("run --compare paper,xpbd", "--compare does not apply to run: it is already simulated");
   refused("run --set scene.fps=3", "--set does not apply to run");
   refused("none.glb", "none.glb");
+}
+
+TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosenOrTyped) {
+  enter_folder();
+  std::ofstream("broken.toml") << "[scene]\nfps = -3\n";
+  start({WEFT_PROGRAM, "view", "--report", "view.json", "--size", "1280x720"}, "scene drape_sphere");
+  EXPECT_EQ(state()["gallery"], true);
+  click("scene drape_sphere");
+  until("the scene is shown", [](const Json& j) { return j["scene"] == "drape_sphere" && !j["gallery"]; });
+  xdotool("key ctrl+o");
+  until("the gallery is back, with a recent file", [](const Json& j) {
+    for (const auto& [name, place] : j["controls"].items()) {
+      if (name.starts_with("recent ") && name.ends_with("drape_sphere.toml")) return j["gallery"] == true;
+    }
+    return false;
+  });
+  move_to(state(), "path");  // from here to the end of the field J is a letter
+  xdotool("click 1");
+  pause_for(300);
+  xdotool("type broken.toml");
+  xdotool("key Return");
+  pause_for(300);
+  move(1200, 40);
+  xdotool("click 1");
+  const Json refused = until("its mistakes are said", [](const Json& j) { return j["message"] != ""; });
+  EXPECT_EQ(refused["gallery"], true);
+  EXPECT_NE(refused["message"].get<std::string>().find("broken.toml"), std::string::npos);
+  EXPECT_NE(refused["message"].get<std::string>().find("fps"), std::string::npos);
+  close_by("q");
+}
+
+TEST_F(View, TunesUndoesSavesAndAsksBeforeChangesAreLost) {
+  open({"--size", "1280x720"});
+  paused();
+  xdotool("key n");
+  const std::string key = "cloth[0].fabric.spring_structural";
+  const Json before = until("numbers are shown", [&](const Json& j) { return j["controls"].contains(key); });
+  const double usual = before["tuned"][key];
+  const std::int64_t steps = before["sides"][0]["steps"];
+  const Json& place = before["controls"][key];
+  const int x = place[0].get<int>() + 20, y = (place[1].get<int>() + place[3].get<int>()) / 2;
+  drag("1", x, y, x + 60, y);
+  const Json tuned = until("it is stiffer", [&](const Json& j) { return j["tuned"][key] > 1.2 * usual; });
+  EXPECT_EQ(tuned["changed"], true);
+  EXPECT_EQ(tuned["sides"][0]["steps"], steps) << "without a restart";
+  move(640, 600);
+  xdotool("key ctrl+z");
+  until("it is as before", [&](const Json& j) { return j["tuned"][key] == usual && j["changed"] == false; });
+  xdotool("key ctrl+y");
+  until("it is stiffer again", [&](const Json& j) { return j["tuned"][key] == tuned["tuned"][key]; });
+  xdotool("key ctrl+o");
+  until("it asks", [](const Json& j) { return j["asking"] == true; });
+  click("answer cancel");
+  move(640, 600);
+  until("it goes on", [](const Json& j) { return j["asking"] == false && j["gallery"] == false; });
+  xdotool("key ctrl+s");
+  until("it is saved", [](const Json& j) { return j["changed"] == false; });
+  close_by("q");
+  const int status = std::system("'" WEFT_PROGRAM "' check fig6_ball_tuned.toml > check.txt 2>&1");
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST_F(View, ShowsThePastAgain) {
+  open();
+  until("it plays", [](const Json& j) { return j["sides"][0]["steps"] > 40; });
+  const Json now = paused();
+  const Json& slider = now["controls"]["past"];
+  move(slider[0].get<int>() + 3, (slider[1].get<int>() + slider[3].get<int>()) / 2);
+  state();
+  xdotool("mousedown 1");
+  const Json first = until("the start is shown", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  xdotool("mouseup 1");
+  EXPECT_EQ(first["sides"][0]["last_step"], now["sides"][0]["steps"]);
+  EXPECT_EQ(first["sides"][0]["time"], 0);
+  move(700, 440);
+  xdotool("key period");
+  const Json other = until("other steps follow", [](const Json& j) { return j["sides"][0]["steps"] == 1; });
+  EXPECT_EQ(other["sides"][0]["last_step"], 1);
+  close_by("q");
 }
 
 TEST_F(View, SaysWhatToDoWhereThereIsNoDisplay) {

@@ -11,6 +11,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
@@ -18,6 +19,20 @@
 #pragma GCC diagnostic pop
 
 namespace weft::engine {
+namespace {
+
+Image read(const std::filesystem::path& file, const char* kind) {
+  int width = 0, height = 0, channels = 0;
+  std::uint8_t* pixels = stbi_load(file.string().c_str(), &width, &height, &channels, 4);
+  if (!pixels)
+    throw InputError(file.string() + " cannot be read as a " + kind + ": " + stbi_failure_reason());
+  Image image(width, height);
+  std::copy_n(pixels, image.rgba.size(), image.rgba.begin());
+  stbi_image_free(pixels);
+  return image;
+}
+
+}  // namespace
 
 Image::Image(int width_, int height_)
     : width(width_),
@@ -59,14 +74,7 @@ void write_image(const std::filesystem::path& file, const Image& image) {
   staged.replace();
 }
 
-Image read_png(const std::filesystem::path& file) {
-  int width = 0, height = 0, channels = 0;
-  std::uint8_t* pixels = stbi_load(file.string().c_str(), &width, &height, &channels, 4);
-  if (!pixels) throw InputError(file.string() + " cannot be read as a PNG: " + stbi_failure_reason());
-  Image image(width, height);
-  std::copy_n(pixels, image.rgba.size(), image.rgba.begin());
-  stbi_image_free(pixels);
-  return image;
-}
+Image read_png(const std::filesystem::path& file) { return read(file, "PNG"); }
+Image read_jpg(const std::filesystem::path& file) { return read(file, "JPEG"); }
 
 }  // namespace weft::engine

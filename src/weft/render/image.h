@@ -32,5 +32,6 @@ void write_image(const std::filesystem::path& file, const Image& image);
 
 /// Throws InputError if the file cannot be read or is not a PNG.
 Image read_png(const std::filesystem::path& file);
+Image read_jpg(const std::filesystem::path& file);  // likewise
 
 }  // namespace weft::engine

@@ -4,10 +4,11 @@
 #include <future>
 
 #include "weft/error.h"
-#include "weft/face/convert.h"
 #include "weft/run/reach.h"
 #include "weft/run/report.h"
 #include "weft/run/warnings.h"
+#include "weft/scene/scene_changes.h"
+#include "weft/world/measures.h"
 
 namespace weft::engine {
 namespace {
@@ -17,7 +18,9 @@ constexpr double kWindow = 1;                // for measuring the pace [s]
 constexpr double kSlow = 0.95;               // of real time: a lower pace is too heavy [1]
 constexpr std::size_t kSteps = 512;          // in medians
 constexpr std::size_t kMaxStepWarnings = 4;  // maximum number reported
-constexpr double kDrag = 0.25;               // of wind in scenes without wind [N·s/m³]
+
+constexpr double kSlowest = 0.01;          // speed of play [1]
+constexpr std::size_t kMaxSamples = 4096;  // that wait to be taken [1]
 
 constexpr const char* kNoModel = "mesh";
 
@@ -37,14 +40,16 @@ LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
     : start_scene_(std::move(scene)),
       jobs_(make_jobs(settings.threads)),
       run_(std::make_unique<SceneRun>(start_scene_, jobs_)),
-      solver_(start_scene_.solver),
-      snapshot_(world().snapshot()) {
+      wanted_(start_scene_),
+      built_(start_scene_),
+      snapshot_(run_->public_world().snapshot()) {
   warnings_ = run_->notes().warnings;
   reach_ = find_reach(world());
   start_ = make_animation(start_scene_, world());
   append_frame(capture_frame(world()), start_);
+  meshes_ = std::make_shared<const Animation>(start_);
   status_.playing = settings.playing;
-  status_.integrator = solver_.integrator;
+  status_.integrator = start_scene_.solver.integrator;
   status_.model = name_of_model(start_scene_);
   check_solver();
   publish();
@@ -66,6 +71,15 @@ void LiveSimulation::post(std::function<void()> command) {
     commands_.push_back(std::move(command));
   }
   wake_.notify_all();
+}
+
+/// A command that changes the motion: it begins where the past is shown, and is repeated with the steps after it.
+void LiveSimulation::post_change(std::function<void()> change) {
+  post([this, change = std::move(change)] {
+    leave_past();
+    change();
+    history_.add_change(status_.steps, change);
+  });
 }
 
 void LiveSimulation::play() {
@@ -93,14 +107,21 @@ void LiveSimulation::step(int count) {
 void LiveSimulation::reset() {
   post([this] {
     held_.reset();
-    hold();
-    world().restore(snapshot_);
-    apply_wind();
-    status_.steps = status_.frames = 0;
+    steps_to_make_ = 0;
+    if (wanted_ == built_) {
+      hold();
+      run_->change(built_);
+      run_->public_world().restore(snapshot_);
+    } else {
+      rebuild(wanted_, false);
+    }
+    history_.clear();
+    status_.steps = status_.frames = last_step_ = 0;
     status_.failure.clear();
     status_.step_warnings.clear();
-    steps_to_make_ = 0;
+    status_.keys_for_restart.clear();
     is_paced_ = false;
+    check_solver();
   });
 }
 
@@ -108,45 +129,64 @@ void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
     const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-    if (!supports_elements(name) &&
-        std::any_of(start_scene_.cloths.begin(), start_scene_.cloths.end(), is_fabric)) {
+    if (!supports_elements(name) && std::any_of(wanted_.cloths.begin(), wanted_.cloths.end(), is_fabric)) {
       status_.warnings = {name + " supports springs only, and this scene has a fabric: keeping " +
                           status_.integrator};
       return;
     }
-    solver_.integrator = name;
-    world().set_integrator(solver_);
-    status_.integrator = name;
-    check_solver();
+    leave_past();
+    SceneDesc next = wanted_;
+    next.solver.integrator = name;
+    const auto change = [this, next] { apply(next); };
+    change();
+    history_.add_change(status_.steps, change);
   });
 }
 
 void LiveSimulation::set_model(SpringModel model) {
-  post([this, model] { change_model(model); });
+  post([this, model] {
+    if (status_.model == kNoModel) return;
+    SceneDesc next = wanted_;
+    for (ClothSceneDesc& cloth : next.cloths) cloth.model = model;
+    leave_past();
+    apply(next);
+  });
 }
 
-void LiveSimulation::set_wind(std::optional<Vec3> velocity) {
-  post([this, velocity] {
-    wind_ = velocity;
-    apply_wind();
+void LiveSimulation::change(SceneDesc wanted) {
+  post_change([this, wanted = std::move(wanted)] { apply(wanted); });
+}
+
+void LiveSimulation::set_speed(double speed) {
+  post([this, speed] {
+    status_.speed = std::clamp(speed, kSlowest, 1.0);
+    is_paced_ = false;
+  });
+}
+
+void LiveSimulation::seek(std::int64_t steps) {
+  post([this, steps] {
+    status_.playing = false;
+    steps_to_make_ = 0;
+    if (!history_.is_empty()) show_past(std::clamp(steps, history_.first(), last_step_));
   });
 }
 
 void LiveSimulation::grab(const ClothPoint& point) {
-  post([this, point] {
+  post_change([this, point] {
     held_ = point;
     hold();
   });
 }
 
 void LiveSimulation::move_grab(const Vec3& target) {
-  post([this, target] {
+  post_change([this, target] {
     if (held_) world().set_attachment_target(world().cloth(held_->cloth), 0, target);
   });
 }
 
 void LiveSimulation::release() {
-  post([this] {
+  post_change([this] {
     held_.reset();
     hold();
   });
@@ -214,13 +254,81 @@ void LiveSimulation::run() {
 
 /// Makes a step. False: it failed, and the state is unchanged.
 bool LiveSimulation::take_step() {
+  leave_past();
+  if (history_.wants(status_.steps)) remember();
   const Clock::time_point start = Clock::now();
   const StepReport report = run_->step();
   step_ms_.push_back(1000 * seconds(Clock::now() - start));
   if (step_ms_.size() > kSteps) step_ms_.pop_front();
   status_.wind = world().wind();
   report_step(report);
+  last_step_ = status_.steps;
+  if (report.ok) sample(report);
   return report.ok;
+}
+
+/// Before the next step.
+void LiveSimulation::remember() {
+  if (!moment_scene_ || !(*moment_scene_ == scene_now()))
+    moment_scene_ = std::make_shared<const SceneDesc>(scene_now());
+  std::size_t num_particles = 0;
+  for (int c = 0; c < world().num_cloths(); ++c) num_particles += world().state(world().cloth(c)).x.size();
+  history_.add({status_.steps, world().time(), run_->public_world().snapshot(), moment_scene_, held_},
+               num_particles);
+}
+
+/// Repeats the steps from the moment before.
+void LiveSimulation::show_past(std::int64_t steps) {
+  const LiveMoment from = history_.moment_before(steps);
+  const SceneDesc wanted = wanted_;
+  run_->change(*from.scene);
+  run_->public_world().restore(from.state);
+  held_ = from.held;
+  for (status_.steps = from.steps; status_.steps < steps; ++status_.steps) {
+    history_.repeat_changes(status_.steps);
+    if (!run_->step().ok) break;
+  }
+  wanted_ = wanted;
+  status_.frames = status_.steps / scene_now().steps_per_frame;
+  status_.integrator = scene_now().solver.integrator;
+  status_.wind = world().wind();
+  status_.failure.clear();
+}
+
+/// The state shown from the past becomes the present, with all changes and without a grab.
+void LiveSimulation::leave_past() {
+  if (status_.steps == last_step_) return;
+  history_.forget_after(status_.steps);
+  last_step_ = status_.steps;
+  const auto change = [this, wanted = wanted_] {
+    held_.reset();
+    hold();
+    apply(wanted);
+  };
+  change();
+  history_.add_change(status_.steps, change);
+}
+
+void LiveSimulation::sample(const StepReport& report) {
+  next_.samples.push_back({.time = world().time(),
+                           .work = report.work,
+                           .iterations = report.iterations,
+                           .linear_iterations = report.linear_iterations.value_or(0),
+                           .divisions = report.divisions,
+                           .contacts = static_cast<int>(report.work.active)});
+  if (next_.samples.size() > kMaxSamples) next_.samples.erase(next_.samples.begin());
+}
+
+/// Energies and strain of the newest sample.
+void LiveSimulation::measure_frame() {
+  if (next_.samples.empty()) return;
+  LiveSample& last = next_.samples.back();
+  last.is_measured = true;
+  last.energies = run_->public_world().energies();
+  for (int c = 0; c < world().num_cloths(); ++c) {
+    const ClothId cloth = world().cloth(c);
+    last.strain = std::max(last.strain, compute_yarn_strain(world().model(cloth), world().state(cloth)).max);
+  }
 }
 
 void LiveSimulation::report_step(const StepReport& report) {
@@ -259,42 +367,55 @@ void LiveSimulation::start_pace() {
 void LiveSimulation::end_frame() {
   status_.frames = status_.steps / scene_now().steps_per_frame;
   const Clock::time_point now = Clock::now();
-  due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / scene_now().fps));
+  due_ += std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(1 / (scene_now().fps * status_.speed)));
   if (seconds(now - due_) > kPatience) due_ = now;
   milestones_.push_back({now, status_.steps, world().time()});
   while (milestones_.size() > 2 && seconds(now - milestones_[1].wall) > kWindow) milestones_.pop_front();
   publish();
 }
 
-/// The scene's wind, with the velocity that was set, if any.
-void LiveSimulation::apply_wind() {
-  weft::Wind wind = describe_wind(start_scene_.wind);
-  if (wind_) {
-    wind.keys.clear();
-    wind.velocity = from_engine(*wind_);
-    if (wind.drag == 0 && wind.air.density == 0) wind.drag = kDrag;
+/// What can change without a restart; the rest waits.
+void LiveSimulation::apply(const SceneDesc& wanted) {
+  const std::string integrator = scene_now().solver.integrator;
+  const bool has_new_bodies = changes_bodies(scene_now(), changeable_part(scene_now(), wanted));
+  run_->change(wanted);
+  wanted_ = wanted;
+  SceneDesc with_model = scene_now();
+  for (std::size_t c = 0; c < std::min(with_model.cloths.size(), wanted.cloths.size()); ++c)
+    with_model.cloths[c].model = wanted.cloths[c].model;
+  if (!(with_model == scene_now())) rebuild(std::move(with_model), true);
+  if (has_new_bodies) {
+    history_.clear();
+    meshes_ = std::make_shared<const Animation>(make_animation(scene_now(), world()));
   }
-  run_->public_world().set_wind(wind);
+  status_.keys_for_restart = find_keys_for_restart(scene_now(), wanted);
+  status_.integrator = scene_now().solver.integrator;
+  status_.wind = world().wind();
+  if (status_.integrator != integrator || !status_.failure.empty()) check_solver();
 }
 
-void LiveSimulation::change_model(SpringModel model) {
-  if (status_.model == kNoModel) return;
-  SceneDesc scene = scene_now();
-  scene.solver = solver_;
-  for (ClothSceneDesc& cloth : scene.cloths) cloth.model = model;
-  // Pins depend on initial positions: build the new world at the start, then restore the current state.
-  const World::Snapshot now = world().snapshot();
-  run_ = std::make_unique<SceneRun>(std::move(scene), jobs_);
-  world().restore(now);
-  apply_wind();
+/// A new world. Pins depend on initial positions: it is built at the start, and the state put in.
+void LiveSimulation::rebuild(SceneDesc scene, bool keeps_state) {
+  std::optional<World::Snapshot> now;
+  if (keeps_state) now = world().snapshot();
+  auto run = std::make_unique<SceneRun>(scene, jobs_);
+  run_ = std::move(run);
+  built_ = std::move(scene);
+  snapshot_ = run_->public_world().snapshot();
+  if (now) world().restore(*now);
+  history_.clear();
+  meshes_ = std::make_shared<const Animation>(make_animation(built_, world()));
   hold();
-  status_.model = to_string(model);
+  status_.model = name_of_model(built_);
+  status_.integrator = built_.solver.integrator;
+  status_.wind = world().wind();
   check_solver();
 }
 
 /// After a change of solver or springs: recomputes the warnings and discards results of earlier steps.
 void LiveSimulation::check_solver() {
-  status_.warnings = check_paper(solver_, scene_now().step_length(), world());
+  status_.warnings = check_paper(scene_now().solver, scene_now().step_length(), world());
   status_.failure.clear();
   status_.step_warnings.clear();
   step_ms_.clear();
@@ -314,6 +435,8 @@ void LiveSimulation::hold() {
 LiveStatus LiveSimulation::measure() const {
   LiveStatus status = status_;
   status.time = world().time();
+  status.first_step = history_.is_empty() ? status.steps : history_.first();
+  status.last_step = last_step_;
   const std::vector<double> ms(step_ms_.begin(), step_ms_.end());
   status.ms_per_step = quantile(ms, 0.5);
   status.ms_per_step_p95 = quantile(ms, 0.95);
@@ -322,7 +445,8 @@ LiveStatus LiveSimulation::measure() const {
     const double wall = std::max(seconds(last.wall - first.wall), 1e-9);
     status.steps_per_second = static_cast<double>(last.steps - first.steps) / wall;
     status.simulated_per_second = (last.time - first.time) / wall;
-    status.too_heavy = status.playing && wall > kWindow / 2 && status.simulated_per_second < kSlow;
+    status.too_heavy =
+        status.playing && wall > kWindow / 2 && status.simulated_per_second < kSlow * status.speed;
   }
   if (held_) {
     const ClothId cloth = world().cloth(held_->cloth);
@@ -336,13 +460,18 @@ LiveStatus LiveSimulation::measure() const {
 }
 
 void LiveSimulation::publish() {
+  measure_frame();
   next_.status = measure();
+  next_.start = meshes_;
   next_.meshes = capture_frame(world());
   next_.topologies.clear();
   for (int c = 0; c < world().num_cloths(); ++c)
     next_.topologies.push_back(world().model(world().cloth(c)).topology);
   const std::lock_guard lock(frame_mutex_);
+  // A frame that nobody has taken leaves its samples to this one.
+  if (is_fresh_) next_.samples.insert(next_.samples.begin(), frame_.samples.begin(), frame_.samples.end());
   std::swap(next_, frame_);
+  next_.samples.clear();
   is_fresh_ = true;
 }
 

@@ -20,50 +20,11 @@
 #include <vector>
 
 #include "weft/run/film.h"
+#include "weft/run/live_history.h"
+#include "weft/run/live_values.h"
 #include "weft/run/scene_run.h"
 
 namespace weft::engine {
-
-struct LiveSettings {
-  int threads = 1;      // of the simulation, >= 1
-  bool playing = true;  // from the start
-};
-
-/// A point on a cloth: of a triangle, by the weights of its corners (sum 1).
-struct ClothPoint {
-  int cloth = 0, triangle = 0;
-  Vec3 weights = Vec3::Constant(1.0 / 3);  // [1]
-};
-
-/// Status of a live simulation.
-struct LiveStatus {
-  bool playing = false;
-  std::int64_t steps = 0;   // since the start or the last reset [1]
-  std::int64_t frames = 0;  // of the scene, likewise [1]
-  double time = 0;          // simulated [s]
-  std::string integrator;
-  std::string model;  // of the cloths' springs
-  Wind wind;
-  int substeps = 0, iterations = 0, divisions = 1;  // of the last step [1]
-
-  double ms_per_step = 0;           // median over the last steps, wall time [ms]
-  double ms_per_step_p95 = 0;       // 95th percentile, likewise [ms]
-  double steps_per_second = 0;      // over the last second of play, wall time [1/s]
-  double simulated_per_second = 0;  // likewise; 1: real time [1]
-  bool too_heavy = false;           // for real time: slow motion
-
-  std::vector<std::string> warnings;       // of integrator and springs that do not fit each other
-  std::string failure;                     // of the last step, as text; empty: none. A failed step pauses
-  std::vector<std::string> step_warnings;  // warnings of the last steps, as text
-  std::optional<Vec3> held;                // position of the grabbed point [m]
-};
-
-/// Status and meshes at one time.
-struct LiveFrame {
-  LiveStatus status;
-  AnimationFrame meshes;
-  std::vector<std::shared_ptr<const ClothTopology>> topologies;  // (num_cloths)
-};
 
 class LiveSimulation {
  public:
@@ -74,7 +35,7 @@ class LiveSimulation {
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
 
-  /// The constant parts: names, triangles, colours, shapes; with the start as the only frame.
+  /// Names, triangles, colours, shapes, with the start as the only frame, of the scene that was given.
   const Animation& start() const { return start_; }
   const SceneDesc& scene() const { return start_scene_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -84,14 +45,21 @@ class LiveSimulation {
   void play();
   void pause();
   void step(int count = 1);  // pauses, then makes `count` steps without pacing
-  void reset();              // restarts with the current integrator, springs and wind; releases the grab
+  void reset();              // restarts with all changes; releases the grab
   /// Throws InputError for an unknown name. An integrator that supports springs only is refused, with a
   /// warning, if a cloth has a fabric.
   void set_integrator(const std::string& name);
-  void set_model(SpringModel model);            // of cloths that are grids; positions are kept
-  void set_wind(std::optional<Vec3> velocity);  // uniform and constant; empty: the scene's [m/s]
-  void grab(const ClothPoint& point);           // replaces the current grab
-  void move_grab(const Vec3& target);           // sets the target of the grab [m]
+  void set_model(SpringModel model);  // of cloths that are grids; positions are kept
+  /// Takes what another scene changes (scene_changes.h); the rest waits for reset(), see
+  /// LiveStatus::keys_for_restart. A scene with invalid numbers is refused, with a failure.
+  void change(SceneDesc wanted);
+  void set_speed(double speed);  // of play, as a share of real time, in (0, 1] [1]
+
+  /// Shows the state after so many steps, of the last ten seconds, and pauses: the same bits as then. Steps
+  /// from there take the newest change(), and those after it are forgotten.
+  void seek(std::int64_t steps);
+  void grab(const ClothPoint& point);  // replaces the current grab
+  void move_grab(const Vec3& target);  // sets the target of the grab [m]
   void release();
 
   /// The newest frame, if there is a new one since the last call; the memory of `frame` is reused.
@@ -114,6 +82,14 @@ class LiveSimulation {
   World& world() { return run_->world(); }
   const World& world() const { return run_->world(); }
   void post(std::function<void()> command);
+  void post_change(std::function<void()> change);
+  void apply(const SceneDesc& wanted);
+  void rebuild(SceneDesc scene, bool keeps_state);
+  void show_past(std::int64_t steps);
+  void leave_past();
+  void remember();
+  void sample(const StepReport& report);
+  void measure_frame();
   bool run_commands();
   void run();
   bool is_between_frames() const;
@@ -121,8 +97,6 @@ class LiveSimulation {
   void report_step(const StepReport& report);
   void start_pace();
   void end_frame();
-  void apply_wind();
-  void change_model(SpringModel model);
   void check_solver();
   void hold();
   void publish();
@@ -137,11 +111,15 @@ class LiveSimulation {
   // Used by the simulation's thread only.
   std::shared_ptr<JobSystem> jobs_;
   std::unique_ptr<SceneRun> run_;
-  IntegratorSettings solver_;
-  World::Snapshot snapshot_;  // of the start
+  SceneDesc wanted_;         // with all changes
+  SceneDesc built_;          // that the world was built from
+  weft::Snapshot snapshot_;  // of the start
+  LiveHistory history_;
+  std::int64_t last_step_ = 0;  // made; more than status_.steps while the past is shown
+  std::shared_ptr<const Animation> meshes_;
+  std::shared_ptr<const SceneDesc> moment_scene_;  // of the last moment
   LiveStatus status_;
   int steps_to_make_ = 0;
-  std::optional<Vec3> wind_;
   std::optional<ClothPoint> held_;
   bool is_paced_ = false;  // due_ and milestones_ are valid
   Clock::time_point due_;  // of the next frame

@@ -11,6 +11,7 @@
 #include "weft/run/run_archive.h"
 #include "weft/run/start_from.h"
 #include "weft/run/warnings.h"
+#include "weft/scene/scene_changes.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -93,6 +94,11 @@ World& SceneRun::world() { return WorldAccess::engine(built_.world); }
 const World& SceneRun::world() const { return WorldAccess::engine(built_.world); }
 
 StepReport SceneRun::step() { return built_.world.step(scene_.step_length()); }
+
+void SceneRun::change(const SceneDesc& wanted) {
+  apply_changes(scene_, wanted, built_.world);
+  scene_ = changeable_part(scene_, wanted);
+}
 
 bool SceneRun::next_frame(const std::function<bool()>& keep_going) {
   if (report_.outcome != RunOutcome::done || frame() == num_frames_) return false;

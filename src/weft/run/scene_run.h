@@ -43,6 +43,10 @@ class SceneRun {
   /// the scene's. Sinks and report do not include it.
   StepReport step();
 
+  /// Takes the changeable part of another scene between two steps (scene_changes.h). Throws InputError for invalid
+  /// numbers, without changing anything.
+  void change(const SceneDesc& wanted);
+
   /// Sets the outcome of a run that ends early.
   void interrupt() { report_.outcome = RunOutcome::interrupted; }
 

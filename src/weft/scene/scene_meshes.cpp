@@ -167,6 +167,11 @@ int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
 
 }  // namespace
 
+std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc) {
+  if (desc.fabric) return desc.fabric->numbers;
+  return make_springs(desc.material);
+}
+
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
   ClothDesc cloth{.name = desc.name};
   if (const MeshSource* file = std::get_if<MeshSource>(&desc.shape)) {
@@ -177,13 +182,11 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
   } else {
     cloth.shape = std::get<Grid>(desc.shape);
   }
+  cloth.fabric = describe_fabric(desc);
   if (desc.fabric) {
-    cloth.fabric = desc.fabric->numbers;
     cloth.fabric_name = desc.fabric->name;
     cloth.membrane = desc.fabric->membrane;
     if (desc.fabric->warp) cloth.warp = from_engine(*desc.fabric->warp);
-  } else {
-    cloth.fabric = make_springs(desc.material);
   }
   cloth.model = desc.model;
   cloth.pose = make_pose(desc.position, desc.rotation_deg);

@@ -2,6 +2,7 @@
 /// Private to scene/: cloths and colliders of a scene as public descriptions, with their mesh files loaded.
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "weft/cloth.h"
@@ -14,6 +15,9 @@ namespace weft::engine {
 /// Without pins and stiffened regions. Throws InputError, beginning with the name of the cloth, if its file
 /// cannot be read.
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings);
+
+/// Its fabric or springs alone.
+std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc);
 
 /// The same for a collider; `settle` as in SceneDesc [s].
 ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,

@@ -19,7 +19,7 @@ constexpr const char* kAdvice = "; weft render draws pictures and videos without
 
 struct KeyDown {
   int key;
-  bool shift;
+  bool shift, control;
 };
 struct Press {
   MouseButton button;
@@ -35,7 +35,10 @@ struct Move {
 struct Wheel {
   double clicks;
 };
-using Event = std::variant<KeyDown, Press, Release, Move, Wheel>;
+struct Drop {
+  std::vector<std::string> files;
+};
+using Event = std::variant<KeyDown, Press, Release, Move, Wheel, Drop>;
 
 /// GLFW's letters and digits are ASCII; 0: an unused key.
 int to_key(int glfw_key) {
@@ -114,7 +117,7 @@ struct Window::System {
     glfwSetWindowUserPointer(window, this);
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
       if (action != GLFW_RELEASE && to_key(key) != 0)
-        of(w).push_back(KeyDown{to_key(key), (mods & GLFW_MOD_SHIFT) != 0});
+        of(w).push_back(KeyDown{to_key(key), (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0});
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
       if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
@@ -131,6 +134,9 @@ struct Window::System {
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).push_back(Move{x, y}); });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).push_back(Wheel{y}); });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
+      of(w).push_back(Drop{{files, files + count}});
+    });
   }
 
   static std::vector<Event>& of(GLFWwindow* w) {
@@ -155,7 +161,7 @@ struct Window::System {
   void dispatch(const Event& event, const WindowEvents& to) const {
     const ImGuiIO& io = ImGui::GetIO();
     if (const KeyDown* key = std::get_if<KeyDown>(&event)) {
-      if (!io.WantTextInput) to.on_key(key->key, key->shift);
+      if (!io.WantTextInput) to.on_key(key->key, key->shift, key->control);
     } else if (const Press* press = std::get_if<Press>(&event)) {
       if (!io.WantCaptureMouse)
         to.on_press(press->button, pixels() * press->x, pixels() * press->y, press->shift);
@@ -163,6 +169,8 @@ struct Window::System {
       to.on_release(release->button);
     } else if (const Move* move = std::get_if<Move>(&event)) {
       to.on_move(pixels() * move->x, pixels() * move->y);
+    } else if (const Drop* drop = std::get_if<Drop>(&event)) {
+      to.on_drop(drop->files);
     } else if (!io.WantCaptureMouse) {
       to.on_wheel(std::get<Wheel>(event).clicks);
     }
@@ -213,6 +221,20 @@ bool Window::is_software() const { return is_software_driver(system_->driver); }
 const std::string& Window::driver() const { return system_->driver; }
 bool Window::is_closing() const { return glfwWindowShouldClose(system_->window); }
 void Window::close() { glfwSetWindowShouldClose(system_->window, GLFW_TRUE); }
+
+void Window::keep_open() { glfwSetWindowShouldClose(system_->window, GLFW_FALSE); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(system_->window, title.c_str()); }
+
+std::uint64_t Window::make_texture(const Image& image) {
+  unsigned int texture = 0;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               image.rgba.data());
+  return texture;
+}
 
 void Window::wait_for_event(double seconds) { glfwWaitEventsTimeout(seconds); }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A window that shows pictures, with controls over them. All calls must be on the thread that created it.
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,11 +19,12 @@ enum class MouseButton { left, right, middle };
 /// User input as callbacks. Positions are in pixels from the window's upper left corner. Input to the
 /// controls is not reported.
 struct WindowEvents {
-  std::function<void(int key, bool shift)> on_key;
+  std::function<void(int key, bool shift, bool control)> on_key;
   std::function<void(MouseButton button, double x, double y, bool shift)> on_press;
   std::function<void(MouseButton button)> on_release;
   std::function<void(double x, double y)> on_move;
-  std::function<void(double clicks)> on_wheel;  // > 0: away from the user
+  std::function<void(double clicks)> on_wheel;                         // > 0: away from the user
+  std::function<void(const std::vector<std::string>& files)> on_drop;  // from another program
 };
 
 struct WindowSettings {
@@ -58,6 +60,11 @@ class Window {
 
   bool is_closing() const;  // the user has requested to close it
   void close();
+  void keep_open();  // refuses the request
+  void set_title(const std::string& title);
+
+  /// A picture for Dear ImGui, kept until the window closes.
+  std::uint64_t make_texture(const Image& image);
 
   /// Sleeps until the next input, or for this long [s].
   void wait_for_event(double seconds);

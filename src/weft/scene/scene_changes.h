@@ -1,0 +1,26 @@
+#pragma once
+/// Changes of a scene's numbers in a world that runs.
+
+#include <string>
+#include <vector>
+
+#include "weft/scene/scene_desc.h"
+#include "weft/world.h"
+
+namespace weft::engine {
+
+/// The part of `wanted` that a world of `now` can take between two steps: gravity, wind, solver, contact,
+/// fabrics, colliders and friction. The rest is that of `now`.
+SceneDesc changeable_part(const SceneDesc& now, const SceneDesc& wanted);
+
+/// Keys that differ, whose values need a new world: "cloth[0].grid". Empty: changeable_part() is `wanted`.
+std::vector<std::string> find_keys_for_restart(const SceneDesc& now, const SceneDesc& wanted);
+
+/// Whether bodies come or go, or take another shape: snapshots of the world are then of no use any more.
+bool changes_bodies(const SceneDesc& now, const SceneDesc& wanted);
+
+/// Makes a world of `now` one of changeable_part(now, wanted). A collider that is only displaced moves there
+/// during the next step, and pushes cloth. Throws InputError for invalid numbers; the world is then as before.
+void apply_changes(const SceneDesc& now, const SceneDesc& wanted, weft::World& world);
+
+}  // namespace weft::engine
