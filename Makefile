@@ -2,7 +2,7 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help program lab build python wheel wheel-all blender demo test scenes pictures videos study docs cluster asan tsan fuzz format clean
+.PHONY: help program lab build python wheel wheel-all blender demo test scenes pictures videos study docs cluster asan asan-library tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
@@ -19,6 +19,7 @@ help:
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
 	@echo "make cluster a farm on a real Slurm on this machine, a node of which dies and returns; as root (five minutes)"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
+	@echo "make asan-library  the same of the libraries alone, without pictures, programs and Python: what CI runs"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
 	@echo "make fuzz    fuzz the readers of scenes, meshes, glTF and saved worlds, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
@@ -69,6 +70,13 @@ docs:
 cluster: python
 	@tools/install_deps.sh --cluster
 	@tools/make_cluster.sh build/venv/bin/python build/release/python
+
+# What CI runs of asan: the libraries but those of pictures, without programs and Python package.
+asan-library:
+	@tools/install_deps.sh
+	@cmake --preset asan -DWEFT_BUILD_RENDER=OFF -DWEFT_BUILD_APP=OFF -DWEFT_BUILD_PYTHON=OFF > /dev/null
+	@cmake --build --preset asan -j $(JOBS)
+	@ctest --preset asan
 
 asan tsan:
 	@tools/install_deps.sh
