@@ -117,7 +117,7 @@ class View : public testing::Test {
     fs::current_path(folder);
   }
 
-  void open(std::vector<std::string> more = {}) {
+  void open(std::vector<std::string> more = {}, const PictureSize& size = kSize) {
     enter_folder();
     // Small, soft and cheap, so that it runs in real time on a busy machine.
     std::vector<std::string> words = {WEFT_PROGRAM,
@@ -126,7 +126,7 @@ class View : public testing::Test {
                                       "--report",
                                       "view.json",
                                       "--size",
-                                      std::to_string(kSize.width) + "x" + std::to_string(kSize.height),
+                                      std::to_string(size.width) + "x" + std::to_string(size.height),
                                       "--set",
                                       "cloth[0].grid.cells=[12, 12]",
                                       "--set",
@@ -481,7 +481,7 @@ TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosenOrTyped) {
 }
 
 TEST_F(View, TunesUndoesSavesAndAsksBeforeChangesAreLost) {
-  open({"--size", "1280x720"});
+  open({}, {1280, 720});
   paused();
   xdotool("key n");
   const std::string key = "cloth[0].fabric.spring_structural";
