@@ -330,11 +330,11 @@ void draw_question(Viewer& viewer) {
   begin_box("question", screen.x / 2, screen.y / 2, kWidth * scale(), {0.5f, 0.5f});
   ImGui::SetWindowFocus();
   ImGui::TextUnformatted(("Save the changes as " + viewer.save_as() + "?").c_str());
-  if (draw_button(viewer, "Save", "answer save", 1 / 3.0f)) viewer.answer(Viewer::Answer::save);
+  if (draw_button(viewer, "Save (S)", "answer save", 1 / 3.0f)) viewer.answer(Viewer::Answer::save);
   ImGui::SameLine();
-  if (draw_button(viewer, "Discard", "answer discard", 1 / 2.0f)) viewer.answer(Viewer::Answer::discard);
+  if (draw_button(viewer, "Discard (D)", "answer discard", 1 / 2.0f)) viewer.answer(Viewer::Answer::discard);
   ImGui::SameLine();
-  if (draw_button(viewer, "Cancel", "answer cancel", 1)) viewer.answer(Viewer::Answer::cancel);
+  if (draw_button(viewer, "Cancel (Esc)", "answer cancel", 1)) viewer.answer(Viewer::Answer::cancel);
   ImGui::End();
 }
 

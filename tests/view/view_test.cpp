@@ -217,8 +217,13 @@ class View : public testing::Test {
 
   static void move(int x, int y) { xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y)); }
 
-  void close_by(const std::string& key) {
+  /// `discards`: the scene was changed, so that the window asks first.
+  void close_by(const std::string& key, bool discards = false) {
     xdotool("key " + key);
+    if (discards) {
+      until("it asks", [](const Json& j) { return j["asking"] == true; });
+      xdotool("key d");
+    }
     const auto start = std::chrono::steady_clock::now();
     while (!program_->has_ended() &&
            std::chrono::steady_clock::now() - start < std::chrono::seconds(kPatience))
@@ -310,7 +315,7 @@ TEST_F(View, PausesStepsResetsAndSwitches) {
   EXPECT_EQ(state()["sides"][0]["time"], 0);
   xdotool("key space");
   until("it plays again", [](const Json& j) { return j["sides"][0]["steps"] > 0; });
-  close_by("Escape");
+  close_by("Escape", true);
   std::ifstream in("view.json");
   EXPECT_GT(Json::parse(in)["drawn_frames"], 0) << "the report is written at the end";
 }
@@ -360,7 +365,7 @@ TEST_F(View, WindOfTheSliderBlowsClothAway) {
   until("the cloth is blown to the left", [&](const Json& j) {
     return j["sides"][0]["center"][0] < start["sides"][0]["center"][0].get<double>() - 0.05;
   });
-  close_by("q");
+  close_by("q", true);
 }
 
 TEST_F(View, ComparesTwoIntegratorsAndSavesThePicture) {
@@ -465,6 +470,37 @@ TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosen) {
     return false;
   });
   close_by("q");
+}
+
+TEST_F(View, TunesUndoesSavesAndAsksBeforeChangesAreLost) {
+  open({}, {1280, 720});
+  paused();
+  xdotool("key n");
+  const std::string key = "cloth[0].fabric.spring_structural";
+  const Json before = until("numbers are shown", [&](const Json& j) { return j["controls"].contains(key); });
+  const double usual = before["tuned"][key];
+  const std::int64_t steps = before["sides"][0]["steps"];
+  const Json& place = before["controls"][key];
+  const int x = place[0].get<int>() + 20, y = (place[1].get<int>() + place[3].get<int>()) / 2;
+  drag("1", x, y, x + 60, y);
+  const Json tuned = until("it is stiffer", [&](const Json& j) { return j["tuned"][key] > 1.2 * usual; });
+  EXPECT_EQ(tuned["changed"], true);
+  EXPECT_EQ(tuned["sides"][0]["steps"], steps) << "without a restart";
+  move(640, 600);
+  xdotool("key ctrl+z");
+  until("it is as before", [&](const Json& j) { return j["tuned"][key] == usual && j["changed"] == false; });
+  xdotool("key ctrl+y");
+  until("it is stiffer again", [&](const Json& j) { return j["tuned"][key] == tuned["tuned"][key]; });
+  xdotool("key ctrl+o");
+  until("it asks", [](const Json& j) { return j["asking"] == true; });
+  click("answer cancel");
+  move(640, 600);
+  until("it goes on", [](const Json& j) { return j["asking"] == false && j["gallery"] == false; });
+  xdotool("key ctrl+s");
+  until("it is saved", [](const Json& j) { return j["changed"] == false; });
+  close_by("q");
+  const int status = std::system("'" WEFT_PROGRAM "' check fig6_ball_tuned.toml > check.txt 2>&1");
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST_F(View, ShowsThePastAgain) {
