@@ -2,7 +2,7 @@
 
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: help program lab build python wheel wheel-all demo test scenes pictures videos study docs asan tsan fuzz format clean
+.PHONY: help program lab build python wheel wheel-all blender demo test scenes pictures videos study docs cluster asan asan-library tsan fuzz format clean
 
 help:
 	@echo "make demo    install what is missing, build, simulate the paper's scenes into out/"
@@ -11,12 +11,15 @@ help:
 	@echo "make python  build the Python package: PYTHONPATH=build/release/python; for \$$WEFT_PYTHON, else python3"
 	@echo "make wheel   dist/weft-*.whl and the source distribution, tried in an environment of their own"
 	@echo "make wheel-all  a wheel for each of Python 3.10 to 3.13 that is there"
+	@echo "make blender  the Blender extension from dist/ (after make wheel), and its tests in the newest Blender of PyPI"
 	@echo "make scenes  the collision scenes at full size, every frame checked (a quarter of an hour)"
 	@echo "make pictures  the pictures of README and docs, in docs/images"
 	@echo "make videos  a video of every scene of contact/, in out/videos (ten minutes)"
 	@echo "make study   every claim tested: docs/study/study.md again (most of an hour)"
 	@echo "make docs    the site of docs/ and the C++ reference, in build/site"
+	@echo "make cluster a farm on a real Slurm on this machine, a node of which dies and returns; as root (five minutes)"
 	@echo "make asan    the tests under the address and undefined-behaviour sanitizers (half an hour)"
+	@echo "make asan-library  the same of the libraries alone, without pictures, programs and Python: what CI runs"
 	@echo "make tsan    the tests that use threads under the thread sanitizer (a quarter of an hour)"
 	@echo "make fuzz    fuzz the readers of scenes, meshes, glTF and saved worlds, FUZZ_SECONDS each (default 60)"
 	@echo "make format  clang-format"
@@ -35,6 +38,10 @@ wheel: python
 
 wheel-all: python
 	@tools/make_wheel.sh build/venv/bin/python $(foreach version,3.10 3.11 3.12 3.13,python$(version))
+
+blender:
+	@tools/install_deps.sh --blender
+	@tools/make_blender.sh
 
 demo: program
 	@build/release/bin/weft demo
@@ -59,6 +66,17 @@ docs:
 	@mkdocs build --strict --quiet
 	@mkdir -p build/site/cpp && doxygen Doxyfile
 	@echo "build/site/index.html"
+
+cluster: python
+	@tools/install_deps.sh --cluster
+	@tools/make_cluster.sh build/venv/bin/python build/release/python
+
+# What CI runs of asan: the libraries but those of pictures, without programs and Python package.
+asan-library:
+	@tools/install_deps.sh
+	@cmake --preset asan -DWEFT_BUILD_RENDER=OFF -DWEFT_BUILD_APP=OFF -DWEFT_BUILD_PYTHON=OFF > /dev/null
+	@cmake --build --preset asan -j $(JOBS)
+	@ctest --preset asan
 
 asan tsan:
 	@tools/install_deps.sh

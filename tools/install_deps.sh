@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the missing Debian/Ubuntu packages of Weft. --fuzz adds those for `make fuzz`, --bench the other engine of
-# `weft bench frontier`, --docs the site generator of `make docs`. No-op, without root rights, if none is missing.
+# `weft bench frontier`, --docs the site generator of `make docs`, --cluster the Slurm of `make cluster`, --blender the
+# libraries of Blender's module. No-op, without root rights, if none is missing.
 set -euo pipefail
 
 packages=(
@@ -26,7 +27,9 @@ for flag in "$@"; do
     --fuzz) packages+=(clang libclang-rt-dev) ;;
     --bench) packages+=(libbullet-dev) ;;
     --docs) packages+=(mkdocs doxygen) ;;
-    *) echo "install_deps.sh takes --fuzz, --bench and --docs, not $flag" >&2; exit 2 ;;
+    --cluster) packages+=(slurm-wlm slurm-client munge) ;;
+    --blender) packages+=(libx11-6 libxi6 libgl1 libxfixes3 libxrender1 libxkbcommon0 libsm6 libice6) ;;
+    *) echo "install_deps.sh takes --fuzz, --bench, --docs, --cluster and --blender, not $flag" >&2; exit 2 ;;
   esac
 done
 

@@ -22,6 +22,9 @@ done
 "$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
+# Values of cloth in colours.
+"$weft" render paper/fig6_ball --frame 60 --color strain --size 960x540 --out "$images/strain.jpg"
+
 # Cloth on a rotating ball, as a video.
 "$weft" render contact/rotating_ball --every 3 --size 640x400 --camera 20,22 --out "$images/weft.webp"
 
@@ -34,7 +37,17 @@ as_it_is=(--set solver.untangle=false --set solver.crossed_start=allow)
 "$weft" render "$wardrobe/shirt_walk.toml" --frame 0 "${view[@]}" "${as_it_is[@]}" --out "$wardrobe/start.png"
 "$weft" render "$wardrobe/shirt_walk.toml" --frames 0,30 "${view[@]}" --columns 2 --out "$wardrobe/walk.png"
 ffmpeg -v error -y -i "$wardrobe/start.png" -i "$wardrobe/walk.png" -filter_complex hstack -q:v 3 "$images/garment_start.jpg"
-"$weft" render "$wardrobe/dress_kick.toml" --frames 0,20,31,40 --columns 4 --size 400x520 --camera 30,8,1.3 --out "$images/dress_kick.jpg"
+"$weft" run "$wardrobe/dress_kick.toml" --no-pc2 --out "$wardrobe/dress" > /dev/null
+view=(--camera 30,8,1.3)
+"$weft" render "$wardrobe/dress" --frames 0,20,31,40 --columns 4 --size 400x520 "${view[@]}" --out "$images/dress_kick.jpg"
+"$weft" render "$wardrobe/dress" --size 480x560 "${view[@]}" --out "$images/dress_kick.webp"
+
+# A sheet of 25,600 particles of silk.
+sheet=(--set 'cloth[0].grid.size=[1.3,1.3]' --set 'cloth[0].grid.cells=[159,159]' --set 'cloth[0].fabric=silk'
+  --set 'cloth[0].position=[-0.65,0.56,-0.65]' --set 'cloth[0].color=[0.03,0.2,0.26]')
+"$weft" run contact/ball_and_floor --frames 110 --no-pc2 "${sheet[@]}" --out "$wardrobe/sheet" > /dev/null
+"$weft" render "$wardrobe/sheet" --size 1280x720 --camera 30,14 --fit cloth --out "$images/silk_sheet.jpg"
+"$weft" render "$wardrobe/sheet" --every 2 --size 640x400 --camera 30,14 --fit cloth --out "$images/silk_sheet.webp"
 
 # The examples of docs/manual/cpp.md.
 films=$(mktemp -d)

@@ -31,7 +31,7 @@ void paint(const Animation& animation, const fs::path& folder) {
   painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
   const fs::path video = folder / "video.mp4";
   require_ffmpeg(video);
-  painter.write_video(video, kEvery, interrupted);
+  painter.write_video(video, kEvery, [](int, int) { return !interrupted(); });
 }
 
 /// Optional pictures: a failure is reported once and does not stop the demo.

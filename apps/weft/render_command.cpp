@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,12 @@ struct RenderRequest {
   int columns = 0;          // of a contact sheet; 0: as many as pictures, at most 4
   int every = 1;            // of a video: every so many frames
   std::string size = "1280x720";
-  std::vector<double> camera;  // azimuth, elevation, zoom
+  std::vector<double> camera;   // azimuth, elevation, zoom
+  std::vector<double> look_at;  // empty: the middle of what is framed
+  bool fits_cloth = false;
+  std::optional<int> smooth;
+  std::optional<ParticleValue> color;
+  std::vector<double> range;  // of the colours' values; empty: of the frames that are drawn
   bool transparent = false, springs = false;
   int threads = 0;
   Overrides overrides;
@@ -41,6 +47,7 @@ struct RenderRequest {
 struct Footage {
   Animation animation;
   RunOutcome outcome;
+  std::vector<std::vector<std::vector<float>>> values;  // of --color
 };
 
 /// An animation written by `weft run`, or simulated now.
@@ -58,13 +65,20 @@ class Source {
     if (scene_) return;
     if (!request.overrides.empty())
       throw InputError("--set does not apply to " + file_.string() + ": it is already simulated");
+    if (request.color && *request.color != ParticleValue::speed)
+      throw InputError("--color strain and shear require a scene: " + file_.string() +
+                       " contains positions; speed is computed from them");
     if (request.springs)
       throw InputError("--springs requires a scene: " + file_.string() + " does not contain springs");
   }
 
   /// At least up to the last requested frame, unless the simulation ends before.
   Footage get() const {
-    if (!scene_) return {read_glb(file_), RunOutcome::done};
+    if (!scene_) {
+      Footage footage{read_glb(file_), RunOutcome::done, {}};
+      if (request_.color) footage.values = compute_speeds(footage.animation);
+      return footage;
+    }
     RunOptions options{.threads = choose_threads(request_.threads),
                        .check_passages = false,
                        .keep_going = [] { return !interrupted(); }};
@@ -73,14 +87,20 @@ class Source {
     if (options.frames == 0) options.frames = 1;
     ProgressBar bar(scene_->name);
     FilmSink film;
-    const RunReport report = run_scene(*scene_, options, {&film}, [&](const Progress& progress) {
+    std::optional<ValueSink> values;
+    if (request_.color) values.emplace(*request_.color);
+    std::vector<FrameSink*> sinks = {&film};
+    if (values) sinks.push_back(&*values);
+    const RunReport report = run_scene(*scene_, options, sinks, [&](const Progress& progress) {
       bar.update(progress);
       return !interrupted();
     });
     bar.clear();
     for (const std::string& warning : report.warnings) say("warning: " + warning);
     if (report.outcome == RunOutcome::failed) say("the simulation failed at " + report.failure);
-    return {film.take(), report.outcome};
+    Footage footage{film.take(), report.outcome, {}};
+    if (values) footage.values = values->take();
+    return footage;
   }
 
   std::vector<SpringsToDraw> springs() const {
@@ -104,6 +124,12 @@ PaintSettings paint_settings(const RenderRequest& request) {
   if (request.camera.size() > 0) settings.view.azimuth_deg = request.camera[0];
   if (request.camera.size() > 1) settings.view.elevation_deg = request.camera[1];
   if (request.camera.size() > 2) settings.zoom = request.camera[2];
+  settings.framed = request.fits_cloth ? Framed::cloth : Framed::everything;
+  if (!request.look_at.empty())
+    settings.look_at = Vec3(request.look_at[0], request.look_at[1], request.look_at[2]);
+  settings.style.smooth = request.smooth;
+  if (!request.range.empty() && !(request.range[0] < request.range[1]))
+    throw InputError("--range: expected two values in ascending order, as in 0,2.5");
   if (!(std::abs(settings.view.azimuth_deg) <= 360 && std::abs(settings.view.elevation_deg) < 90 &&
         settings.zoom > 0)) {
     throw InputError(
@@ -120,6 +146,38 @@ std::vector<int> choose_frames(std::vector<int> frames, RunOutcome outcome, int 
   return frames;
 }
 
+ShownValues show_values(const RenderRequest& request, std::vector<std::vector<std::vector<float>>> frames,
+                        const std::vector<int>& drawn) {
+  const ValueLabel label = label_of(*request.color);
+  ShownValues values{label.name + " [" + label.unit + "]", std::move(frames)};
+  values.range =
+      request.range.empty() ? find_range(values, drawn) : std::array{request.range[0], request.range[1]};
+  return values;
+}
+
+/// Frames of a video or sequence, or the pictures.
+std::vector<int> drawn_frames(const RenderRequest& request, RunOutcome outcome, int last) {
+  if (!is_video(request.out) && !is_sequence(request.out))
+    return choose_frames(request.frames, outcome, last);
+  std::vector<int> frames;
+  for (int frame = 0; frame <= last; frame += request.every) frames.push_back(frame);
+  return frames;
+}
+
+/// Reports the drawing of many pictures on a terminal.
+class DrawingProgress {
+ public:
+  void update(int drawn, int all) {
+    if (!is_terminal_) return;
+    fmt::print(stderr, "\rdrawn {} of {} pictures", drawn, all);
+    if (drawn == all) fmt::print(stderr, "\r\x1b[K");
+    std::fflush(stderr);
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+};
+
 /// Renders the available frames, even if the simulation failed or was interrupted; returns its outcome.
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
@@ -127,15 +185,27 @@ RunOutcome render(const RenderRequest& request) {
   const Source source(request);
   auto device = make_offscreen_device();  // first: fails before simulating on machines without graphics
   if (request.out.has_parent_path()) make_folder(request.out.parent_path());
-  require_writable(request.out);
+  if (!is_sequence(request.out)) require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
   catch_interrupts();
-  const auto [animation, outcome] = source.get();
+  auto [animation, outcome, values] = source.get();
   settings.style.springs = source.springs();
+  if (request.color) {
+    const std::vector<int> drawn = drawn_frames(request, outcome, num_frames(animation) - 1);
+    require_frames(drawn, num_frames(animation) - 1);
+    settings.style.values = show_values(request, std::move(values), drawn);
+  }
   Painter painter(animation, settings, std::move(device));
+  const bool was_interrupted = interrupted();  // while simulating
+  DrawingProgress progress;
+  const auto go_on = [&](int drawn, int all) {
+    progress.update(drawn, all);
+    return interrupted() == was_interrupted;
+  };
   if (is_video(request.out)) {
-    const bool was_interrupted = interrupted();  // while simulating
-    painter.write_video(request.out, request.every, [&] { return interrupted() != was_interrupted; });
+    painter.write_video(request.out, request.every, go_on);
+  } else if (is_sequence(request.out)) {
+    painter.write_sequence(request.out, request.every, go_on);
   } else {
     const std::vector<int> frames = choose_frames(request.frames, outcome, painter.last_frame());
     painter.write_pictures(request.out, frames, request.columns);
@@ -155,7 +225,10 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->add_option("SCENE", request->scene,
                    "A scene, or results of weft run: the folder or its animation.glb")
       ->required();
-  command->add_option("--out", request->out, "A .png, .jpg, .mp4, .webp or .gif file")
+  command
+      ->add_option(
+          "--out", request->out,
+          "A .png, .jpg, .mp4, .webp or .gif file; frame_####.png: a file per frame, with its number")
       ->type_name("FILE")
       ->capture_default_str();
   command
@@ -169,7 +242,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--columns", request->columns, "Columns of a contact sheet")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
-  command->add_option("--every", request->every, "For a video: draw every N-th frame")
+  command->add_option("--every", request->every, "For a video or files per frame: draw every N-th frame")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
@@ -182,6 +255,36 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->expected(1, 3)
       ->type_name("A,E,Z");
+  command->add_option("--look-at", request->look_at, "Point in the picture's middle, as in 0,1.2,0 (metres)")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  command
+      ->add_option_function<std::string>(
+          "--fit", [request](const std::string& what) { request->fits_cloth = what == "cloth"; },
+          "The camera frames everything, or only the cloth")
+      ->check(CLI::IsMember({"all", "cloth"}))
+      ->type_name("all|cloth");
+  command
+      ->add_option("--smooth", request->smooth,
+                   "Loop subdivisions of drawn cloth, 0 to 2 (default: by its number of triangles)")
+      ->check(CLI::Range(0, 2))
+      ->type_name("N");
+  command
+      ->add_option("--color", request->color,
+                   "Colour cloth by the strain of its threads, its shear or its speed, with a legend")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ParticleValue>{{"strain", ParticleValue::strain},
+                                                                       {"shear", ParticleValue::shear},
+                                                                       {"speed", ParticleValue::speed}}))
+      ->type_name("strain|shear|speed");
+  command
+      ->add_option(
+          "--range", request->range,
+          "Values of the first and the last colour, as in 0,5 (default: of the frames that are drawn)")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("A,B");
   command->add_flag("--transparent", request->transparent, "Transparent background, without sky and ground");
   command->add_flag("--springs", request->springs, "Draw particles and springs instead of cloth");
   command->add_option("--threads", request->threads, "Threads of the simulation (default: all processors)")

@@ -110,6 +110,20 @@ WEFT_API void validate_fabric(const Fabric& fabric, const std::string& name);
 /// gives bend_warp, bend_bias and bend_weft exactly at 0°, 45° and 90°.
 WEFT_API double bending_rigidity(const Fabric& fabric, double cos_psi, double sin_psi);
 
+/// How the threads of a fabric cross or loop.
+enum class Weave { none, plain, twill, satin, knit };
+
+/// Appearance of a fabric in pictures; without effect on motion. The defaults are those of a smooth surface.
+struct FabricLook {
+  Weave weave = Weave::none;
+  double thread = 0;  // distance of neighbouring threads, of a knit its stitches; > 0 with a weave [m]
+  double translucency = 0.25;  // share of sunlight that passes, from 0 to 1
+  double sheen = 0.3;          // light from fibres that stand out, at grazing angles, from 0 to 1
+  double gloss = 0.05;         // reflection of the surroundings, from 0 to 1
+  double weft_shade = 1;       // brightness of the weft; 1: as the warp, from 0 (black) to 10
+  bool operator==(const FabricLook&) const = default;
+};
+
 /// Sources of a preset's numbers.
 struct FabricSources {
   std::string density = {}, stretch = {}, shear = {}, bending = {}, damping = {}, thickness = {},
@@ -121,6 +135,7 @@ struct FabricPreset {
   std::string title = {};  // description in one line
   Fabric fabric = {};
   FabricSources sources = {};
+  FabricLook look = {};
 };
 
 /// Five everyday fabrics, then the ten measured by H. Wang, J. O'Brien and R. Ramamoorthi, Data-Driven

@@ -44,6 +44,8 @@ struct RenderOptions {
   std::vector<std::array<double, 3>> cloth_colors = {};  // of the first cloths, linear red, green, blue in
                                                          // [0, 1]; others keep theirs, by default red
   std::optional<double> ground = {};  // height of a ground drawn in rgb only, where no plane is [m]
+  std::optional<int> smooth = {};  // Loop subdivisions of cloth in rgb, 0 to 2, with rounded hems; empty: its
+                                   // triangles, which depth and ids always show
 };
 
 /// A picture as arrays, in rows from the top. Depths and ids belong to pixel centres, rgb to whole pixels.

@@ -1,9 +1,11 @@
 /// Scene files, runs, mesh files and point caches.
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 
 #include "locked_world.h"
+#include "weft/crossings.h"
 #include "weft/io.h"
 #include "weft/run.h"
 
@@ -275,6 +277,25 @@ void bind_convert(nb::module_& m) {
       nb::arg("first_frame"), nb::arg("last_frame").none(), nb::arg("mesh"));
 }
 
+void bind_crossings(nb::module_& m) {
+  m.def(
+      "find_crossings",
+      [](const std::vector<std::tuple<Vectors, Triangles, bool>>& surfaces) {
+        std::vector<Surface> read;
+        for (const auto& [positions, triangles, is_cloth] : surfaces)
+          read.push_back({to_vectors(positions), to_triangles(triangles), is_cloth});
+        std::vector<std::array<int, 4>> rows;
+        const nb::gil_scoped_release release;
+        for (const Crossing& c : find_crossings(read))
+          rows.push_back({c.surface, c.triangle, c.other_surface, c.other_triangle});
+        return rows;
+      },
+      nb::arg("surfaces"),
+      nb::sig("def find_crossings(surfaces: Sequence[tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
+              "bool]]) -> "
+              "list[list[int]]"));
+}
+
 }  // namespace
 
 void bind_scene(nb::module_& m) {
@@ -284,6 +305,7 @@ void bind_scene(nb::module_& m) {
   bind_meshes(m);
   bind_point_caches(m);
   bind_convert(m);
+  bind_crossings(m);
   m.def("run", run_scene, nb::arg("scene"), nb::arg("frames").none(), nb::arg("threads"), nb::arg("audit"),
         nb::arg("check_passages"), nb::arg("folder"), nb::arg("glb"), nb::arg("obj"), nb::arg("start_from"),
         nb::arg("unfinished"), nb::arg("checkpoint_every").none(), nb::arg("on_frame").none(),

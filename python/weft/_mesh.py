@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -197,6 +197,26 @@ def read_gltf(file: str | os.PathLike[str], *, node: str = "", clip: str = "", s
     mesh.uv = uv if len(uv) else None
     mesh.deformation = deformation
     return mesh
+
+
+def find_crossings(cloths: Iterable[Any], colliders: Iterable[Any] = ()) -> NDArray[np.int32]:
+    """Pairs of triangles that cross, by the exact, independent checker of runs: (k, 4) surface, triangle, other surface,
+    other triangle. Surfaces are counted through cloths, then colliders; the first one of a pair is a cloth.
+
+    Each is a pair (vertices, faces), a Mesh, or any object with `vertices` and `faces`. Touching is not crossing, and
+    colliders may cross themselves and each other. Raises InputError for invalid ones.
+
+    >>> flat = Mesh([(0, 0, 0), (1, 0, 0), (0, 0, 1)], [(0, 2, 1)])
+    >>> upright = Mesh([(0.2, -1, 0.2), (0.2, 1, 0.2), (0.2, -1, 9)], [(0, 1, 2)])
+    >>> find_crossings([flat, upright]).tolist()
+    [[0, 0, 1, 0]]
+    """
+    surfaces = []
+    for shapes, is_cloth in ((cloths, True), (colliders, False)):
+        for shape in shapes:
+            mesh = Mesh(*shape) if isinstance(shape, tuple) else as_mesh(shape)
+            surfaces.append((mesh.vertices, mesh.faces, is_cloth))
+    return np.array(_core.find_crossings(surfaces), np.int32).reshape(-1, 4)
 
 
 def mesh_with(

@@ -95,6 +95,9 @@ class Camera(_core.CameraValues):
         """Width and height [pixels]."""
         return (self.width, self.height)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _camera_of, (self.position, self.target, self.fov_deg, self.size)
+
     def framing(self, world: World) -> Camera:
         """The camera with this direction, as near as shows all cloths and finite colliders of a world."""
         choose(world, "world", World, "a World")
@@ -126,10 +129,12 @@ class Camera(_core.CameraValues):
         return Rendering(*_renderer().render(world._core, self, options))
 
 
+def _camera_of(position: ArrayLike, target: ArrayLike, fov_deg: float, size: tuple[int, int]) -> Camera:
+    return Camera(position=position, target=target, fov_deg=fov_deg, size=size)
+
+
 def _adopt(values: _core.CameraValues) -> Camera:
-    return Camera(
-        position=values.position, target=values.target, fov_deg=values.fov_deg, size=(values.width, values.height)
-    )
+    return _camera_of(values.position, values.target, values.fov_deg, (values.width, values.height))
 
 
 def _camera(animation: _core.AnimationFile, camera: Camera | None, size: tuple[int, int]) -> _core.CameraValues:

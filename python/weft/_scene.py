@@ -6,9 +6,7 @@ import json
 import math
 import os
 import re
-import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
@@ -19,6 +17,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arguments import choose, whole
 from ._pictures import Camera, Picture, draw_frame, write_video
+from ._progress import show_progress
 from ._world import World
 
 _SPRING_KEYS = {"structural": "spring_structural", "shear": "spring_shear", "bend": "spring_bend"}
@@ -345,36 +344,6 @@ def open_run(folder: str | os.PathLike[str]) -> Run:
     return Run(path)
 
 
-def _show_progress(name: str) -> Callable[[int, int, float, float], object]:
-    try:
-        from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
-    except ImportError:
-        return _print_progress(name)
-    bar: Any = None
-
-    def update(frame: int, num_frames: int, spent: float, left: float) -> None:
-        nonlocal bar
-        if bar is None:
-            bar = tqdm(total=num_frames, desc=name, unit="frame")
-        bar.update(frame - bar.n)
-        if frame == num_frames:
-            bar.close()
-
-    return update
-
-
-def _print_progress(name: str) -> Callable[[int, int, float, float], object]:
-    last = time.monotonic()
-
-    def update(frame: int, num_frames: int, spent: float, left: float) -> None:
-        nonlocal last
-        if time.monotonic() - last >= 10 or frame == num_frames:
-            last = time.monotonic()
-            print(f"{name}: frame {frame} of {num_frames}, {left:.0f} s left", file=sys.stderr)
-
-    return update
-
-
 def run(
     scene: Scene | str | os.PathLike[str],
     *,
@@ -420,7 +389,7 @@ def run(
     every = None if checkpoint_every is None else whole(checkpoint_every, "checkpoint_every")
     keeper = tempfile.TemporaryDirectory(prefix="weft-", ignore_cleanup_errors=True) if out is None else None
     folder = Path(keeper.name if keeper else os.fspath(out))  # type: ignore[arg-type]
-    tell = _show_progress(scene.name) if progress is True else progress or None
+    tell = show_progress(scene.name, "frame") if progress is True else progress or None
     _core.run(
         scene._scene, num_frames, num_threads, bool(audit), bool(check_passages),
         str(folder), bool(glb), bool(obj), "" if start is None else os.fspath(start), str(unfinished), every, tell,

@@ -1,4 +1,4 @@
-"""Speed of the package, as ratios within one run: `python -m weft.bench`."""
+"""Speed of the package, as ratios within one run: `python -m weft.bench`; of farms: `python -m weft.bench farm`."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, farm
 from ._batch import Batch
 from ._mesh import grid
 from ._world import World
@@ -181,6 +184,70 @@ def _bench_mujoco() -> None:
     _row("MuJoCo's rollout, a flex of 32 × 32, frames of 8 × 2 ms, two threads", f"{rate:.0f} frames/s")
 
 
+def _make_case(case: dict[str, int]) -> World:
+    world = _hang(8)
+    world.cloths[0].velocities = (0, 0, 1e-4 * case["n"])
+    return world
+
+
+def _measure_case(world: World) -> dict[str, float]:
+    return {"height": world.cloths[0].center_of_mass[1]}
+
+
+def _loop_over_cases(steps: int, count: int) -> None:
+    for n in range(count):
+        world = _make_case({"n": n})
+        for _ in range(steps):
+            world.step(_STEP)
+        _measure_case(world)
+
+
+def count_cases(steps: int, file: str, parent: int) -> None:
+    """Cases without a farm, while the parent process lives. After each one, writes their number to a file."""
+    stream, number = os.open(file, os.O_WRONLY | os.O_CREAT), 0
+    while os.getppid() == parent:
+        _loop_over_cases(steps, 1)
+        number += 1
+        os.pwrite(stream, f"{number:12}".encode(), 0)
+
+
+def _bench_farm(num_cases: int, milliseconds: int, aim: int) -> None:
+    """Cases of a duration by one worker of a farm, and at the same time by a loop in another process."""
+    few, times = max(1, 2000 // milliseconds), []
+    for _ in range(3):
+        start = time.perf_counter()
+        _loop_over_cases(10, few)
+        times.append((time.perf_counter() - start) / (10 * few))
+    steps = max(1, round(1e-3 * milliseconds / min(times)))
+    with farm.local(1) as client, tempfile.TemporaryDirectory() as folder:
+        cases, count = farm.grid(n=range(num_cases)), Path(folder, "count")
+        options: dict[str, Any] = {"client": client, "progress": False, "measure": _measure_case}
+        farm.run(_make_case, cases[:1], seconds=_STEP, out=f"{folder}/first", **options)
+        code = f"import weft.bench; weft.bench.count_cases({steps}, {str(count)!r}, {os.getpid()})"
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+        loop = subprocess.Popen([sys.executable, "-c", code], env=environment, start_new_session=True)
+        try:
+            while not count.is_file() or not count.read_text():
+                time.sleep(0.01)
+            before, start = int(count.read_text()), time.perf_counter()
+            farm.run(_make_case, cases, seconds=steps * _STEP, dt=_STEP, out=f"{folder}/farm", **options)
+            looped, spent = int(count.read_text()) - before, time.perf_counter() - start
+        finally:
+            loop.kill()
+            loop.wait()
+    what = f"a farm of {num_cases} cases of {1e3 * spent / looped:.0f} ms, beyond a loop at the same time"
+    _row(what, f"{100 * (looped / num_cases - 1):.1f} %", f"≤ {aim} %")
+
+
+def bench_farms() -> None:
+    """Prints the rows of farms."""
+    try:
+        _bench_farm(10_000, 10, 25)
+        _bench_farm(600, 200, 3)
+    except ImportError as error:
+        _row(str(error), "–")
+
+
 def main() -> None:
     """Prints the table: what, the figure, and the aim."""
     _bench_step()
@@ -194,4 +261,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    bench_farms() if sys.argv[1:] == ["farm"] else main()

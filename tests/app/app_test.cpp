@@ -426,7 +426,8 @@ TEST_F(App, VerifyFindsACleanRunClean) {
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
   EXPECT_TRUE(contains(done.out, "6 frames; no intersections")) << done.out;
   EXPECT_TRUE(contains(done.out, "between frames, on linear paths: no tunnelling")) << done.out;
-  EXPECT_EQ(shell("weft verify results/animation.glb").out, done.out);
+  const std::string of_file = shell("weft verify results/animation.glb").out;
+  EXPECT_EQ(of_file.substr(of_file.find(": ")), done.out.substr(done.out.find(": ")));
 }
 
 TEST_F(App, VerifyAgreesWithTheReport) {

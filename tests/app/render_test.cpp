@@ -88,6 +88,42 @@ TEST_F(Render, InterruptedPictureIsOfTheLastFrameThatWasDone) {
   EXPECT_EQ(read_png("ball.png").width, 100);
 }
 
+TEST_F(Render, WritesNumberedFilesPerFrame) {
+  EXPECT_EQ(shell("weft render paper/fig6_ball --frames 4 --every 2 --size 100x80 --out f_###.png" + kQuick)
+                .exit_code,
+            0);
+  for (const char* file : {"f_000.png", "f_002.png", "f_004.png"}) EXPECT_EQ(read_png(file).width, 100);
+  EXPECT_FALSE(fs::exists("f_001.png"));
+  EXPECT_FALSE(fs::exists("f_###.png"));
+}
+
+TEST_F(Render, ColoursClothByValues) {
+  const std::string base = "weft render paper/fig6_ball --frame 4 --size 320x240 --fit cloth" + kQuick;
+  EXPECT_EQ(shell(base + " --out plain.png").exit_code, 0);
+  for (const std::string value : {"strain", "shear", "speed"}) {
+    const Finished done = shell(base + " --color " + value + " --out " + value + ".png");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_NE(read_png(value + ".png").rgba, read_png("plain.png").rgba);
+  }
+  ASSERT_EQ(shell("weft run paper/fig6_ball --frames 4 --out done" + kQuick).exit_code, 0);
+  EXPECT_EQ(shell("weft render done --color speed --range 0,2 --out speeds.png").exit_code, 0);
+  expect_bad_input("weft render done --color strain --out a.png", "--color strain and shear require a scene");
+  expect_bad_input("weft render done --color speed --range 2,1 --out a.png", "--range: expected two values");
+}
+
+TEST_F(Render, LooksAtThePointThatWasAskedFor) {
+  const auto middle = [&](const std::string& options) {
+    const std::string file = "at.png";
+    EXPECT_EQ(shell("weft render paper/fig6_ball --frame 0 --size 101x81 --transparent --out " + file +
+                    options + kQuick)
+                  .exit_code,
+              0);
+    return static_cast<int>(read_png(file).pixel(50, 40)[3]);
+  };
+  EXPECT_EQ(middle(" --look-at 0,9,0"), 0) << "above the scene";
+  EXPECT_EQ(middle(" --fit cloth"), 255);
+}
+
 TEST_F(Render, DrawsSprings) {
   EXPECT_EQ(shell("weft render paper/fig4_vertical --frame 0 --springs --out springs.png" + kQuick).exit_code,
             0);

@@ -25,8 +25,8 @@ Mat3 make_stiffness() {
 }
 
 /// All parts of the law respond: the limit, a curve, and large differences.
-const PatchLaw kLaw = {{make_stiffness(), {0.02, 0.1, 30000}, {{0.03, 500}}, {{0.01, 400}}},
-                       {30, 0.04, 870, 1970}};
+const PatchLaw kLaw({make_stiffness(), {0.02, 0.1, 30000}, {{0.03, 500}}, {{0.01, 400}}},
+                    {30, 0.04, 870, 1970});
 
 MembranePatch make_pair() {
   const std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0.1}, {0.9, 0, -0.8}, {-0.1, 0, -0.7}};

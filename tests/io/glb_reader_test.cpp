@@ -100,6 +100,14 @@ TEST(GlbReader, GivesBackWhatWasWritten) {
       << "at rest: all its digits";
 }
 
+TEST(GlbReader, GivesBackTheNamesOfFabrics) {
+  Animation written{.title = {}, .cloths = {make_cloth(2), make_cloth(2)}, .bodies = {}};
+  written.cloths[0].fabric = "denim";
+  const Animation read = write_and_read("fabrics", written);
+  EXPECT_EQ(read.cloths[0].fabric, "denim");
+  EXPECT_EQ(read.cloths[1].fabric, "");
+}
+
 TEST(GlbReader, GivesBackShapesInFullPrecision) {
   const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Sphere sphere{{1.0 / 3, 0, 2}, 0.1};

@@ -79,6 +79,62 @@ TEST(ScenePictures, DrawEverySpringAsAskedFor) {
   EXPECT_EQ(picture.dots[0].positions.size(), 49u);
 }
 
+TEST(ScenePictures, SmoothClothPassesItsParticlesAndBodiesStayBelow) {
+  const Animation animation = simulate("paper/fig6_ball", 20);
+  const Picture plain = ScenePictures(animation).at(20, {}),
+                smooth = ScenePictures(animation, {.ground = {}, .smooth = 2}).at(20, {});
+  EXPECT_EQ(smooth.meshes[0].triangles.size(), 16 * plain.meshes[0].triangles.size());
+  for (std::size_t k = 0; k < plain.meshes[0].positions.size(); ++k)
+    EXPECT_NEAR(smooth.meshes[0].positions[k], plain.meshes[0].positions[k], 0.05) << "a third of an edge";
+  EXPECT_EQ(smooth.meshes[0].fabric_coordinates.size(), smooth.meshes[0].positions.size() / 3 * 2);
+  Eigen::AlignedBox3f before, after;
+  for (std::size_t k = 0; k < plain.meshes[1].positions.size(); k += 3) {
+    before.extend(Eigen::Map<const Eigen::Vector3f>(&plain.meshes[1].positions[k]));
+    after.extend(Eigen::Map<const Eigen::Vector3f>(&smooth.meshes[1].positions[k]));
+  }
+  EXPECT_TRUE(before.contains(after));
+  EXPECT_NEAR((before.sizes() - after.sizes()).maxCoeff(), 0.01f, 1e-3f) << "5 mm on each side";
+}
+
+TEST(ScenePictures, CloseUpSmoothClothHasHems) {
+  const Animation animation = simulate("paper/fig6_ball", 0);
+  const ScenePictures pictures(animation, {.ground = {}, .smooth = 0});
+  const std::size_t far = pictures.at(0, {.distance = 5}).meshes[0].triangles.size(),
+                    near = pictures.at(0, {.distance = 0.3}).meshes[0].triangles.size();
+  EXPECT_EQ(far, animation.cloths[0].triangles.size());
+  EXPECT_EQ(near, far + 24u * 2 * Hem::kSides) << "24 border edges of 6 by 6 cells";
+}
+
+TEST(ScenePictures, ClothOfAPresetHasItsWeaveAndOtherClothChecks) {
+  Animation animation = simulate("paper/fig6_ball", 0);
+  EXPECT_GT(ScenePictures(animation).at(0, {}).meshes[0].look.check_size, 0);
+  animation.cloths[0].fabric = "denim";
+  const Look look = ScenePictures(animation).at(0, {}).meshes[0].look;
+  EXPECT_EQ(look.check_size, 0);
+  EXPECT_EQ(look.fabric, weft::find_fabric_preset("denim").look);
+  EXPECT_EQ(look.fabric.weave, weft::Weave::twill);
+}
+
+TEST(ScenePictures, ValuesKeepTheirRangeInAllFrames) {
+  const Animation animation = simulate("paper/fig5_falling", 10);
+  ShownValues values{"speed [m/s]", compute_speeds(animation)};
+  values.range = find_range(values, {0, 5, 10});
+  EXPECT_EQ(values.range[0], 0) << "at the start";
+  EXPECT_NEAR(values.range[1], 9.81 * 9.5 / animation.frames_per_second, 0.1) << "a free fall's";
+  const Picture picture = ScenePictures(animation, {.ground = {}, .values = values}).at(5, {});
+  EXPECT_EQ(picture.meshes[0].values, values.frames[5][0]);
+  EXPECT_EQ(picture.meshes[0].range, values.range);
+}
+
+TEST(FrameScene, OfClothLeavesBodiesOut) {
+  Animation animation = simulate("paper/fig6_ball", 0);
+  const Camera all = frame_scene(animation, {0}, {}, 1.5),
+               cloth = frame_scene(animation, {0}, {}, 1.5, Framed::cloth);
+  EXPECT_GT(all.distance, cloth.distance);
+  animation.bodies.clear();
+  EXPECT_EQ(frame_scene(animation, {0}, {}, 1.5).distance, cloth.distance);
+}
+
 TEST(FrameScene, HoldsTheWholeMotion) {
   const Animation animation = simulate("paper/fig5_falling", 30);
   const Camera whole = frame_scene(animation, {0, 15, 30}, {}, 1.5),

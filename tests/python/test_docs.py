@@ -13,7 +13,7 @@ import pytest
 import weft
 
 TREE = Path(__file__).parents[2]
-PAGES = ["README.md", "docs/manual/python.md", "python/README.md"]
+PAGES = ["README.md", "docs/manual/python.md", "docs/manual/farm.md", "python/README.md"]
 EXAMPLES = sorted((TREE / "python" / "examples").glob("*.py"))
 
 
@@ -47,20 +47,24 @@ def test_python_and_cpp_in_the_readme_print_the_same(capsys: pytest.CaptureFixtu
     assert float(heights[0][1]) == float(f"{float(heights[1][1]):.6g}")  # C++ prints six digits
 
 
-def test_there_are_eight_examples_under_40_lines() -> None:
-    assert len(EXAMPLES) == 8
+def test_there_are_nine_examples_under_40_lines() -> None:
+    assert len(EXAMPLES) == 9
     for example in EXAMPLES:
         assert len(example.read_text(encoding="utf-8").splitlines()) < 40, example.name
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_an_example_runs(example: Path, tmp_path: Path) -> None:
-    if "scipy" in example.read_text(encoding="utf-8"):
+    program, arguments = example.read_text(encoding="utf-8"), [str(tmp_path)]
+    if "scipy" in program:
         pytest.importorskip("scipy")
+    if "weft.farm" in program:
+        pytest.importorskip("distributed")
+        arguments.append("20")  # of 200 runs
     package = str(Path(weft.__file__).parents[1])
     environment = {**os.environ, "PYTHONPATH": package, "PYTHONWARNINGS": "error::UserWarning"}
     done = subprocess.run(
-        [sys.executable, str(example), str(tmp_path)], capture_output=True, text=True, timeout=250, env=environment,
+        [sys.executable, str(example), *arguments], capture_output=True, text=True, timeout=250, env=environment,
         cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr

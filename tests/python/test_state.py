@@ -192,6 +192,12 @@ def test_plain_values_are_pickled_copied_and_compared(value: object) -> None:
         hash(value)
 
 
+def test_cameras_are_pickled() -> None:
+    camera = weft.Camera(position=(1, 2, 3), target=(0, 0.5, 0), fov_deg=40, size=(32, 24))
+    for twin in (pickle.loads(pickle.dumps(camera)), copy.copy(camera), copy.deepcopy(camera)):
+        assert (twin.position, twin.target, twin.fov_deg, twin.size) == ((1, 2, 3), (0, 0.5, 0), 40, (32, 24))
+
+
 def test_state_hash_is_sixteen_digits_of_time_positions_and_velocities() -> None:
     world = hanging()
     assert len(world.state_hash()) == 16 and int(world.state_hash(), 16) >= 0

@@ -32,18 +32,22 @@ TEST(Renderer, GoesThroughItsStagesInOrder) {
   const std::vector<std::string> expected = {"pass shadow",
                                              "draw depth",
                                              "draw depth",  // ball and cloth
-                                             "pass depth",
-                                             "draw depth",
-                                             "draw depth",  // … and the ground
-                                             "draw depth",
+                                             "pass surfaces",
+                                             "draw solid",
+                                             "draw fabric",
+                                             "draw solid",  // the ground
+                                             "pass sunlight",
+                                             "draw sun",
                                              "pass rough occlusion",
                                              "draw occlusion",
                                              "pass occlusion",
                                              "draw blur",
+                                             "pass lit",
+                                             "draw light",
                                              "pass colour",
-                                             "draw solid",
-                                             "draw fabric",
-                                             "draw ground",
+                                             "draw surface",
+                                             "draw surface",
+                                             "draw surface",
                                              "draw line",
                                              "draw dot",
                                              "draw sky",
@@ -60,14 +64,14 @@ TEST(Renderer, LeavesOutSkyAndGroundWhereTransparent) {
   picture.transparent = true;
   const Drawn drawn = draw_with_mock(picture);
   EXPECT_EQ(drawn.count("draw sky"), 0);
-  EXPECT_EQ(drawn.count("draw ground"), 0);
-  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric"), 2);
+  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric"), 2) << "no ground";
+  EXPECT_EQ(drawn.count("draw surface"), 2);
 }
 
 TEST(Renderer, DrawsNoDepthThatNobodyReads) {
   const Drawn drawn = draw_with_mock(make_still_life(), {.samples = 1, .shadow_size = 0, .occlusion = false});
   EXPECT_EQ(drawn.count("draw depth"), 0);
-  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric") + drawn.count("draw ground"), 3);
+  EXPECT_EQ(drawn.count("draw solid") + drawn.count("draw fabric"), 3);
 }
 
 TEST(Renderer, DrawsPicturesOfNothingAndOfOddThings) {
@@ -101,11 +105,11 @@ TEST(Normals, PointAwayFromTheFrontAndAreUnit) {
 
 TEST(MockDevice, RefusesWhatOpenGlWouldGetWrong) {
   MockDevice device;
-  EXPECT_THROW(device.upload(std::vector<float>(8), std::vector<Triangle>{{0, 0, 1}}), std::logic_error);
-  EXPECT_THROW(device.upload(std::vector<float>(7), {}), std::logic_error);
+  EXPECT_THROW(device.upload(std::vector<float>(9), std::vector<Triangle>{{0, 0, 1}}), std::logic_error);
+  EXPECT_THROW(device.upload(std::vector<float>(8), {}), std::logic_error);
   const TargetId depth = device.target("depth", {TargetDesc::Format::depth, 8, 8});
   const TargetId color = device.target("colour", {TargetDesc::Format::color, 8, 8, 4});
-  const GeometryId point = device.upload(std::vector<float>(8), std::vector<Triangle>{{0, 0, 0}});
+  const GeometryId point = device.upload(std::vector<float>(9), std::vector<Triangle>{{0, 0, 0}});
   EXPECT_THROW(
       device.draw({Program::depth, {{"to_clip", Eigen::Matrix4f(Eigen::Matrix4f::Identity())}}, point}),
       std::logic_error)

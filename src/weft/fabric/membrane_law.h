@@ -82,9 +82,18 @@ struct PatchDifference {
 PatchDifference make_patch_difference(const Fabric& fabric);
 MembraneResponse difference_response(const PatchDifference& law, const Vec3& difference);
 
+/// Law of a patch. The strain limit is of each triangle, for a mean would let single ones stretch beyond it.
 struct PatchLaw {
-  MembraneLaw mean;
+  MembraneLaw alone;  // of a single triangle
+  MembraneLaw mean;   // of a pair: without the limit
+  MembraneLaw limit;  // of each triangle of a pair: the limit only
   PatchDifference difference;
+
+  PatchLaw(const MembraneLaw& law, const PatchDifference& of_difference)
+      : alone(law),
+        mean(law.stiffness, {}, law.warp, law.weft),
+        limit(Mat3::Zero(), law.limit),
+        difference(of_difference) {}
 };
 
 }  // namespace weft::engine

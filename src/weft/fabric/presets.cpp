@@ -38,7 +38,8 @@ FabricPreset make_silk() {
            .bending = kFeng,
            .damping = kDefaultDamping,
            .thickness = "typical of the weight",
-           .friction = "typical: silk slides easiest of the natural fibres"}};
+           .friction = "typical: silk slides easiest of the natural fibres"},
+          {.weave = Weave::plain, .thread = 0.25e-3, .translucency = 0.4, .sheen = 0.25, .gloss = 0.5}};
 }
 
 FabricPreset make_cotton_shirting() {
@@ -52,7 +53,8 @@ FabricPreset make_cotton_shirting() {
                       "13.9e-6 N·m), as its weight is",
            .damping = "typical of published scenes (ARCSim: 1e-3 to 3e-2 s)",
            .thickness = "typical, with the gap between two layers",
-           .friction = "typical of cotton on cotton"}};
+           .friction = "typical of cotton on cotton"},
+          {.weave = Weave::plain, .thread = 0.25e-3, .translucency = 0.3, .sheen = 0.25, .gloss = 0.05}};
 }
 
 FabricPreset make_wool_suiting() {
@@ -76,7 +78,8 @@ FabricPreset make_wool_suiting() {
            .bending = sheet + ": bending lengths 15.0 and 14.5 mm; bias their geometric mean",
            .damping = kDefaultDamping,
            .thickness = "typical of the weight",
-           .friction = "typical: wool is rougher than cotton"}};
+           .friction = "typical: wool is rougher than cotton"},
+          {.weave = Weave::plain, .thread = 0.4e-3, .translucency = 0.15, .sheen = 0.45, .gloss = 0.03}};
 }
 
 FabricPreset make_denim() {
@@ -101,7 +104,13 @@ FabricPreset make_denim() {
            .bending = sheet + ": B 0.172 gf·cm²/cm; bias the same",
            .damping = kDefaultDamping,
            .thickness = sheet,
-           .friction = "typical: denim is rougher than shirting"}};
+           .friction = "typical: denim is rougher than shirting"},
+          {.weave = Weave::twill,
+           .thread = 0.4e-3,
+           .translucency = 0.05,
+           .sheen = 0.3,
+           .gloss = 0.03,
+           .weft_shade = 2.5}};
 }
 
 FabricPreset make_leather() {
@@ -128,12 +137,24 @@ FabricPreset make_leather() {
                       "2021, 4553; unit taken as µN·m)",
            .damping = kDefaultDamping,
            .thickness = "middle of four sheep garment leathers, 0.64 to 0.96 mm (Memon et al. 2021)",
-           .friction = "typical of leather on leather"}};
+           .friction = "typical of leather on leather"},
+          {.translucency = 0, .sheen = 0.05, .gloss = 0.6}};
 }
+
+/// Looks of the fabrics of Wang et al., from their names; the source shows no weave.
+constexpr FabricLook kJersey = {.weave = Weave::knit, .thread = 0.7e-3, .translucency = 0.2, .sheen = 0.4};
+constexpr FabricLook kThickKnit = {
+    .weave = Weave::knit, .thread = 1.2e-3, .translucency = 0.1, .sheen = 0.55};
+constexpr FabricLook kSwim = {
+    .weave = Weave::knit, .thread = 0.4e-3, .translucency = 0.15, .sheen = 0.3, .gloss = 0.3};
+constexpr FabricLook kTwill = {.weave = Weave::twill, .thread = 0.35e-3, .translucency = 0.1, .sheen = 0.3};
+constexpr FabricLook kSatin = {
+    .weave = Weave::satin, .thread = 0.2e-3, .translucency = 0.15, .sheen = 0.2, .gloss = 0.7};
+constexpr FabricLook kPlain = {.weave = Weave::plain, .thread = 0.3e-3, .translucency = 0.2, .sheen = 0.25};
 
 /// A row of Wang et al.: bending in 1e-6 N·m at zero curvature, at 0, 45 and 90° from warp.
 FabricPreset measured(std::string name, std::string title, double density, double c11, double c22, double c12,
-                      double g, double bend_0, double bend_45, double bend_90) {
+                      double g, double bend_0, double bend_45, double bend_90, const FabricLook& look) {
   const std::string wang = "measured: Wang, O'Brien, Ramamoorthi 2011";
   FabricPreset preset{std::move(name),
                       std::move(title),
@@ -151,13 +172,14 @@ FabricPreset measured(std::string name, std::string title, double density, doubl
                        .bending = wang + ", at zero curvature",
                        .damping = kDefaultDamping,
                        .thickness = kDefaultThickness,
-                       .friction = kFriction}};
+                       .friction = kFriction},
+                      look};
   return preset;
 }
 
 FabricPreset make_navy_sparkle_sweat() {
-  FabricPreset preset =
-      measured("navy_sparkle_sweat", "Sweater: navy sparkle", 0.224, 25.0, 6.5, 0, 17.6, 14.87, 10.02, 11.41);
+  FabricPreset preset = measured("navy_sparkle_sweat", "Sweater: navy sparkle", 0.224, 25.0, 6.5, 0, 17.6,
+                                 14.87, 10.02, 11.41, kThickKnit);
   preset.sources.stretch +=
       "; c12 was measured as -39.8 N/m, which makes no positive definite matrix: 0 here, as in ARCSim";
   return preset;
@@ -170,23 +192,25 @@ std::vector<FabricPreset> make_presets() {
       make_wool_suiting(),
       make_denim(),
       make_leather(),
-      measured("gray_interlock", "T-shirt: gray interlock", 0.187, 33.2, 69.0, -29.4, 36.9, 5.80, 6.19, 3.57),
+      measured("gray_interlock", "T-shirt: gray interlock", 0.187, 33.2, 69.0, -29.4, 36.9, 5.80, 6.19, 3.57,
+               kJersey),
       measured("11oz_black_denim", "Jeans: 11 oz black denim", 0.324, 410.7, 2027.8, 20.5, 53.4, 16.05, 18.35,
-               24.24),
+               24.24, kTwill),
       measured("white_dots_on_black", "Tablecloth: white dots on black", 0.128, 4004, 4055, 0.7, 19.2, 12.93,
-               10.16, 7.82),
-      measured("royal_target", "Trousers: royal target", 0.220, 4033, 4070, 18.3, 104.8, 31.35, 27.00, 31.35),
+               10.16, 7.82, kPlain),
+      measured("royal_target", "Trousers: royal target", 0.220, 4033, 4070, 18.3, 104.8, 31.35, 27.00, 31.35,
+               kTwill),
       measured("tango_red_jet_set", "Jacket: tango red jet set", 0.113, 86.1, 342.8, 108.7, 14.3, 3.57, 5.49,
-               5.09),
+               5.09, kSatin),
       measured("camel_ponte_roma", "Jacket: camel ponte roma", 0.284, 62.3, 88.1, -25.6, 31.9, 9.09, 8.25,
-               9.29),
+               9.29, kJersey),
       measured("ivory_rib_knit", "Underwear: ivory rib knit", 0.276, 85.7, 130.3, -0.5, 83.2, 11.56, 7.50,
-               8.06),
+               8.06, kThickKnit),
       measured("pink_ribbon_brown", "Blanket: pink ribbon brown", 0.228, 303, 489.7, 212.1, 30.3, 29.27,
-               21.88, 14.94),
+               21.88, 14.94, kThickKnit),
       make_navy_sparkle_sweat(),
       measured("white_swim_solid", "Swimsuit: white swim solid", 0.204, 95.9, 209.2, 13.7, 60.8, 15.06, 14.70,
-               12.75),
+               12.75, kSwim),
   };
 }
 

@@ -110,13 +110,14 @@ struct MeshElements {
   static constexpr int kNumCouplings = 6;   // of a patch's vertices: 0-1, 0-2, 0-3, 1-2, 1-3, 2-3
   static constexpr int kCouplingSize = 10;  // slope, block from the first vertex
   static constexpr int kPatchSize = kNumCouplings * kCouplingSize;
+  static constexpr int kTangents = 2 + 2 * kTangentSize;  // of the curves, of both triangles' limits
 
   int first = 0;  // index of particle 0
   MembraneNumbers membrane;
   DifferenceNumbers difference;
   float damping = 0;  // η
   StiffeningNumbers stiffening;
-  float* tangent = nullptr;     // of stiffening, per patch; null: none [N/m]
+  float* tangent = nullptr;     // of stiffening, kTangents per patch; null: none [N/m]
   float* peak = nullptr;        // largest principal strain of each slice; null: none [1]
   const int* corner = nullptr;  // four of each patch
   const float* shape = nullptr;

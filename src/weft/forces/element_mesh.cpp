@@ -124,13 +124,26 @@ WEFT_ALWAYS_INLINE void membranes_body(const MeshElements& m, int slice_begin, i
                             add_large_difference<W>(pure_difference.y, m.difference.begin,
                                                     m.difference.along_2, t.y, tangent_2);
       sum.add(part, areas.difference * large);
+      Stress<W> limit1{}, limit2{};
       if (m.stiffening.is_set()) {
-        const StiffeningAnswer<W> more = stiffening_answer<W>(m.stiffening, pure_mean);
-        sum.add(part, areas.all * more.energy);
-        s = {s.s1 + more.stress.s1, s.s2 + more.stress.s2, s.s3 + more.stress.s3};
-        store_tangent<W>(m.tangent + place(slice, kTangentSize, 0, lane), kLanes, more.tangent);
-        const Pack<W> is_there = select_less(broadcast<W>(0), areas.all, broadcast<W>(1), broadcast<W>(0));
-        peak = larger(peak, widest<W>(is_there * more.peak));
+        float* tangent = m.tangent + place(slice, MeshElements::kTangents, 0, lane);
+        Pack<W> of_curves = broadcast<W>(0), d1 = broadcast<W>(0), d2 = broadcast<W>(0);
+        add_curve<W>(m.stiffening.along_1, pure_mean.x, of_curves, s.s1, d1);
+        add_curve<W>(m.stiffening.along_2, pure_mean.y, of_curves, s.s2, d2);
+        store(tangent, d1);
+        store(tangent + kLanes, d2);
+        sum.add(part, areas.all * of_curves);
+        const auto limit = [&](const Three<W>& e, Pack<W> area, float* to) WEFT_INLINE_LAMBDA {
+          StiffeningAnswer<W> answer{};
+          if (m.stiffening.limit.is_set()) answer = limit_answer<W>(m.stiffening.limit, e);
+          sum.add(part, area * answer.energy);
+          store_tangent<W>(to, kLanes, answer.tangent);
+          const Pack<W> is_there = select_less(broadcast<W>(0), area, broadcast<W>(1), broadcast<W>(0));
+          peak = larger(peak, widest<W>(is_there * answer.peak));
+          return answer.stress;
+        };
+        limit1 = limit(e1, areas.share_1 * areas.all, tangent + 2 * kLanes);
+        limit2 = limit(e2, areas.share_2 * areas.all, tangent + (2 + kTangentSize) * kLanes);
       }
       float* frame = m.frame + place(slice, MeshElements::kFrameSize, 0, lane);
       store3<W>(three_rows(frame), 0, f.first.f1);
@@ -138,8 +151,13 @@ WEFT_ALWAYS_INLINE void membranes_body(const MeshElements& m, int slice_begin, i
       store3<W>(three_rows(frame + 6 * kLanes), 0, f.second.f1);
       store3<W>(three_rows(frame + 9 * kLanes), 0, f.second.f2);
       const Three<W> mean_stress{s.s1, s.s2, s.s3};
-      store3<W>(three_rows(frame + 12 * kLanes), 0, plus<W>(mean_stress, times<W>(areas.share_2, t)));
-      store3<W>(three_rows(frame + 15 * kLanes), 0, minus<W>(mean_stress, times<W>(areas.share_1, t)));
+      const auto with = [](const Three<W>& stress, const Stress<W>& limit) WEFT_INLINE_LAMBDA {
+        return Three<W>{stress.x + limit.s1, stress.y + limit.s2, stress.z + limit.s3};
+      };
+      store3<W>(three_rows(frame + 12 * kLanes), 0,
+                with(plus<W>(mean_stress, times<W>(areas.share_2, t)), limit1));
+      store3<W>(three_rows(frame + 15 * kLanes), 0,
+                with(minus<W>(mean_stress, times<W>(areas.share_1, t)), limit2));
       store(frame + 18 * kLanes, tangent_1);
       store(frame + 19 * kLanes, tangent_2);
     }
@@ -229,6 +247,15 @@ WEFT_ALWAYS_INLINE void subtract_product(const Derivative<W>& a, const Derivativ
   }
 }
 
+/// block −= A Bᵀ L B of a triangle's limit.
+template <int W>
+WEFT_ALWAYS_INLINE void subtract_limit(const float* tangent, Pack<W> area, const Derivative<W>& i,
+                                       const Derivative<W>& j, Block<W>& block) {
+  Derivative<W> pull = multiply_tangent<W>(load_tangent<W>(tangent, kLanes), j);
+  for (int r = 0; r < 3; ++r) pull.row[r] = times<W>(area, pull.row[r]);
+  subtract_product<W>(i, pull, block);
+}
+
 /// −A g_i·S g_j
 template <int W>
 WEFT_ALWAYS_INLINE Pack<W> slope_of(Pack<W> area, const Three<W>& s, const Gradient<W>& i,
@@ -255,18 +282,22 @@ WEFT_ALWAYS_INLINE void patches_of_pack(const MeshElements& m, int slice, int la
 
   const MembraneNumbers& c = m.membrane;
   Tangent<W> k{broadcast<W>(c.c11), broadcast<W>(c.c12), zero, broadcast<W>(c.c22), zero, broadcast<W>(c.g)};
+  const float* tangent = m.tangent + place(slice, MeshElements::kTangents, 0, lane);
   if (m.stiffening.is_set()) {
-    const Tangent<W> more = load_tangent<W>(m.tangent + place(slice, kTangentSize, 0, lane), kLanes);
-    k = {k.d11 + more.d11, k.d12 + more.d12, more.d13, k.d22 + more.d22, more.d23, k.d33 + more.d33};
+    k.d11 += load<W>(tangent);
+    k.d22 += load<W>(tangent + kLanes);
   }
   const Pack<W> stiff[3] = {m.difference.soft + load<W>(frame + 18 * kLanes),
                             m.difference.soft + load<W>(frame + 19 * kLanes),
                             broadcast<W>(m.difference.soft)};
-  Derivative<W> mean[4], pull[4], apart[4], resist[4];  // of the strains, and their stresses times areas
+  Derivative<W> own[4], other[4];  // of both triangles' strains
+  Derivative<W> mean[4], pull[4], apart[4],
+      resist[4];  // of mean and difference, and their stresses times areas
   for (int v = 0; v < 4; ++v) {
-    const Derivative<W> own = derivative_of<W>(f1, first[v]), other = derivative_of<W>(f2, second[v]);
-    mean[v] = sum_of<W>(areas.share_1, own, areas.share_2, other);
-    apart[v] = sum_of<W>(1.0f, own, -1.0f, other);
+    own[v] = derivative_of<W>(f1, first[v]);
+    other[v] = derivative_of<W>(f2, second[v]);
+    mean[v] = sum_of<W>(areas.share_1, own[v], areas.share_2, other[v]);
+    apart[v] = sum_of<W>(1.0f, own[v], -1.0f, other[v]);
     pull[v] = multiply_tangent<W>(k, mean[v]);
     for (int r = 0; r < 3; ++r) {
       pull[v].row[r] = times<W>(areas.all, pull[v].row[r]);
@@ -282,6 +313,10 @@ WEFT_ALWAYS_INLINE void patches_of_pack(const MeshElements& m, int slice, int la
       block.add_diagonal(magnitude(w1) + magnitude(w2));
       subtract_product<W>(mean[i], pull[j], block);
       subtract_product<W>(apart[i], resist[j], block);
+      if (m.stiffening.limit.is_set()) {
+        subtract_limit<W>(tangent + 2 * kLanes, area_1, own[i], own[j], block);
+        subtract_limit<W>(tangent + (2 + kTangentSize) * kLanes, area_2, other[i], other[j], block);
+      }
       store(to, w1 + w2);
       block.store_at(to + kLanes, kLanes);
       to += MeshElements::kCouplingSize * kLanes;

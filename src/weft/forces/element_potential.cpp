@@ -79,7 +79,7 @@ void ElementPotential::fit_grid(const ClothModel& model) {
 void ElementPotential::fit_mesh(const ClothModel& model) {
   tables_ = build_element_tables(*elements_, model.num_particles());
   const std::size_t patches = static_cast<std::size_t>(tables_.num_patch_slices()) * kPackLanes;
-  fit_stiffening(kernels::kTangentSize * patches, tables_.num_patch_slices());
+  fit_stiffening(MeshElements::kTangents * patches, tables_.num_patch_slices());
   past_.assign(6 * patches, 0.0f);
   stress_.assign(MeshElements::kFrameSize * patches, 0.0f);
   patch_.assign(MeshElements::kPatchSize * patches, 0.0f);
@@ -115,6 +115,7 @@ double ElementPotential::peak_strain() const {
 double ElementPotential::stiffening_rate(int triangle) const {
   constexpr int kD11 = 0, kD22 = 3;
   std::ptrdiff_t first = 0, pitch = kPackLanes;
+  double curves = 0;
   if (is_grid_) {
     // The mesh lists the lower triangle first in a cell cut from a to d, the upper one in the others.
     const int cell = triangle / 2, cells_x = rows_.row_length - 1, i = cell % cells_x, j = cell / cells_x;
@@ -123,10 +124,13 @@ double ElementPotential::stiffening_rate(int triangle) const {
     pitch = static_cast<std::ptrdiff_t>(rows_.size());
     first = (is_top ? 0 : kernels::kTangentSize) * pitch + rows_.row(j) + i;
   } else {
-    const int patch = tables_.patch_of_triangle[triangle];
-    first = patch / kPackLanes * (kernels::kTangentSize * kPackLanes) + patch % kPackLanes;
+    const int place = tables_.place_of_triangle[triangle], patch = place / 2;
+    const int begin = patch / kPackLanes * (MeshElements::kTangents * kPackLanes) + patch % kPackLanes;
+    curves = static_cast<double>(tangent_[begin]) + tangent_[begin + kPackLanes];
+    first = begin + (2 + place % 2 * kernels::kTangentSize) * kPackLanes;
   }
-  return 0.5 * (static_cast<double>(tangent_[first + kD11 * pitch]) + tangent_[first + kD22 * pitch]);
+  return 0.5 *
+         (curves + static_cast<double>(tangent_[first + kD11 * pitch]) + tangent_[first + kD22 * pitch]);
 }
 
 bool ElementPotential::compute_stiffer_couplings(std::vector<double>& added) const {

@@ -179,10 +179,10 @@ void lay_out_far(const std::vector<std::vector<FarEntry>>& far, ElementTables& t
 ElementTables build_element_tables(const ClothElements& elements, int num_particles) {
   ElementTables tables;
   std::vector<OrderedPatch> patches;
-  tables.patch_of_triangle.resize(elements.membranes.size());
+  tables.place_of_triangle.resize(elements.membranes.size());
   for (const MembranePatch& patch : elements.patches) {
     for (int t = 0; t < patch.num_triangles; ++t)
-      tables.patch_of_triangle[patch.triangles[t]] = static_cast<int>(patches.size());
+      tables.place_of_triangle[patch.triangles[t]] = 2 * static_cast<int>(patches.size()) + t;
     patches.push_back(order(patch));
   }
   std::vector<std::vector<Entry>> around = find_entries(patches, num_particles);

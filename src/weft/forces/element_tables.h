@@ -13,7 +13,7 @@ namespace weft::engine {
 struct ElementTables {
   std::vector<int> corner;
   AlignedFloats shape;
-  std::vector<int> patch_of_triangle;
+  std::vector<int> place_of_triangle;  // twice its patch, + 1 for the second triangle
   std::vector<int> slice_begin, neighbour, coupling;
   AlignedFloats bending;
   std::vector<int> far_begin, far_neighbour;

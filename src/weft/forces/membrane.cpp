@@ -1,6 +1,5 @@
 #include "weft/forces/membrane.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace weft::engine {
@@ -49,14 +48,6 @@ std::array<double, 2> principal_stretches(const RestTriangle& rest, const Triang
   const double a = f.warp.squaredNorm(), b = f.weft.squaredNorm(), c = f.warp.dot(f.weft);
   const double largest = std::sqrt(0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c));
   return {largest > 0 ? f.warp.cross(f.weft).norm() / largest : 0.0, largest};
-}
-
-std::array<double, 2> principal_stretches(const Vec3& strain) {
-  const double mean = 0.5 * (strain[0] + strain[1]), half = 0.5 * (strain[0] - strain[1]),
-               shear = 0.5 * strain[2];
-  const double radius = std::sqrt(half * half + shear * shear);
-  return {std::sqrt(std::max(0.0, 1 + 2 * (mean - radius))),
-          std::sqrt(std::max(0.0, 1 + 2 * (mean + radius)))};
 }
 
 TriangleCorners stress_force(const RestTriangle& rest, const Vec3& s, const TriangleCorners& x) {

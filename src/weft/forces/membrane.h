@@ -34,9 +34,6 @@ std::array<Mat3, 3> membrane_strain_derivative(const RestTriangle& rest, const T
 /// Smallest and largest stretch over all directions in the triangle: length over rest length [1].
 std::array<double, 2> principal_stretches(const RestTriangle& rest, const TriangleCorners& x);
 
-/// The same of a Green strain.
-std::array<double, 2> principal_stretches(const Vec3& strain);
-
 /// Force on each corner by a stress: f_c = −A F S g_c [N]. Forces and their moments sum to zero.
 TriangleCorners stress_force(const RestTriangle& rest, const Vec3& stress, const TriangleCorners& x);
 

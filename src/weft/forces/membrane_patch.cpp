@@ -12,12 +12,40 @@ TriangleCorners triangle_of(const MembranePatch& patch, int t, const PatchCorner
 
 double share(const MembranePatch& patch, int t) { return patch.rest[t].area / patch.area(); }
 
+std::array<Vec3, 2> triangle_strains(const MembranePatch& patch, const PatchCorners& x) {
+  std::array<Vec3, 2> strains = {Vec3::Zero(), Vec3::Zero()};
+  for (int t = 0; t < patch.num_triangles; ++t)
+    strains[t] = membrane_strain(patch.rest[t], triangle_of(patch, t, x));
+  return strains;
+}
+
+PatchStrain combine(const MembranePatch& patch, const std::array<Vec3, 2>& strains) {
+  if (patch.num_triangles == 1) return {strains[0], Vec3::Zero()};
+  return {share(patch, 0) * strains[0] + share(patch, 1) * strains[1], strains[0] - strains[1]};
+}
+
+/// Responses of a patch's strains.
+struct Response {
+  MembraneResponse mean, difference;
+  std::array<MembraneResponse, 2> limit;  // of a pair's triangles
+};
+
+Response respond(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
+  const std::array<Vec3, 2> strains = triangle_strains(patch, x);
+  if (patch.num_triangles == 1) return {membrane_response(law.alone, strains[0]), {}, {}};
+  const PatchStrain both = combine(patch, strains);
+  Response response{
+      membrane_response(law.mean, both.mean), difference_response(law.difference, both.difference), {}};
+  if (law.limit.limit.stiffness > 0)
+    response.limit = {membrane_response(law.limit, strains[0]), membrane_response(law.limit, strains[1])};
+  return response;
+}
+
 /// Stress of each triangle, ∂W/∂e_t per its area.
-std::array<Vec3, 2> stresses(const MembranePatch& patch, const MembraneResponse& mean,
-                             const MembraneResponse& difference) {
-  if (patch.num_triangles == 1) return {mean.stress, Vec3::Zero()};
-  return {mean.stress + share(patch, 1) * difference.stress,
-          mean.stress - share(patch, 0) * difference.stress};
+std::array<Vec3, 2> stresses(const MembranePatch& patch, const Response& response) {
+  if (patch.num_triangles == 1) return {response.mean.stress, Vec3::Zero()};
+  return {response.mean.stress + share(patch, 1) * response.difference.stress + response.limit[0].stress,
+          response.mean.stress - share(patch, 0) * response.difference.stress + response.limit[1].stress};
 }
 
 }  // namespace
@@ -34,10 +62,7 @@ double difference_area(const MembranePatch& patch) {
 }
 
 PatchStrain patch_strain(const MembranePatch& patch, const PatchCorners& x) {
-  const Vec3 first = membrane_strain(patch.rest[0], triangle_of(patch, 0, x));
-  if (patch.num_triangles == 1) return {first, Vec3::Zero()};
-  const Vec3 second = membrane_strain(patch.rest[1], triangle_of(patch, 1, x));
-  return {share(patch, 0) * first + share(patch, 1) * second, first - second};
+  return combine(patch, triangle_strains(patch, x));
 }
 
 PatchDerivative patch_strain_derivative(const MembranePatch& patch, const PatchCorners& x) {
@@ -56,16 +81,15 @@ PatchDerivative patch_strain_derivative(const MembranePatch& patch, const PatchC
 }
 
 double patch_energy(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
-  const PatchStrain strain = patch_strain(patch, x);
-  const double mean = patch.area() * membrane_response(law.mean, strain.mean).energy;
-  if (patch.num_triangles == 1) return mean;
-  return mean + difference_area(patch) * difference_response(law.difference, strain.difference).energy;
+  const Response response = respond(patch, law, x);
+  double energy = patch.area() * response.mean.energy;
+  if (patch.num_triangles == 2) energy += difference_area(patch) * response.difference.energy;
+  for (int t = 0; t < patch.num_triangles; ++t) energy += patch.rest[t].area * response.limit[t].energy;
+  return energy;
 }
 
 PatchCorners patch_force(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
-  const PatchStrain strain = patch_strain(patch, x);
-  const auto stress = stresses(patch, membrane_response(law.mean, strain.mean),
-                               difference_response(law.difference, strain.difference));
+  const auto stress = stresses(patch, respond(patch, law, x));
   PatchCorners force;
   force.fill(Vec3::Zero());
   for (int t = 0; t < patch.num_triangles; ++t) {
@@ -76,22 +100,29 @@ PatchCorners patch_force(const MembranePatch& patch, const PatchLaw& law, const 
 }
 
 PatchHessian patch_hessian(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
-  const PatchStrain strain = patch_strain(patch, x);
-  const MembraneResponse mean = membrane_response(law.mean, strain.mean);
-  const MembraneResponse difference = difference_response(law.difference, strain.difference);
+  const Response response = respond(patch, law, x);
   const PatchDerivative b = patch_strain_derivative(patch, x);
   PatchHessian hessian;
   for (int i = 0; i < patch.num_vertices(); ++i) {
     for (int j = 0; j < patch.num_vertices(); ++j) {
       Mat3& block = hessian.material[i][j];
-      block = patch.area() * b.mean[i].transpose() * mean.tangent * b.mean[j];
+      block = patch.area() * b.mean[i].transpose() * response.mean.tangent * b.mean[j];
       if (patch.num_triangles == 2)
-        block += difference_area(patch) * b.difference[i].transpose() * difference.tangent * b.difference[j];
+        block += difference_area(patch) * b.difference[i].transpose() * response.difference.tangent *
+                 b.difference[j];
     }
   }
-  const auto stress = stresses(patch, mean, difference);
-  for (int t = 0; t < patch.num_triangles; ++t)
+  const auto stress = stresses(patch, response);
+  for (int t = 0; t < patch.num_triangles; ++t) {
     hessian.edge_weight[t] = stress_weights(patch.rest[t], stress[t]);
+    if (response.limit[t].tangent.isZero(0)) continue;
+    const auto own = membrane_strain_derivative(patch.rest[t], triangle_of(patch, t, x));
+    for (int c = 0; c < 3; ++c) {
+      for (int d = 0; d < 3; ++d)
+        hessian.material[patch.corners[t][c]][patch.corners[t][d]] +=
+            patch.rest[t].area * own[c].transpose() * response.limit[t].tangent * own[d];
+    }
+  }
   return hessian;
 }
 

@@ -5,9 +5,9 @@
 /// two triangles per vertex. That is twice as many constraints as degrees of freedom, so that stiff cloth can
 /// fold along threads and edges only: it locks. A pair of triangles t, of areas A_t, has the strains' mean:
 ///
-///     e = Σ A_t e_t/A,  A = Σ A_t        W = A w(e) + a v(d),  d = e_0 − e_1,  a = A_0 A_1/A
+///     e = Σ A_t e_t/A,  A = Σ A_t        W = A w(e) + a v(d) + Σ A_t u(e_t),  d = e_0 − e_1,  a = A_0 A_1/A
 ///
-/// w is the fabric's law (fabric/membrane_law.h). v resists the difference with a fraction of the shear stiffness,
+/// w is the fabric's law without its strain limit u (fabric/membrane_law.h). v resists the difference with a fraction of the shear stiffness,
 /// for a pair alone has motions without energy. With the full law for v, W would be the sum of the triangles'
 /// energies. Uniform strain has no difference: it is resisted exactly as by single triangles. The mean is of Green
 /// strains, not of displacements: a pair may fold along its edge.

@@ -89,11 +89,11 @@ double ElementTerms::energy(const std::vector<Vec3>& x) const {
 
 bool ElementTerms::is_beyond_limit(const std::vector<Vec3>& x) const {
   if (elements_->limit.stiffness == 0) return false;
-  const auto is_beyond = [&](const MembranePatch& patch) {
-    const Vec3 strain = patch_strain(patch, corners_of(patch, x)).mean;
-    return principal_stretches(strain)[1] > 1 + elements_->limit.allowed();
+  const auto is_beyond = [&](const MembraneElement& m) {
+    const auto& [a, b, c] = m.vertices;
+    return principal_stretches(m.rest, {x[a], x[b], x[c]})[1] > 1 + elements_->limit.allowed();
   };
-  return std::any_of(elements_->patches.begin(), elements_->patches.end(), is_beyond);
+  return std::any_of(elements_->membranes.begin(), elements_->membranes.end(), is_beyond);
 }
 
 void ElementTerms::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const {

@@ -48,20 +48,37 @@ void project_strains(const MembranePatch& patch, const std::array<Mat3, 4>& deri
   }
 }
 
-/// The mean strain, then the difference.
+/// The mean strain; of a pair then the difference, and the triangles' limits.
 void project_patch(const MembranePatch& patch, const PatchLaw& law, const Step& step,
                    XpbdParticles& particles) {
-  PatchCorners x;
   const auto read = [&] {
+    PatchCorners x;
+    x.fill(Vec3::Zero());
     for (int v = 0; v < patch.num_vertices(); ++v) x[v] = particles.position(patch.vertices[v]);
+    return x;
   };
-  read();
+  const bool is_pair = patch.num_triangles == 2;
+  PatchCorners x = read();
   project_strains(patch, patch_strain_derivative(patch, x).mean, patch.area(),
-                  membrane_response(law.mean, patch_strain(patch, x).mean), step, particles);
-  if (patch.num_triangles == 1) return;
-  read();
+                  membrane_response(is_pair ? law.mean : law.alone, patch_strain(patch, x).mean), step,
+                  particles);
+  if (!is_pair) return;
+  x = read();
   project_strains(patch, patch_strain_derivative(patch, x).difference, difference_area(patch),
                   difference_response(law.difference, patch_strain(patch, x).difference), step, particles);
+  if (law.limit.limit.stiffness == 0) return;
+  for (int t = 0; t < 2; ++t) {
+    x = read();
+    const auto& [a, b, c] = patch.corners[t];
+    const TriangleCorners own = {x[a], x[b], x[c]};
+    const MembraneResponse response = membrane_response(law.limit, membrane_strain(patch.rest[t], own));
+    if (response.stress.isZero(0)) continue;
+    std::array<Mat3, 4> derivative;
+    derivative.fill(Mat3::Zero());
+    const std::array<Mat3, 3> of_triangle = membrane_strain_derivative(patch.rest[t], own);
+    for (int k = 0; k < 3; ++k) derivative[patch.corners[t][k]] = of_triangle[k];
+    project_strains(patch, derivative, patch.rest[t].area, response, {.h = step.h}, particles);
+  }
 }
 
 void project_stencil(const BendingRows& rows, int row, const Step& step, XpbdParticles& particles) {

@@ -16,7 +16,8 @@ Animation without_frames(const Animation& animation) {
                              .color = cloth.color,
                              .frames = {},
                              .fabric_coordinates = cloth.fabric_coordinates,
-                             .shown = cloth.shown});
+                             .shown = cloth.shown,
+                             .fabric = cloth.fabric});
   for (const AnimatedBody& body : animation.bodies)
     meshes.bodies.push_back({.name = body.name,
                              .mesh = body.mesh,

@@ -28,6 +28,7 @@ struct AnimatedCloth {
   std::vector<std::vector<float>> frames;         // (num_frames) of (num_vertices x 3), world space [m]
   std::vector<float> fabric_coordinates;    // (num_vertices x 2) along warp and weft at rest; empty: none [m]
   std::optional<ShownVertices> shown = {};  // empty: its own
+  std::string fabric = {};                  // its name; empty: none
 };
 
 /// A mesh that moves rigidly, or that deforms and moves: for each frame a pose, from mesh to world

@@ -376,7 +376,10 @@ class GlbFrames::Reader {
     const auto text = [&](const char* key) {
       return weft.Get(key).IsString() ? weft.Get(key).Get<std::string>() : "";
     };
-    if (text("role") == "cloth") add_cloth(node, text("fabric"));
+    if (text("role") == "cloth") {
+      add_cloth(node, text("fabric"));
+      meshes_.cloths.back().fabric = text("fabric_name");
+    }
     if (text("role") == "collider") add_body(index);
   }
 

@@ -169,6 +169,7 @@ tinygltf::Value extras_of(const AnimatedCloth& cloth) {
   Extras weft = {{"role", tinygltf::Value(std::string("cloth"))}};
   if (!cloth.fabric_coordinates.empty())
     weft["fabric"] = tinygltf::Value(std::string(has_texture(cloth) ? "TEXCOORD_1" : "TEXCOORD_0"));
+  if (!cloth.fabric.empty()) weft["fabric_name"] = tinygltf::Value(cloth.fabric);
   return tinygltf::Value(Extras{{"weft", tinygltf::Value(std::move(weft))}});
 }
 

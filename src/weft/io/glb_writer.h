@@ -21,9 +21,10 @@ namespace weft::engine {
 /// vertex.
 ///
 /// Data without a glTF equivalent is in the nodes' extras. Of cloth that is `"weft": {"role": "cloth", "fabric":
-/// "TEXCOORD_1"}`, with the attribute of its fabric coordinates. Of bodies it is `{"role": "collider", "shape":
-/// "sphere", "center": [0, 0, 0], "radius": 0.3}`. Other shapes are `plane` (point, normal), `capsule` (a, b,
-/// radius), `box` (center, half_size, rotation: nine numbers row by row) and `mesh`. The asset's extras hold
+/// "TEXCOORD_1", "fabric_name": "denim"}`, with the attribute of its fabric coordinates and the fabric's name. Of
+/// bodies it is `{"role": "collider", "shape": "sphere", "center": [0, 0, 0], "radius": 0.3}`. Other shapes are
+/// `plane` (point, normal), `capsule` (a, b, radius), `box` (center, half_size, rotation: nine numbers row by row)
+/// and `mesh`. The asset's extras hold
 /// `title` and `passing`.
 ///
 /// The lengths in a .glb have 32 bits, so that it holds less than 4 GiB: see max_frames(). All functions throw

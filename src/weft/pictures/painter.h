@@ -16,12 +16,20 @@ void require_picture(const std::filesystem::path& file);
 
 struct PaintSettings {
   PictureSize size;
-  Camera view;                   // orientation only; the position follows from the scene
-  double zoom = 1;               // > 1: closer [1]
-  std::optional<Camera> camera;  // in place of view and zoom
-  SceneStyle style;
+  Camera view;      // orientation only; the position follows from the scene
+  double zoom = 1;  // > 1: closer [1]
+  Framed framed = Framed::everything;
+  std::optional<Vec3> look_at;   // in the picture's middle, in place of the framed middle [m]
+  std::optional<Camera> camera;  // in place of all of these
+  SceneStyle style;              // `smooth` empty: chosen by the number of triangles
   RenderSettings render;
 };
+
+/// Throws InputError for frames after the last one.
+void require_frames(const std::vector<int>& frames, int last);
+
+/// Whether the file's name has places for a frame's number, as in "frame_####.png".
+bool is_sequence(const std::filesystem::path& file);
 
 /// Draws frames of an animation, which must outlive this. All frames of one file share a camera, which shows
 /// everything in them.
@@ -34,15 +42,20 @@ class Painter {
   /// nonexistent frames.
   void write_pictures(const std::filesystem::path& file, const std::vector<int>& frames, int columns);
 
-  /// Every `every`-th frame, until the end or until `is_stopped` returns true.
-  void write_video(const std::filesystem::path& file, int every,
-                   const std::function<bool()>& is_stopped = {});
+  /// Every `every`-th frame, until the end or until `go_on`, called with the number of drawn and of all
+  /// pictures, returns false.
+  using GoOn = std::function<bool(int drawn, int all)>;
+  void write_video(const std::filesystem::path& file, int every, const GoOn& go_on = {});
+
+  /// The same as numbered files: '#' in the name stand for the digits of the frame's number.
+  void write_sequence(const std::filesystem::path& file, int every, const GoOn& go_on = {});
 
   int last_frame() const { return last_; }
 
  private:
   Camera frame(const std::vector<int>& frames) const;
   Image draw(int frame, const Camera& camera);
+  std::vector<int> every(int step) const;
 
   const Animation& animation_;
   PaintSettings settings_;

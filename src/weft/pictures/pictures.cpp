@@ -26,7 +26,7 @@ struct RecordingAccess {
 
 namespace {
 
-constexpr int kMaxSamples = 16;
+constexpr int kMaxSamples = 16, kMaxSmooth = 2;
 
 /// The world's present state as the only frame.
 Animation make_still(const World& world) {
@@ -46,6 +46,9 @@ void require_valid(const RenderOptions& options, const Animation& animation) {
     if (!std::all_of(color.begin(), color.end(), [](double c) { return c >= 0 && c <= 1; }))
       throw InputError("a cloth's colour: expected red, green and blue from 0 to 1");
   }
+  if (options.smooth && (*options.smooth < 0 || *options.smooth > kMaxSmooth))
+    throw InputError("subdivisions of a picture: expected 0 to " + std::to_string(kMaxSmooth) + ", not " +
+                     std::to_string(*options.smooth));
   if (options.ground && !std::isfinite(*options.ground))
     throw InputError("the height of the ground is not finite");
 }
@@ -53,7 +56,8 @@ void require_valid(const RenderOptions& options, const Animation& animation) {
 engine::SceneStyle style_of(const RenderOptions& options) {
   return {.has_ground = options.ground.has_value(),
           .ground = options.ground,
-          .cloth_colors = options.cloth_colors};
+          .cloth_colors = options.cloth_colors,
+          .smooth = options.smooth};
 }
 
 engine::RenderSettings settings_of(const RenderOptions& options) {
@@ -105,11 +109,16 @@ struct OffscreenRenderer::Impl {
   Rendering render(const Animation& animation, int frame, const Camera& camera,
                    const RenderOptions& options) {
     require_valid(options, animation);
-    const engine::ScenePictures pictures(animation, style_of(options));
-    const engine::Picture picture = pictures.at(frame, engine::to_engine(camera));
+    engine::SceneStyle style = style_of(options);
+    const engine::Camera view = engine::to_engine(camera);
     Rendering rendering{.width = camera.width, .height = camera.height};
-    if (options.color) add_colors(picture, settings_of(options), rendering);
-    add_depths(picture, pictures.shown(), rendering);
+    if (options.color) {
+      const engine::Picture picture = engine::ScenePictures(animation, style).at(frame, view);
+      add_colors(picture, settings_of(options), rendering);
+    }
+    style.smooth = {};
+    const engine::ScenePictures triangles(animation, style);
+    add_depths(triangles.at(frame, view), triangles.shown(), rendering);
     return rendering;
   }
 

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "weft/mesh/vertex_normals.h"
 
 namespace weft::engine {
 namespace {
 
-constexpr double kCheckSize = 0.025;  // of the checks in cloth [m]
-constexpr double kBelow = 0.02;       // depth of the ground below the scene, as a share of its size [1]
-constexpr double kLevel = 0.999;      // least y of the normal of a ground plane [1]
+constexpr double kCheckSize = 0.025;   // of the checks in cloth [m]
+constexpr double kHemRadius = 0.9e-3;  // three layers of thin cloth, half of them [m]
+constexpr int kHemLines = 720;         // hems are drawn where they cover four pixels of so many lines [1]
+constexpr double kInset = 0.2;         // of bodies below smooth cloth, as a share of its edges [1]
+constexpr double kMaxInset = 5e-3;     // limit of that [m]
+constexpr std::size_t kSmoothTriangles = 160'000;  // of all cloth, at most, after subdivision
+constexpr double kBelow = 0.02;   // depth of the ground below the scene, as a share of its size [1]
+constexpr double kLevel = 0.999;  // least y of the normal of a ground plane [1]
 constexpr Color kStructural = {0.05, 0.10, 0.25}, kShear = {0.75, 0.22, 0.04}, kBend = {0.10, 0.45, 0.25};
 constexpr int kArcPieces = 8;        // lines in the arc of a bending spring
 constexpr double kArcHeight = 0.13;  // of the arc, as a share of its length [1]
@@ -30,12 +36,13 @@ Vec3 vertex(const std::vector<float>& positions, std::size_t v) {
   return {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
 }
 
-/// Everything in a frame except for planes, which are infinite.
-void add_points(const Animation& animation, int frame, std::vector<Vec3>& points) {
+/// Everything in a frame except for planes, which are infinite, or only cloth.
+void add_points(const Animation& animation, int frame, Framed framed, std::vector<Vec3>& points) {
   for (const AnimatedCloth& cloth : animation.cloths) {
     const std::vector<float>& positions = cloth.frames[frame];
     for (std::size_t v = 0; 3 * v < positions.size(); ++v) points.push_back(vertex(positions, v));
   }
+  if (framed == Framed::cloth) return;
   for (const AnimatedBody& body : animation.bodies) {
     if (is_plane(body)) continue;
     const AnimatedBody::Pose& pose = pose_at(body, frame);
@@ -44,23 +51,68 @@ void add_points(const Animation& animation, int frame, std::vector<Vec3>& points
   }
 }
 
-DrawnMesh draw_cloth(const AnimatedCloth& cloth, int frame) {
-  const double check = cloth.fabric_coordinates.empty() ? 0 : kCheckSize;
-  return {.triangles = cloth.triangles,
-          .positions = cloth.frames[frame],
-          .fabric_coordinates = cloth.fabric_coordinates,
-          .look = {Look::Kind::fabric, cloth.color, check}};
+/// The look of a preset's fabric; of other cloth checks, which show its deformation.
+Look find_look(const AnimatedCloth& cloth) {
+  for (const weft::FabricPreset& preset : weft::fabric_presets()) {
+    if (preset.name == cloth.fabric) return {Look::Kind::fabric, cloth.color, 0, preset.look};
+  }
+  return {Look::Kind::fabric, cloth.color, cloth.fabric_coordinates.empty() ? 0 : kCheckSize, {}};
 }
 
-DrawnMesh draw_body(const AnimatedBody& body, int frame) {
+/// Adds tubes around the border, with the border's fabric coordinates and values.
+void add_hem(const Hem& hem, DrawnMesh& mesh) {
+  const int first = static_cast<int>(mesh.positions.size() / 3);
+  const std::vector<float> normals = compute_vertex_normals(mesh.triangles, mesh.positions),
+                           placed = hem.place(mesh.positions, normals, kHemRadius);
+  mesh.positions.insert(mesh.positions.end(), placed.begin(), placed.end());
+  const auto repeat = [&](std::vector<float>& values, int width) {
+    if (values.empty()) return;
+    for (const int center : hem.centers()) {
+      for (int k = 0; k < Hem::kSides; ++k) {
+        for (int c = 0; c < width; ++c)
+          values.push_back(values[static_cast<std::size_t>(width) * center + c]);
+      }
+    }
+  };
+  repeat(mesh.fabric_coordinates, 2);
+  repeat(mesh.values, 1);
+  for (const auto& [a, b, c] : hem.triangles()) mesh.triangles.push_back({first + a, first + b, first + c});
+}
+
+/// A body in a frame. Below smooth cloth its surface is moved inwards: such cloth lies a little inside its
+/// triangles in places.
+DrawnMesh draw_body(const AnimatedBody& body, int frame, double inset) {
   DrawnMesh mesh{.triangles = body.mesh.triangles, .look = {.color = body.color}};
   const AnimatedBody::Pose& pose = pose_at(body, frame);
+  const OrientedBox* box = body.shape ? std::get_if<OrientedBox>(&*body.shape) : nullptr;
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
-    for (const double c :
-         Vec3(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation))
+    Vec3 p = body.vertex(v, static_cast<std::size_t>(frame));
+    if (box) {  // its faces have their own corners, which move together
+      const Vec3 local = box->rotation.transpose() * (p - box->center);
+      const Vec3 share = (box->half_size.array() - inset).max(0) / box->half_size.array();
+      p = box->center + box->rotation * local.cwiseProduct(share);
+    }
+    for (const double c : Vec3(pose.rotation * p + pose.translation))
       mesh.positions.push_back(static_cast<float>(c));
   }
+  if (inset == 0 || box || is_plane(body)) return mesh;
+  const std::vector<float> normals = compute_vertex_normals(mesh.triangles, mesh.positions);
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k)
+    mesh.positions[k] -= static_cast<float>(inset) * normals[k];
   return mesh;
+}
+
+/// Mean length of the edges of all cloth at its start [m].
+double find_edge_length(const Animation& animation) {
+  double sum = 0, count = 0;
+  for (const AnimatedCloth& cloth : animation.cloths) {
+    for (const Triangle& t : cloth.triangles) {
+      for (int k = 0; k < 3; ++k)
+        sum += (vertex(cloth.frames[0], t[k]) - vertex(cloth.frames[0], t[(k + 1) % 3])).norm();
+      count += 3;
+    }
+  }
+  return count == 0 ? 0 : sum / count;
 }
 
 /// Height of a level plane, else the style's ground, by default below the lowest point of the animation.
@@ -73,7 +125,7 @@ std::optional<double> find_ground(const Animation& animation, const SceneStyle& 
   std::vector<Vec3> points;
   for (int frame = 0; frame < num_frames(animation); ++frame) {
     points.clear();
-    add_points(animation, frame, points);
+    add_points(animation, frame, Framed::everything, points);
     for (const Vec3& p : points) box.extend(p);
   }
   if (box.isEmpty()) return std::nullopt;
@@ -123,6 +175,39 @@ int num_frames(const Animation& animation) {
 ScenePictures::ScenePictures(const Animation& animation, SceneStyle style)
     : animation_(animation), style_(std::move(style)) {
   style_.ground = find_ground(animation, style_);
+  if (!style_.smooth || num_frames(animation) == 0) return;
+  if (*style_.smooth > 0) inset_ = std::min(kInset * find_edge_length(animation), kMaxInset);
+  for (const AnimatedCloth& cloth : animation.cloths) {
+    const int num_vertices = static_cast<int>(cloth.frames.empty() ? 0 : cloth.frames[0].size() / 3);
+    LoopSubdivision subdivision(cloth.triangles, num_vertices, *style_.smooth);
+    Hem hem(subdivision.triangles(), subdivision.num_vertices());
+    std::vector<float> coordinates;
+    if (!cloth.fabric_coordinates.empty()) coordinates = subdivision.fit(cloth.fabric_coordinates, 2);
+    smooth_.push_back({std::move(subdivision), std::move(hem), std::move(coordinates)});
+  }
+}
+
+DrawnMesh ScenePictures::draw_cloth(int index, int frame, const Camera& camera) const {
+  const AnimatedCloth& cloth = animation_.cloths[index];
+  DrawnMesh mesh{.triangles = cloth.triangles,
+                 .positions = cloth.frames[frame],
+                 .fabric_coordinates = cloth.fabric_coordinates,
+                 .look = find_look(cloth)};
+  if (static_cast<std::size_t>(index) < style_.cloth_colors.size())
+    mesh.look.color = style_.cloth_colors[index];
+  if (style_.values) {
+    mesh.values = style_.values->frames[frame][index];
+    mesh.range = style_.values->range;
+  }
+  if (smooth_.empty() || find_springs(index)) return mesh;
+  const auto& [subdivision, hem, coordinates] = smooth_[index];
+  mesh.triangles = subdivision.triangles();
+  mesh.positions = subdivision.fit(mesh.positions, 3);
+  mesh.fabric_coordinates = coordinates;
+  if (!mesh.values.empty()) mesh.values = subdivision.apply(mesh.values, 1);
+  const double pixel = 2 * camera.distance * std::tan(camera.fov_deg * std::numbers::pi / 360) / kHemLines;
+  if (2 * pixel < kHemRadius) add_hem(hem, mesh);
+  return mesh;
 }
 
 Picture ScenePictures::at(int frame, const Camera& camera) const {
@@ -131,15 +216,14 @@ Picture ScenePictures::at(int frame, const Camera& camera) const {
   picture.transparent = style_.transparent;
   picture.ground = style_.ground;
   for (int c = 0; c < static_cast<int>(animation_.cloths.size()); ++c) {
-    DrawnMesh cloth = draw_cloth(animation_.cloths[c], frame);
-    if (static_cast<std::size_t>(c) < style_.cloth_colors.size()) cloth.look.color = style_.cloth_colors[c];
+    DrawnMesh cloth = draw_cloth(c, frame, camera);
     if (const SpringsToDraw* springs = find_springs(c))
       draw_springs(cloth, *springs->topology, picture);
     else
       picture.meshes.push_back(std::move(cloth));
   }
   for (const AnimatedBody& body : animation_.bodies) {
-    if (!is_level_plane(body)) picture.meshes.push_back(draw_body(body, frame));
+    if (!is_level_plane(body)) picture.meshes.push_back(draw_body(body, frame, inset_));
   }
   return picture;
 }
@@ -168,10 +252,45 @@ const SpringsToDraw* ScenePictures::find_springs(int cloth) const {
   return found == style_.springs.end() ? nullptr : &*found;
 }
 
+int choose_smoothness(const Animation& animation) {
+  std::size_t triangles = 0;
+  for (const AnimatedCloth& cloth : animation.cloths) triangles += cloth.triangles.size();
+  return 16 * triangles <= kSmoothTriangles ? 2 : 4 * triangles <= kSmoothTriangles ? 1 : 0;
+}
+
+std::array<double, 2> find_range(const ShownValues& values, const std::vector<int>& frames) {
+  std::array<double, 2> range = {0, 0};
+  bool is_first = true;
+  for (const int frame : frames) {
+    for (const std::vector<float>& cloth : values.frames[frame]) {
+      for (const double value : cloth) {
+        range = is_first ? std::array{value, value}
+                         : std::array{std::min(range[0], value), std::max(range[1], value)};
+        is_first = false;
+      }
+    }
+  }
+  return range;
+}
+
+std::vector<std::vector<std::vector<float>>> compute_speeds(const Animation& animation) {
+  std::vector<std::vector<std::vector<float>>> speeds(num_frames(animation));
+  for (int frame = 0; frame < num_frames(animation); ++frame) {
+    for (const AnimatedCloth& cloth : animation.cloths) {
+      std::vector<float>& values = speeds[frame].emplace_back();
+      const std::vector<float>&now = cloth.frames[frame], &before = cloth.frames[std::max(frame - 1, 0)];
+      for (std::size_t v = 0; 3 * v < now.size(); ++v)
+        values.push_back(
+            static_cast<float>(animation.frames_per_second * (vertex(now, v) - vertex(before, v)).norm()));
+    }
+  }
+  return speeds;
+}
+
 Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
-                   double aspect) {
+                   double aspect, Framed framed) {
   std::vector<Vec3> points;
-  for (const int frame : frames) add_points(animation, frame, points);
+  for (const int frame : frames) add_points(animation, frame, framed, points);
   return frame_points(like, points, aspect);
 }
 

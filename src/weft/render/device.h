@@ -17,11 +17,13 @@
 namespace weft::engine {
 
 /// GPU programs; their sources are in shaders.h.
-enum class Program { depth, occlusion, blur, sky, fabric, solid, ground, line, dot };
+enum class Program { depth, fabric, solid, sun, occlusion, blur, light, surface, sky, line, dot };
 
 /// A render target in the device's memory, to draw to and read from.
 struct TargetDesc {
-  enum class Format { depth, gray, color };
+  /// depth: depths only. pair: two half floats. surface: four floats, and depths that programs can read.
+  /// color: sRGB and alpha, with depths.
+  enum class Format { depth, pair, surface, color };
 
   Format format = Format::color;
   int width = 0, height = 0;  // > 0 [pixels]
@@ -38,10 +40,12 @@ struct GeometryId {
   int index = -1;
 };
 
-/// A target as a texture, sampled directly or by depth comparison (for shadows).
+/// A target as a texture: its colours or numbers, its depths, or comparisons with its depths (for shadows).
 struct Texture {
+  enum class Part { colors, depths, comparisons };
+
   TargetId target;
-  bool compares = false;
+  Part part = Part::colors;
 };
 
 using UniformValue = std::variant<int, float, Eigen::Vector2f, Eigen::Vector3f, Eigen::Matrix4f, Texture>;
@@ -51,8 +55,8 @@ struct Uniform {
   UniformValue value;
 };
 
-/// Vertex layout of the programs: position, normal, fabric coordinates.
-constexpr int kFloatsPerVertex = 8;
+/// Vertex layout of the programs: position, normal, fabric coordinates, value.
+constexpr int kFloatsPerVertex = 9;
 
 /// Only a triangle that covers the target.
 struct WholeTarget {};

@@ -10,7 +10,7 @@
 namespace weft::engine {
 namespace {
 
-constexpr int kNumPrograms = 9;
+constexpr int kNumPrograms = 11;
 
 GLuint compile(GLenum kind, const std::string& source) {
   const GLuint shader = glCreateShader(kind);
@@ -48,8 +48,10 @@ PixelFormat pixel_format(TargetDesc::Format format) {
   switch (format) {
     case TargetDesc::Format::depth:
       return {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT};
-    case TargetDesc::Format::gray:
-      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case TargetDesc::Format::pair:
+      return {GL_RG16F, GL_RG, GL_FLOAT};
+    case TargetDesc::Format::surface:
+      return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     case TargetDesc::Format::color:
       break;
   }
@@ -108,8 +110,8 @@ class GlDevice : public Device {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, geometry.buffers[1]);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                  GL_STREAM_DRAW);
-    const int sizes[] = {3, 3, 2}, offsets[] = {0, 3, 6};
-    for (GLuint a = 0; a < 3; ++a) {
+    const int sizes[] = {3, 3, 2, 1}, offsets[] = {0, 3, 6, 8};
+    for (GLuint a = 0; a < 4; ++a) {
       glEnableVertexAttribArray(a);
       glVertexAttribPointer(a, sizes[a], GL_FLOAT, GL_FALSE, kFloatsPerVertex * sizeof(float),
                             reinterpret_cast<const void*>(offsets[a] * sizeof(float)));
@@ -195,7 +197,7 @@ class GlDevice : public Device {
  private:
   struct Target {
     TargetDesc desc;
-    GLuint framebuffer = 0, texture = 0, renderbuffers[2] = {0, 0};
+    GLuint framebuffer = 0, textures[2] = {0, 0}, renderbuffers[2] = {0, 0};  // colours, depths
   };
 
   struct Geometry {
@@ -233,6 +235,17 @@ class GlDevice : public Device {
     return buffer;
   }
 
+  static GLuint make_texture(const TargetDesc& desc, const PixelFormat& format, GLenum attachment) {
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), desc.width, desc.height, 0,
+                 format.format, format.type, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+    return texture;
+  }
+
   /// One sample: a texture that programs can read. Several: renderbuffers with depth.
   static Target make(const TargetDesc& desc) {
     Target target{.desc = desc};
@@ -243,17 +256,14 @@ class GlDevice : public Device {
     if (desc.samples > 1) {
       target.renderbuffers[0] = make_renderbuffer(desc, format.internal, GL_COLOR_ATTACHMENT0);
     } else {
-      glGenTextures(1, &target.texture);
-      glBindTexture(GL_TEXTURE_2D, target.texture);
-      glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), desc.width, desc.height, 0,
-                   format.format, format.type, nullptr);
-      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-      glFramebufferTexture2D(GL_FRAMEBUFFER, is_depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
-                             GL_TEXTURE_2D, target.texture, 0);
+      target.textures[is_depth] =
+          make_texture(desc, format, is_depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0);
     }
     if (is_depth) {
       glDrawBuffer(GL_NONE);
       glReadBuffer(GL_NONE);
+    } else if (desc.format == TargetDesc::Format::surface) {
+      target.textures[1] = make_texture(desc, pixel_format(TargetDesc::Format::depth), GL_DEPTH_ATTACHMENT);
     } else if (desc.format == TargetDesc::Format::color) {
       target.renderbuffers[1] = make_renderbuffer(desc, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
     }
@@ -265,7 +275,7 @@ class GlDevice : public Device {
 
   static void drop(Target& target) {
     glDeleteFramebuffers(1, &target.framebuffer);
-    glDeleteTextures(1, &target.texture);
+    glDeleteTextures(2, target.textures);
     glDeleteRenderbuffers(2, target.renderbuffers);
   }
 
@@ -284,8 +294,9 @@ class GlDevice : public Device {
     } else {
       const Texture& texture = std::get<Texture>(uniform.value);
       glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-      glBindTexture(GL_TEXTURE_2D, targets_.at(texture.target.index).texture);
-      glBindSampler(static_cast<GLuint>(unit), samplers_[texture.compares]);
+      const Target& target = targets_.at(texture.target.index);
+      glBindTexture(GL_TEXTURE_2D, target.textures[texture.part != Texture::Part::colors]);
+      glBindSampler(static_cast<GLuint>(unit), samplers_[texture.part == Texture::Part::comparisons]);
       glUniform1i(at, unit++);
     }
   }

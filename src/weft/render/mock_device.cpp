@@ -18,18 +18,22 @@ const char* to_string(Program program) {
   switch (program) {
     case Program::depth:
       return "depth";
-    case Program::occlusion:
-      return "occlusion";
-    case Program::blur:
-      return "blur";
-    case Program::sky:
-      return "sky";
     case Program::fabric:
       return "fabric";
     case Program::solid:
       return "solid";
-    case Program::ground:
-      return "ground";
+    case Program::sun:
+      return "sun";
+    case Program::occlusion:
+      return "occlusion";
+    case Program::blur:
+      return "blur";
+    case Program::light:
+      return "light";
+    case Program::surface:
+      return "surface";
+    case Program::sky:
+      return "sky";
     case Program::line:
       return "line";
     case Program::dot:
@@ -41,7 +45,7 @@ const char* to_string(Program program) {
 /// GLSL's name of each alternative of UniformValue; textures have two.
 std::string type_name(const UniformValue& value) {
   if (const Texture* texture = std::get_if<Texture>(&value))
-    return texture->compares ? "sampler2DShadow" : "sampler2D";
+    return texture->part == Texture::Part::comparisons ? "sampler2DShadow" : "sampler2D";
   static const char* const kNames[] = {"int", "float", "vec2", "vec3", "mat4"};
   return kNames[value.index()];
 }
@@ -91,7 +95,7 @@ TargetId MockDevice::target(std::string_view name, const TargetDesc& desc) {
 }
 
 GeometryId MockDevice::upload(std::span<const float> vertices, std::span<const Triangle> triangles) {
-  require(vertices.size() % kFloatsPerVertex == 0, "vertices must have eight floats each");
+  require(vertices.size() % kFloatsPerVertex == 0, "vertices must have nine floats each");
   require(std::all_of(vertices.begin(), vertices.end(), [](float x) { return std::isfinite(x); }),
           "a vertex is not finite");
   const int count = static_cast<int>(vertices.size()) / kFloatsPerVertex;
@@ -119,7 +123,13 @@ void MockDevice::check_uniforms(const DrawCall& call) const {
     missing.erase(declared);
     const Texture* texture = std::get_if<Texture>(&uniform.value);
     if (!texture) continue;
-    require(at(texture->target).desc.samples == 1, where + " has several samples");
+    const TargetDesc& desc = at(texture->target).desc;
+    require(desc.samples == 1, where + " has several samples");
+    if (texture->part == Texture::Part::colors)
+      require(desc.format != TargetDesc::Format::depth, where + " has no colours");
+    else
+      require(desc.format == TargetDesc::Format::depth || desc.format == TargetDesc::Format::surface,
+              where + " has no depths that can be read");
     require(texture->target.index != pass_, where + " is the current render target");
   }
   if (missing.empty()) return;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "weft/fabric.h"
 #include "weft/mesh/triangle_mesh.h"
 #include "weft/render/camera.h"
 
@@ -17,7 +18,8 @@ struct Look {
 
   Kind kind = Kind::solid;
   Color color = {0.6, 0.6, 0.6};
-  double check_size = 0;  // of the fabric's checks, in fabric coordinates; 0: none [m]
+  double check_size = 0;      // of the fabric's checks, in fabric coordinates; 0: none [m]
+  weft::FabricLook fabric{};  // weave and reflection of fabric
 };
 
 /// A triangle mesh; vertex normals are computed from its triangles.
@@ -25,6 +27,8 @@ struct DrawnMesh {
   std::vector<Triangle> triangles;
   std::vector<float> positions;           // (num_vertices x 3) [m]
   std::vector<float> fabric_coordinates;  // (num_vertices x 2) along warp and weft at rest; empty: none [m]
+  std::vector<float> values = {};  // (num_vertices) shown by colours, instead of the look's; empty: none
+  std::array<double, 2> range = {0, 1};  // values of the first and the last colour, in ascending order
   Look look;
 };
 
@@ -44,10 +48,10 @@ struct DrawnDots {
 
 struct Light {
   Vec3 to_sun = Vec3(-0.55, 0.95, 0.45).normalized();  // unit [1]
-  Color sun = {2.45, 2.3, 2.05};
-  Color sky = {0.76, 0.80, 0.87};     // from above
-  Color ground = {0.74, 0.70, 0.65};  // from below
-  double exposure = 0.40;             // exposure: multiplier of the light before tone mapping [1]
+  Color sun = {2.7, 2.5, 2.2};
+  Color sky = {0.95, 1.0, 1.1};       // from above
+  Color ground = {0.72, 0.66, 0.60};  // from below
+  double exposure = 0.34;             // exposure: multiplier of the light before tone mapping [1]
 };
 
 struct Picture {

@@ -2,9 +2,11 @@
 /// Renderer: draws pictures. The stages, and their inputs:
 ///
 ///     shadow     depth seen from the sun
-///     depth      depth seen by the camera
-///     occlusion  visible share of the sky at each point, from the camera's depth; then smoothed
-///     colour     sky, surfaces lit through shadow and occlusion, lines, dots; several samples per pixel
+///     surfaces   normals, colours and materials of what each pixel shows, with its depth
+///     sunlight   visible share of the sun at each pixel
+///     occlusion  visible share of the sky at each point, from depths and normals; then smoothed
+///     lit        each pixel's surface in the light, once
+///     colour     the lit surfaces, lines, dots, sky; several samples per pixel
 ///     resolve    one sample per pixel
 
 #include <memory>

@@ -93,7 +93,10 @@ Animation make_animation(const SceneDesc& scene, const World& world) {
   Animation animation = make_animation(world);
   animation.title = scene.name;
   animation.frames_per_second = scene.fps;
-  for (std::size_t c = 0; c < animation.cloths.size(); ++c) animation.cloths[c].color = scene.cloths[c].color;
+  for (std::size_t c = 0; c < animation.cloths.size(); ++c) {
+    animation.cloths[c].color = scene.cloths[c].color;
+    if (scene.cloths[c].fabric) animation.cloths[c].fabric = scene.cloths[c].fabric->name;
+  }
   return animation;
 }
 
@@ -117,6 +120,15 @@ void FilmSink::begin(SceneRun& run, RunReport&) {
 
 void FilmSink::add_frame(const SceneRun& run, RunReport&) {
   append_frame(capture_frame(run.world()), animation_);
+}
+
+void ValueSink::begin(SceneRun& run, RunReport&) { add(run.world()); }
+void ValueSink::add_frame(const SceneRun& run, RunReport&) { add(run.world()); }
+
+void ValueSink::add(const World& world) {
+  std::vector<std::vector<float>>& cloths = frames_.emplace_back();
+  for (int c = 0; c < world.num_cloths(); ++c)
+    cloths.push_back(compute_values(value_, world.model(world.cloth(c)), world.state(world.cloth(c))));
 }
 
 }  // namespace weft::engine

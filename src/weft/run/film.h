@@ -4,6 +4,7 @@
 #include "weft/io/animation.h"
 #include "weft/run/frame_sink.h"
 #include "weft/scene/scene_desc.h"
+#include "weft/world/particle_values.h"
 #include "weft/world/world.h"
 
 namespace weft::engine {
@@ -28,6 +29,24 @@ class FilmSink : public FrameSink {
 
  private:
   Animation animation_;
+};
+
+/// Keeps the values of particles in every frame, with the start.
+class ValueSink : public FrameSink {
+ public:
+  explicit ValueSink(ParticleValue value) : value_(value) {}
+
+  void begin(SceneRun& run, RunReport& report) override;
+  void add_frame(const SceneRun& run, RunReport& report) override;
+
+  /// (num_frames) of (num_cloths) of (num_particles).
+  std::vector<std::vector<std::vector<float>>> take() { return std::move(frames_); }
+
+ private:
+  void add(const World& world);
+
+  ParticleValue value_;
+  std::vector<std::vector<std::vector<float>>> frames_;
 };
 
 }  // namespace weft::engine
