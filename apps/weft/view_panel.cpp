@@ -13,7 +13,8 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr float kMargin = 14, kWidth = 292, kStrongestWind = 15;  // [pixels], [pixels], [m/s]
+constexpr float kMargin = 14, kWidth = 292, kQuestionWidth = 400;  // [pixels]
+constexpr float kStrongestWind = 15;                               // [m/s]
 const ImVec4 kInk(0.10f, 0.12f, 0.16f, 1), kPale(0.36f, 0.40f, 0.46f, 1), kAlarm(0.72f, 0.14f, 0.05f, 1);
 constexpr ImGuiWindowFlags kBox = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
@@ -327,14 +328,16 @@ void draw_panel(Viewer& viewer) {
 
 void draw_question(Viewer& viewer) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  begin_box("question", screen.x / 2, screen.y / 2, kWidth * scale(), {0.5f, 0.5f});
+  begin_box("question", screen.x / 2, screen.y / 2, kQuestionWidth * scale(), {0.5f, 0.5f});
   ImGui::SetWindowFocus();
+  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(("Save the changes as " + viewer.save_as() + "?").c_str());
-  if (draw_button(viewer, "Save", "answer save", 1 / 3.0f)) viewer.answer(Viewer::Answer::save);
+  ImGui::PopTextWrapPos();
+  if (draw_button(viewer, "Save (S)", "answer save", 1 / 3.0f)) viewer.answer(Viewer::Answer::save);
   ImGui::SameLine();
-  if (draw_button(viewer, "Discard", "answer discard", 1 / 2.0f)) viewer.answer(Viewer::Answer::discard);
+  if (draw_button(viewer, "Discard (D)", "answer discard", 1 / 2.0f)) viewer.answer(Viewer::Answer::discard);
   ImGui::SameLine();
-  if (draw_button(viewer, "Cancel", "answer cancel", 1)) viewer.answer(Viewer::Answer::cancel);
+  if (draw_button(viewer, "Cancel (Esc)", "answer cancel", 1)) viewer.answer(Viewer::Answer::cancel);
   ImGui::End();
 }
 
@@ -351,7 +354,13 @@ void show_tooltip(const std::string& words) {
   ImGui::EndTooltip();
 }
 
-void show_alarm(const std::string& words) { say(kAlarm, words); }
+void show_alarm(const std::string& words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, kAlarm);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(without_greek(words).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
 
 bool edit_text(const char* id, std::string& text) {
   const auto grow = [](ImGuiInputTextCallbackData* data) {

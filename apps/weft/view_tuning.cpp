@@ -13,8 +13,8 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr float kMargin = 14, kValueShare = 0.52f;  // [pixels], [1]
-constexpr float kSpeed = 0.01f;                     // change per pixel of a drag, as a share [1]
+constexpr float kMargin = 14, kValueShare = 0.4f;  // [pixels], [1]
+constexpr float kSpeed = 0.01f;                    // change per pixel of a drag, as a share [1]
 constexpr const char* kQualities[] = {"fast", "normal", "high"};
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
@@ -137,9 +137,10 @@ void draw_tuning(Viewer& viewer) {
     show_alarm("Applied at the next restart (R): " + keys);
   }
   SceneDesc scene = viewer.edits()->now();
+  int number = 0;  // names of colliders may be equal
   for (const TunableGroup& group : list_tunables(scene)) {
-    if (!ImGui::CollapsingHeader(group.title.c_str(),
-                                 group.cloth == 0 ? ImGuiTreeNodeFlags_DefaultOpen : 0)) {
+    const std::string label = fmt::format("{}##{}", group.title, number++);
+    if (!ImGui::CollapsingHeader(label.c_str(), group.cloth == 0 ? ImGuiTreeNodeFlags_DefaultOpen : 0)) {
       note_control(viewer, "group " + group.title);
       continue;
     }

@@ -318,8 +318,13 @@ WindowEvents Viewer::make_events() {
 }
 
 void Viewer::on_key(int key, bool shift, bool control) {
-  if (is_asking()) return;
   if (key == 'J') return write_report();
+  if (is_asking()) {
+    if (key == 'S') answer(Answer::save);
+    if (key == 'D') answer(Answer::discard);
+    if (key == kKeyEscape) answer(Answer::cancel);
+    return;
+  }
   if (key == 'Q' || key == kKeyEscape) return window_.close();
   if (control) {
     if (key == 'Z') shift ? redo() : undo();

@@ -117,7 +117,7 @@ class View : public testing::Test {
     fs::current_path(folder);
   }
 
-  void open(std::vector<std::string> more = {}) {
+  void open(std::vector<std::string> more = {}, const PictureSize& size = kSize) {
     enter_folder();
     // Small, soft and cheap, so that it runs in real time on a busy machine.
     std::vector<std::string> words = {WEFT_PROGRAM,
@@ -126,7 +126,7 @@ class View : public testing::Test {
                                       "--report",
                                       "view.json",
                                       "--size",
-                                      std::to_string(kSize.width) + "x" + std::to_string(kSize.height),
+                                      std::to_string(size.width) + "x" + std::to_string(size.height),
                                       "--set",
                                       "cloth[0].grid.cells=[12, 12]",
                                       "--set",
@@ -217,8 +217,13 @@ class View : public testing::Test {
 
   static void move(int x, int y) { xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y)); }
 
-  void close_by(const std::string& key) {
+  /// `discards`: the scene was changed, so that the window asks first.
+  void close_by(const std::string& key, bool discards = false) {
     xdotool("key " + key);
+    if (discards) {
+      until("it asks", [](const Json& j) { return j["asking"] == true; });
+      xdotool("key d");
+    }
     const auto start = std::chrono::steady_clock::now();
     while (!program_->has_ended() &&
            std::chrono::steady_clock::now() - start < std::chrono::seconds(kPatience))
@@ -310,7 +315,7 @@ TEST_F(View, PausesStepsResetsAndSwitches) {
   EXPECT_EQ(state()["sides"][0]["time"], 0);
   xdotool("key space");
   until("it plays again", [](const Json& j) { return j["sides"][0]["steps"] > 0; });
-  close_by("Escape");
+  close_by("Escape", true);
   std::ifstream in("view.json");
   EXPECT_GT(Json::parse(in)["drawn_frames"], 0) << "the report is written at the end";
 }
@@ -360,7 +365,7 @@ TEST_F(View, WindOfTheSliderBlowsClothAway) {
   until("the cloth is blown to the left", [&](const Json& j) {
     return j["sides"][0]["center"][0] < start["sides"][0]["center"][0].get<double>() - 0.05;
   });
-  close_by("q");
+  close_by("q", true);
 }
 
 TEST_F(View, ComparesTwoIntegratorsAndSavesThePicture) {
@@ -451,9 +456,8 @@ TEST_F(View, OfARunRefusesWhatIsForScenes) {
   refused("none.glb", "none.glb");
 }
 
-TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosenOrTyped) {
+TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosen) {
   enter_folder();
-  std::ofstream("broken.toml") << "[scene]\nfps = -3\n";
   start({WEFT_PROGRAM, "view", "--report", "view.json", "--size", "1280x720"}, "scene drape_sphere");
   EXPECT_EQ(state()["gallery"], true);
   click("scene drape_sphere");
@@ -465,27 +469,16 @@ TEST_F(View, StartsWithAGalleryAndOpensWhatIsChosenOrTyped) {
     }
     return false;
   });
-  move_to(state(), "path");  // from here to the end of the field J is a letter
-  xdotool("click 1");
-  pause_for(300);
-  xdotool("type broken.toml");
-  xdotool("key Return");
-  pause_for(300);
-  move(1200, 40);
-  xdotool("click 1");
-  const Json refused = until("its mistakes are said", [](const Json& j) { return j["message"] != ""; });
-  EXPECT_EQ(refused["gallery"], true);
-  EXPECT_NE(refused["message"].get<std::string>().find("broken.toml"), std::string::npos);
-  EXPECT_NE(refused["message"].get<std::string>().find("fps"), std::string::npos);
   close_by("q");
 }
 
 TEST_F(View, TunesUndoesSavesAndAsksBeforeChangesAreLost) {
-  open({"--size", "1280x720"});
+  open({}, {1280, 720});
   paused();
   xdotool("key n");
   const std::string key = "cloth[0].fabric.spring_structural";
-  const Json before = until("numbers are shown", [&](const Json& j) { return j["controls"].contains(key); });
+  until("numbers are shown", [&](const Json& j) { return j["controls"].contains(key); });
+  const Json before = state();  // the panel has its place from its second frame on
   const double usual = before["tuned"][key];
   const std::int64_t steps = before["sides"][0]["steps"];
   const Json& place = before["controls"][key];
@@ -501,7 +494,7 @@ TEST_F(View, TunesUndoesSavesAndAsksBeforeChangesAreLost) {
   until("it is stiffer again", [&](const Json& j) { return j["tuned"][key] == tuned["tuned"][key]; });
   xdotool("key ctrl+o");
   until("it asks", [](const Json& j) { return j["asking"] == true; });
-  click("answer cancel");
+  xdotool("key Escape");
   move(640, 600);
   until("it goes on", [](const Json& j) { return j["asking"] == false && j["gallery"] == false; });
   xdotool("key ctrl+s");

@@ -30,8 +30,8 @@ std::vector<TunableGroup> list_tunables(SceneDesc& scene);
 /// Takes a fabric; a cloth of springs becomes one of this fabric.
 void take_fabric(const FabricPreset& preset, ClothSceneDesc& cloth);
 
-/// After changes of numbers: quality is without effect besides iterations, a fabric that is not its preset any more is called so, and density, thickness and
-/// friction agree everywhere.
+/// To be called after changes of numbers. A fabric that differs from its preset gets another name. Values that
+/// scene files have once agree: density, thickness, friction, iterations.
 void settle_tunables(SceneDesc& scene);
 
 /// A velocity that is uniform and constant. Without drag in the scene: with that of light fabric.
