@@ -42,13 +42,6 @@ view=(--camera 30,8,1.3)
 "$weft" render "$wardrobe/dress" --frames 0,20,31,40 --columns 4 --size 400x520 "${view[@]}" --out "$images/dress_kick.jpg"
 "$weft" render "$wardrobe/dress" --size 480x560 "${view[@]}" --out "$images/dress_kick.webp"
 
-# A sheet of 25,600 particles of silk.
-sheet=(--set 'cloth[0].grid.size=[1.3,1.3]' --set 'cloth[0].grid.cells=[159,159]' --set 'cloth[0].fabric=silk'
-  --set 'cloth[0].position=[-0.65,0.56,-0.65]' --set 'cloth[0].color=[0.03,0.2,0.26]')
-"$weft" run contact/ball_and_floor --frames 110 --no-pc2 "${sheet[@]}" --out "$wardrobe/sheet" > /dev/null
-"$weft" render "$wardrobe/sheet" --size 1280x720 --camera 30,14 --fit cloth --out "$images/silk_sheet.jpg"
-"$weft" render "$wardrobe/sheet" --every 2 --size 640x400 --camera 30,14 --fit cloth --out "$images/silk_sheet.webp"
-
 # The examples of docs/manual/cpp.md.
 films=$(mktemp -d)
 trap 'rm -rf "$wardrobe" "$films"' EXIT

@@ -27,12 +27,14 @@ Camera to_camera(const Vec3& position, const Vec3& target, double fov_deg, int w
 }
 
 RenderOptions to_options(bool color, bool shadows, int samples,
-                         std::vector<std::array<double, 3>> cloth_colors, std::optional<double> ground) {
+                         std::vector<std::array<double, 3>> cloth_colors, std::optional<double> ground,
+                         std::optional<int> smooth) {
   return {.color = color,
           .shadows = shadows,
           .samples = samples,
           .cloth_colors = std::move(cloth_colors),
-          .ground = ground};
+          .ground = ground,
+          .smooth = smooth};
 }
 
 }  // namespace
@@ -42,8 +44,9 @@ void bind_pictures(nb::module_& m) {
       "There is no EGL or OpenGL 3.3 for pictures in colour; the message says what to install.";
   nb::class_<RenderOptions>(m, "RenderOptions")
       .def("__init__", [](RenderOptions* self, bool color, bool shadows, int samples,
-                          std::vector<std::array<double, 3>> cloth_colors, std::optional<double> ground) {
-        new (self) RenderOptions(to_options(color, shadows, samples, std::move(cloth_colors), ground));
+                          std::vector<std::array<double, 3>> cloth_colors, std::optional<double> ground,
+                          std::optional<int> smooth) {
+        new (self) RenderOptions(to_options(color, shadows, samples, std::move(cloth_colors), ground, smooth));
       });
   nb::class_<Camera> camera(m, "CameraValues");
   camera

@@ -5,8 +5,8 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include "locked_world.h"
-#include "weft/crossings.h"
 #include "weft/io.h"
+#include "weft/mesh.h"
 #include "weft/run.h"
 
 namespace weft::python {

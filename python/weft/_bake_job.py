@@ -119,20 +119,23 @@ class Job:
         for entry in fields(self):
             if entry.name not in ("cloths", "colliders", "threads") and getattr(self, entry.name) != getattr(other, entry.name):
                 return entry.name.replace("_", " ")
-        for mine, others in ((self.cloths, other.cloths), (self.colliders, other.colliders)):
-            names = [[body.name for body in bodies] for bodies in (mine, others)]
-            if names[0] != names[1]:
-                return "the objects"
-            for body, twin in zip(mine, others, strict=True):
-                for entry in fields(body):
-                    a, b = getattr(body, entry.name), getattr(twin, entry.name)
-                    if entry.name in _ARRAYS and a is not None and b is not None:
-                        same = a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6)
-                    else:
-                        same = a is b or json.dumps(a) == json.dumps(b)
-                    if not same:
-                        return f'{entry.name} of "{body.name}"'
+        if self._names() != other._names():
+            return "the objects"
+        mine: list[ClothInput | ColliderInput] = [*self.cloths, *self.colliders]
+        others: list[ClothInput | ColliderInput] = [*other.cloths, *other.colliders]
+        for body, twin in zip(mine, others, strict=True):
+            for entry in fields(body):
+                a, b = getattr(body, entry.name), getattr(twin, entry.name)
+                if entry.name in _ARRAYS and a is not None and b is not None:
+                    same = a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6)
+                else:
+                    same = a is b or json.dumps(a) == json.dumps(b)
+                if not same:
+                    return f'{entry.name} of "{body.name}"'
         return ""
+
+    def _names(self) -> tuple[list[str], list[str]]:
+        return [cloth.name for cloth in self.cloths], [body.name for body in self.colliders]
 
     @property
     def record(self) -> np.dtype[Any]:

@@ -199,7 +199,7 @@ def read_gltf(file: str | os.PathLike[str], *, node: str = "", clip: str = "", s
     return mesh
 
 
-def find_crossings(cloths: Iterable[Any], colliders: Iterable[Any] = ()) -> NDArray[np.int32]:
+def find_crossings(cloths: Iterable[Any], *, colliders: Iterable[Any] = ()) -> NDArray[np.int32]:
     """Pairs of triangles that cross, by the exact, independent checker of runs: (k, 4) surface, triangle, other surface,
     other triangle. Surfaces are counted through cloths, then colliders; the first one of a pair is a cloth.
 

@@ -112,12 +112,14 @@ class Camera(_core.CameraValues):
         samples: int = 4,
         cloth_colors: Sequence[tuple[float, float, float]] = (),
         ground: float | None = None,
+        smooth: int | None = None,
     ) -> Rendering:
         """The world as it is: colours, depths and ids.
 
         color: False needs no graphics; rgb is then empty. shadows: of the sun, and ambient occlusion. samples: per
         pixel, for smooth edges, 1 to 16. cloth_colors: linear red, green, blue in [0, 1] of the first cloths.
-        ground: height of a ground in rgb, where no plane is [m].
+        ground: height of a ground in rgb, where no plane is [m]. smooth: Loop subdivisions of cloth in rgb, 0 to 2, with
+        rounded hems; None: its triangles.
 
         Raises InputError for invalid values, GraphicsError for colours without EGL and OpenGL.
         """
@@ -125,7 +127,8 @@ class Camera(_core.CameraValues):
         choose(cloth_colors, "cloth_colors", (Sequence, np.ndarray), "a list of colours")
         colors = [vector(c, "cloth_colors") for c in cloth_colors]
         height = None if ground is None else real(ground, "ground")
-        options = _core.RenderOptions(bool(color), bool(shadows), whole(samples, "samples"), colors, height)
+        loops = None if smooth is None else whole(smooth, "smooth")
+        options = _core.RenderOptions(bool(color), bool(shadows), whole(samples, "samples"), colors, height, loops)
         return Rendering(*_renderer().render(world._core, self, options))
 
 
@@ -142,7 +145,7 @@ def _camera(animation: _core.AnimationFile, camera: Camera | None, size: tuple[i
 
 
 def _plain() -> _core.RenderOptions:
-    return _core.RenderOptions(True, True, 4, [], None)
+    return _core.RenderOptions(True, True, 4, [], None, None)
 
 
 def draw_frame(

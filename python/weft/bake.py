@@ -114,7 +114,8 @@ class _Sheet:
         vertices = self.cloth.vertices
         vertices[self.dropped] = self.given.start[self.dropped]
         back = np.linalg.inv(to_world)
-        return vertices @ back[:3, :3].T + back[:3, 3]
+        local: NDArray[np.float64] = vertices @ back[:3, :3].T + back[:3, 3]
+        return local
 
 
 def _filled(at: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -206,7 +207,7 @@ class _Checker:
     def add(self, frame: int, record: np.void) -> None:
         cloths = [(sheet.cloth.positions, sheet.faces) for sheet in self._sheets]
         bodies = [(record[f"collider_{n}"].astype(float), body.faces) for n, body in enumerate(self._job.colliders)]
-        self._waiting.append((frame, self._pool.submit(lambda: len(find_crossings(cloths, bodies)))))
+        self._waiting.append((frame, self._pool.submit(lambda: len(find_crossings(cloths, colliders=bodies)))))
         self.finish(keep=1)
 
     def finish(self, keep: int = 0) -> None:
@@ -269,7 +270,7 @@ class _Bake:
         self._since_checkpoint = time.perf_counter()
 
     def _seconds(self) -> float:
-        return self._report.values["seconds"] + time.perf_counter() - self._began
+        return float(self._report.values["seconds"]) + time.perf_counter() - self._began
 
     # The bake.
 

@@ -126,5 +126,5 @@ def cache_of(cloth: Any) -> Path:
 
 def crossings(cloths: list[Any], colliders: list[Any], frame: int) -> int:
     """Of the positions that Blender evaluates."""
-    surfaces = [[(shown(thing, frame), faces(thing)) for thing in things] for things in (cloths, colliders)]
-    return len(weft.find_crossings(*surfaces))
+    dressed, bodies = ([(shown(thing, frame), faces(thing)) for thing in things] for things in (cloths, colliders))
+    return len(weft.find_crossings(dressed, colliders=bodies))

@@ -116,7 +116,7 @@ def test_the_cache_is_the_world_in_the_coordinates_of_the_object(tmp_path: Path)
             world.step(1 / (2 * FPS))
         local = np.c_[cache.frame(k), np.ones(cache.num_points)]
         np.testing.assert_allclose((local @ to_world(k).T)[:, :3], sheet.vertices, atol=2e-6)
-    assert not len(weft.find_crossings([(sheet.positions, sheet.faces)], [(ball(FRAMES - 1), BALL_FACES)]))
+    assert not len(weft.find_crossings([(sheet.positions, sheet.faces)], colliders=[(ball(FRAMES - 1), BALL_FACES)]))
     assert report["crossings"]["most"] == 0 and "Nothing crosses in any of 13 frames." in report["words"]
     assert report["strain"]["sheet"]["last"] == pytest.approx(sheet.stretches.max() - 1, abs=1e-5)
 

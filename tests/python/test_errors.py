@@ -326,6 +326,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
      "a camera's width and height: expected 1 to 16384 pixels, not 0"),
     (lambda: weft.Camera().render(empty(), color=False, samples=0),
      "samples of a picture: expected 1 to 16, not 0"),
+    (lambda: weft.Camera().render(empty(), color=False, smooth=3),
+     "subdivisions of a picture: expected 0 to 2, not 3"),
     (lambda: weft.Camera().render(empty(), color=False, cloth_colors=[(0, 0, 0)]),
      "there are 1 colours for 0 cloths"),
     (lambda: weft.Camera().render(hanging(2), color=False, cloth_colors=[(0, 0, 2)]),

@@ -1,6 +1,6 @@
 /// Public functions: intersections of surfaces.
 
-#include "weft/crossings.h"
+#include "weft/mesh.h"
 
 #include <cmath>
 #include <string>
