@@ -1,4 +1,4 @@
-#include "weft/crossings.h"
+#include "weft/mesh.h"
 
 #include <gtest/gtest.h>
 

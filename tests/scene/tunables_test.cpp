@@ -44,7 +44,8 @@ SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
 }
 
 SceneDesc reread(const SceneDesc& scene) {
-  const fs::path folder = fs::path(WEFT_OUTPUT_DIR) / "tunables";
+  const fs::path folder =
+      fs::path(WEFT_OUTPUT_DIR) / "tunables" / testing::UnitTest::GetInstance()->current_test_info()->name();
   fs::create_directories(folder);
   write_scene(folder / "tuned.toml", scene);
   SceneDesc back = canonical(read_scene(folder / "tuned.toml"));
