@@ -9,7 +9,7 @@
 #include "view_command.h"
 #include "weft/pictures/painter.h"
 #include "weft/render/video.h"
-#include "weft/run/film.h"
+#include "weft/run/playback.h"
 
 namespace weft::engine::app {
 namespace {
@@ -26,8 +26,9 @@ const PictureSize kSize{1280, 720};
 constexpr int kEvery = 2;  // frames of the videos
 
 /// A picture of the last frame and a video, in the run's folder.
-void paint(const Animation& animation, const fs::path& folder) {
-  Painter painter(animation, {.size = kSize, .view = {}, .style = {}}, make_offscreen_device());
+void paint(const fs::path& folder) {
+  const std::unique_ptr<FrameSource> frames = open_frames(folder);
+  Painter painter(*frames, {.size = kSize, .view = {}, .style = {}, .legend = {}}, make_offscreen_device());
   painter.write_pictures(folder / "picture.png", {painter.last_frame()}, 1);
   const fs::path video = folder / "video.mp4";
   require_ffmpeg(video);
@@ -37,10 +38,10 @@ void paint(const Animation& animation, const fs::path& folder) {
 /// Optional pictures: a failure is reported once and does not stop the demo.
 class Pictures {
  public:
-  void paint(const Animation& animation, const fs::path& folder) {
+  void paint(const fs::path& folder) {
     if (!error_.empty()) return;
     try {
-      app::paint(animation, folder);
+      app::paint(folder);
     } catch (const std::runtime_error& error) {
       error_ = error.what();
     }
@@ -71,15 +72,14 @@ int run_demo(const fs::path& out) {
   fmt::print("The paper's four scenes, each also with real fabric (_real).\n\n{}", table_head());
   Pictures pictures;
   for (const std::string& scene : kScenes) {
-    FilmSink film;
     const FinishedRun run =
-        run_to_files({.scene = scene, .options = {.threads = 0, .folder = (out / scene).string()}}, {&film});
+        run_to_files({.scene = scene, .options = {.threads = 0, .folder = (out / scene).string()}});
     fmt::print("{}", table_line(run.report));
     std::fflush(stdout);
     for (const std::string& warning : run.report.warnings) fmt::print("  warning: {}\n", warning);
     if (run.report.outcome == RunOutcome::failed) fmt::print("  failed at {}\n", run.report.failure);
     if (run.report.outcome != RunOutcome::done) return exit_code_of(run.report.outcome);
-    pictures.paint(film.animation(), out / scene);
+    pictures.paint(out / scene);
     if (interrupted()) return kInterrupted;
   }
   fmt::print(

@@ -12,10 +12,10 @@
 #include "weft/core/make_folder.h"
 #include "weft/core/staged_file.h"
 #include "weft/error.h"
-#include "weft/io/glb_reader.h"
 #include "weft/pictures/painter.h"
 #include "weft/render/video.h"
 #include "weft/run/film.h"
+#include "weft/run/playback.h"
 #include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderRequest {
-  std::string scene;  // a scene, a .glb file, or a folder with animation.glb
+  std::string scene;  // a scene, the folder of a run, or its .glb file
   fs::path out = "weft.png";
   std::vector<int> frames;  // of pictures; of a video the last one; empty: the scene's last one
   int columns = 0;          // of a contact sheet; 0: as many as pictures, at most 4
@@ -45,19 +45,16 @@ struct RenderRequest {
 };
 
 struct Footage {
-  Animation animation;
+  std::unique_ptr<FrameSource> frames;
   RunOutcome outcome;
-  std::vector<std::vector<std::vector<float>>> values;  // of --color
 };
 
-/// An animation written by `weft run`, or simulated now.
+/// Frames written by `weft run`, or simulated now.
 class Source {
  public:
   explicit Source(const RenderRequest& request) : request_(request) {
     const fs::path path = request.scene;
-    if (fs::is_directory(path)) {
-      file_ = path / "animation.glb";
-    } else if (path.extension() == ".glb") {
+    if (fs::is_directory(path) || path.extension() == ".glb") {
       file_ = path;
     } else {
       scene_ = read_scene(find_scene(request.scene), request.overrides);
@@ -74,11 +71,7 @@ class Source {
 
   /// At least up to the last requested frame, unless the simulation ends before.
   Footage get() const {
-    if (!scene_) {
-      Footage footage{read_glb(file_), RunOutcome::done, {}};
-      if (request_.color) footage.values = compute_speeds(footage.animation);
-      return footage;
-    }
+    if (!scene_) return {open_frames(file_), RunOutcome::done};
     RunOptions options{.threads = choose_threads(request_.threads),
                        .check_passages = false,
                        .keep_going = [] { return !interrupted(); }};
@@ -86,22 +79,18 @@ class Source {
       options.frames = *std::max_element(request_.frames.begin(), request_.frames.end());
     if (options.frames == 0) options.frames = 1;
     ProgressBar bar(scene_->name);
-    FilmSink film;
-    std::optional<ValueSink> values;
-    if (request_.color) values.emplace(*request_.color);
-    std::vector<FrameSink*> sinks = {&film};
-    if (values) sinks.push_back(&*values);
-    const RunReport report = run_scene(*scene_, options, sinks, [&](const Progress& progress) {
+    auto film = std::make_unique<FilmSpool>(request_.out, request_.color);
+    const RunReport report = run_scene(*scene_, options, {film.get()}, [&](const Progress& progress) {
       bar.update(progress);
       return !interrupted();
     });
     bar.clear();
     for (const std::string& warning : report.warnings) say("warning: " + warning);
     if (report.outcome == RunOutcome::failed) say("the simulation failed at " + report.failure);
-    Footage footage{film.take(), report.outcome, {}};
-    if (values) footage.values = values->take();
-    return footage;
+    return {std::move(film), report.outcome};
   }
+
+  bool is_file() const { return !scene_; }
 
   std::vector<SpringsToDraw> springs() const {
     std::vector<SpringsToDraw> springs;
@@ -115,7 +104,7 @@ class Source {
  private:
   const RenderRequest& request_;
   std::optional<SceneDesc> scene_;
-  fs::path file_;
+  fs::path file_;  // or folder, without a scene
 };
 
 PaintSettings paint_settings(const RenderRequest& request) {
@@ -146,13 +135,9 @@ std::vector<int> choose_frames(std::vector<int> frames, RunOutcome outcome, int 
   return frames;
 }
 
-ShownValues show_values(const RenderRequest& request, std::vector<std::vector<std::vector<float>>> frames,
-                        const std::vector<int>& drawn) {
-  const ValueLabel label = label_of(*request.color);
-  ShownValues values{label.name + " [" + label.unit + "]", std::move(frames)};
-  values.range =
-      request.range.empty() ? find_range(values, drawn) : std::array{request.range[0], request.range[1]};
-  return values;
+std::string legend_of(ParticleValue value) {
+  const ValueLabel label = label_of(value);
+  return label.name + " [" + label.unit + "]";
 }
 
 /// Frames of a video or sequence, or the pictures.
@@ -188,14 +173,19 @@ RunOutcome render(const RenderRequest& request) {
   if (!is_sequence(request.out)) require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
   catch_interrupts();
-  auto [animation, outcome, values] = source.get();
+  const auto [frames, outcome] = source.get();
+  FramesWithSpeeds with_speeds(*frames);
+  FrameSource& shown = request.color && source.is_file() ? with_speeds : *frames;
   settings.style.springs = source.springs();
   if (request.color) {
-    const std::vector<int> drawn = drawn_frames(request, outcome, num_frames(animation) - 1);
-    require_frames(drawn, num_frames(animation) - 1);
-    settings.style.values = show_values(request, std::move(values), drawn);
+    const int last = shown.num_frames() - 1;
+    const std::vector<int> drawn = drawn_frames(request, outcome, last);
+    require_frames(drawn, last);
+    settings.legend = legend_of(*request.color);
+    settings.style.range =
+        request.range.empty() ? find_range(shown, drawn) : std::array{request.range[0], request.range[1]};
   }
-  Painter painter(animation, settings, std::move(device));
+  Painter painter(shown, settings, std::move(device));
   const bool was_interrupted = interrupted();  // while simulating
   DrawingProgress progress;
   const auto go_on = [&](int drawn, int all) {

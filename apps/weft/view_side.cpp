@@ -23,21 +23,23 @@ void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& points) {
 /// Corners of boxes around all meshes but planes, in frames over the whole run.
 std::vector<Vec3> find_reach(FrameSource& run) {
   std::vector<Vec3> points;
-  Animation sample = run.meshes();
+  const Animation& meshes = run.meshes();
   const int last = run.num_frames() - 1, count = std::min(last + 1, kSampled);
   for (int n = 0; n < count; ++n) {
-    replace_frames(run.read(count == 1 ? 0 : n * last / (count - 1)), sample);
-    for (const AnimatedCloth& cloth : sample.cloths) {
+    const AnimationFrame frame = run.read(count == 1 ? 0 : n * last / (count - 1));
+    for (const std::vector<float>& cloth : frame.cloths) {
       Eigen::AlignedBox3d box;
-      for (std::size_t k = 0; k < cloth.frames[0].size(); k += 3)
-        box.extend(Eigen::Map<const Eigen::Vector3f>(&cloth.frames[0][k]).cast<double>());
+      for (std::size_t k = 0; k < cloth.size(); k += 3)
+        box.extend(Eigen::Map<const Eigen::Vector3f>(&cloth[k]).cast<double>());
       add_corners(box, points);
     }
-    for (const AnimatedBody& body : sample.bodies) {
+    for (std::size_t b = 0; b < meshes.bodies.size(); ++b) {
+      const AnimatedBody& body = meshes.bodies[b];
       if (body.shape && std::holds_alternative<Plane>(*body.shape)) continue;
       Eigen::AlignedBox3d box;
       for (std::size_t v = 0; v < body.mesh.positions.size(); ++v)
-        box.extend(body.poses[0].rotation * body.vertex(v, 0) + body.poses[0].translation);
+        box.extend(frame.poses[b].rotation * body.vertex(v, frame.body_vertices[b]) +
+                   frame.poses[b].translation);
       add_corners(box, points);
     }
   }
@@ -50,7 +52,7 @@ Picture ViewSide::draw(const Camera& camera, bool springs, const std::optional<V
   SceneStyle style{.ground = ground_};
   for (int c = 0; springs && c < static_cast<int>(topologies_.size()); ++c)
     style.springs.push_back({c, topologies_[c]});
-  Picture picture = ScenePictures(animation_, std::move(style)).at(0, camera);
+  Picture picture = ScenePictures(meshes_, frame_, std::move(style)).at(frame_, camera);
   if (status() && status()->held) {
     const Vec3 held = *status()->held;
     picture.dots.push_back({.positions = {held}, .color = kHand, .diameter = 11});
@@ -61,14 +63,14 @@ Picture ViewSide::draw(const Camera& camera, bool springs, const std::optional<V
 
 std::optional<ViewSide::ClothHit> ViewSide::pick(const Ray& ray) const {
   // Cloths come first among the meshes.
-  const Picture picture = ScenePictures(animation_, {.ground = ground_}).at(0, {});
+  const Picture picture = ScenePictures(meshes_, frame_, {.ground = ground_}).at(frame_, {});
   const std::optional<Hit> hit = find_first_hit(picture.meshes, ray);
-  if (!hit || hit->mesh >= static_cast<int>(animation_.cloths.size())) return std::nullopt;
+  if (!hit || hit->mesh >= static_cast<int>(meshes_.cloths.size())) return std::nullopt;
   return ClothHit{{hit->mesh, hit->triangle, hit->weights}, hit->point};
 }
 
 Vec3 ViewSide::center() const {
-  const std::vector<float>& positions = animation_.cloths[0].frames[0];
+  const std::vector<float>& positions = frame_.cloths[0];
   const Eigen::Map<const Eigen::Matrix3Xf> points(positions.data(), 3,
                                                   static_cast<Eigen::Index>(positions.size() / 3));
   return points.cast<double>().rowwise().mean();
@@ -76,7 +78,6 @@ Vec3 ViewSide::center() const {
 
 LiveSide::LiveSide(const SceneDesc& scene, int threads)
     : live_(scene, {.threads = threads, .playing = false}) {
-  animation_ = live_.start();
   ground_ = find_ground(live_.reach());
   update();
 }
@@ -86,18 +87,18 @@ void LiveSide::step_frame(bool backwards) {
 }
 
 bool LiveSide::update() {
-  if (!live_.take_newest(frame_)) return false;
-  if (meshes_ != frame_.start) {
-    meshes_ = frame_.start;
-    animation_ = *meshes_;
+  if (!live_.take_newest(newest_)) return false;
+  if (start_ != newest_.start) {
+    start_ = newest_.start;
+    meshes_ = without_frames(*start_);
   }
-  replace_frames(frame_.meshes, animation_);
-  for (const LiveSample& sample : frame_.samples) samples_.push_back(sample);
+  frame_ = newest_.meshes;
+  for (const LiveSample& sample : newest_.samples) samples_.push_back(sample);
   while (samples_.size() > kSamples) samples_.pop_front();
-  frame_.samples.clear();
-  topologies_ = frame_.topologies;
+  newest_.samples.clear();
+  topologies_ = newest_.topologies;
   for (std::size_t c = 0; c < topologies_.size(); ++c)
-    animation_.cloths[c].triangles = topologies_[c]->mesh.triangles;
+    meshes_.cloths[c].triangles = topologies_[c]->mesh.triangles;
   return true;
 }
 
@@ -106,8 +107,8 @@ RunSide::RunSide(const std::filesystem::path& path)
       title_(frames_->meshes().title.empty() ? path.string() : frames_->meshes().title),
       reach_(find_reach(*frames_)),
       head_{.frames_per_second = frames_->meshes().frames_per_second, .is_playing = false} {
-  animation_ = frames_->meshes();
-  replace_frames(frames_->read(0), animation_);
+  meshes_ = frames_->meshes();
+  frame_ = frames_->read(0);
   ground_ = find_ground(reach_);
 }
 
@@ -116,9 +117,9 @@ bool RunSide::update() {
   const bool was_playing = head_.is_playing;
   if (updated_) head_.advance(std::chrono::duration<double>(now - *updated_).count(), num_frames());
   updated_ = now;
-  if (head_.frame() == frame_) return was_playing != head_.is_playing;
-  frame_ = head_.frame();
-  replace_frames(frames_->read(frame_), animation_);
+  if (head_.frame() == number_) return was_playing != head_.is_playing;
+  number_ = head_.frame();
+  frame_ = frames_->read(number_);
   return true;
 }
 

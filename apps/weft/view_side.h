@@ -57,7 +57,8 @@ class ViewSide {
  protected:
   ViewSide() = default;
 
-  Animation animation_;                                           // one frame: the current one
+  Animation meshes_;                                              // without frames
+  AnimationFrame frame_;                                          // the current one
   std::vector<std::shared_ptr<const ClothTopology>> topologies_;  // (num_cloths) of live()
   double ground_ = 0;  // height of the ground in scenes without a floor [m]
 };
@@ -75,15 +76,15 @@ class LiveSide : public ViewSide {
   void step_frame(bool backwards) override;
   void reset() override { live_.reset(); }
   bool update() override;
-  bool is_going() const override { return frame_.status.failure.empty(); }
+  bool is_going() const override { return newest_.status.failure.empty(); }
   LiveSimulation* live() override { return &live_; }
-  const LiveStatus* status() const override { return &frame_.status; }
+  const LiveStatus* status() const override { return &newest_.status; }
   const std::deque<LiveSample>& samples() const override { return samples_; }
 
  private:
   LiveSimulation live_;
-  LiveFrame frame_;
-  std::shared_ptr<const Animation> meshes_;  // of animation_
+  LiveFrame newest_;
+  std::shared_ptr<const Animation> start_;  // of meshes_
   std::deque<LiveSample> samples_;
 };
 
@@ -104,7 +105,7 @@ class RunSide : public ViewSide {
   bool is_going() const override { return head_.is_playing; }
   PlayHead* head() override { return &head_; }
   int num_frames() override { return frames_->num_frames(); }
-  int frame() const override { return frame_; }
+  int frame() const override { return number_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -113,7 +114,7 @@ class RunSide : public ViewSide {
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;
-  int frame_ = 0;  // in animation_
+  int number_ = 0;  // of frame_
   std::optional<Clock::time_point> updated_;
 };
 

@@ -58,23 +58,24 @@ struct Rendering {
                                        // -1: nothing
 };
 
-/// A recorded run in memory: the animation.glb of `weft run`. Copies share it.
+/// A recorded run, whose frames stay on disk until they are drawn. Copies share it.
 class WEFT_API Recording {
  public:
-  /// Throws InputError if the file cannot be read, is damaged, or was not written by Weft.
-  explicit Recording(const std::string& glb_file);
+  /// `path`: the folder of a `weft run`, finished or not, or its animation.glb. Throws InputError if it cannot
+  /// be read, is damaged, was not written by Weft, or has no cloth.
+  explicit Recording(const std::string& path);
   ~Recording();
   Recording(const Recording&);
   Recording& operator=(const Recording&);
 
-  int num_frames() const;  // with the start, frame 0
+  int num_frames() const;  // with the start, frame 0; of a run that goes on it grows
   int num_cloths() const;
   double frames_per_second() const;
 
  private:
   friend struct RecordingAccess;  // library internals
   struct Impl;
-  std::shared_ptr<const Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 /// The camera with the direction, field of view and size of `like` that frames all cloths and finite
@@ -93,7 +94,8 @@ class WEFT_API OffscreenRenderer {
   OffscreenRenderer& operator=(OffscreenRenderer&&) noexcept;
 
   /// The world as it is, or frame 0 to num_frames() − 1 of a recording. Throws InputError for an invalid
-  /// camera, invalid options and a nonexistent frame; GraphicsError for colours without EGL or OpenGL.
+  /// camera, invalid options, a nonexistent frame and a file that cannot be read; GraphicsError for colours
+  /// without EGL or OpenGL.
   Rendering render(const World& world, const Camera& camera, const RenderOptions& options = {});
   Rendering render(const Recording& recording, int frame, const Camera& camera,
                    const RenderOptions& options = {});

@@ -62,7 +62,8 @@ void paint(const fs::path& file, const Animation& animation, const std::vector<i
     settings.view.elevation_deg = 70;
     settings.style.springs = {{0, springs}};
   }
-  Painter painter(animation, settings, make_offscreen_device());
+  FramesInMemory source(animation);
+  Painter painter(source, settings, make_offscreen_device());
   painter.write_pictures(file, frames, static_cast<int>(frames.size()));
 }
 

@@ -62,8 +62,8 @@ void write_files(const fs::path& folder, const Json& json, const Findings& resul
     if (!picture.animation) continue;
     const std::string& file = picture.file;
     write_shape(folder / (file + ".obj"), picture.animation->cloths.at(0));
-    Painter painter(*picture.animation, {.view = {.elevation_deg = 30}, .zoom = 0.9},
-                    make_offscreen_device());
+    FramesInMemory source(*picture.animation);
+    Painter painter(source, {.view = {.elevation_deg = 30}, .zoom = 0.9}, make_offscreen_device());
     painter.write_pictures(folder / (file + ".png"), {0}, 1);
   }
 }

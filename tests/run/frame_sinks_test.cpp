@@ -186,6 +186,31 @@ weld = true
     EXPECT_NEAR(read.cloths[0].frames[3][i], made.cloths[0].frames[3][i], 1e-7);
 }
 
+TEST_F(FrameSinks, FilmSpoolHasTheFramesOnDiskWhileTheyAreMade) {
+  FilmSink film;
+  FilmSpool spool(folder_ / "picture.png", ParticleValue::speed);
+  struct Reader : FrameSink {
+    explicit Reader(FrameSource& source) : source(source) {}
+    void begin(SceneRun&, RunReport&) override { start = source.read(0); }
+    void add_frame(const SceneRun& run, RunReport&) override {
+      EXPECT_EQ(source.num_frames(), run.frame() + 1);
+      EXPECT_EQ(source.read(0).cloths, start.cloths);
+    }
+    FrameSource& source;
+    AnimationFrame start;
+  } reader(spool);
+  run_scene(shipped("rotating_ball", {"cloth[0].grid.cells=[6, 6]"}), {.frames = 3}, {&film, &spool, &reader});
+  ASSERT_EQ(spool.num_frames(), 4);
+  for (int k = 3; k >= 0; --k) {
+    const AnimationFrame frame = spool.read(k), kept = get_frame(film.animation(), k);
+    EXPECT_EQ(frame.cloths, kept.cloths);
+    EXPECT_EQ(frame.poses, kept.poses);
+    EXPECT_EQ(frame.values[0].size(), 49u);
+    EXPECT_EQ(k == 0, *std::ranges::max_element(frame.values[0]) == 0) << "it falls";
+  }
+  EXPECT_TRUE(fs::is_empty(folder_)) << "no name is left behind";
+}
+
 TEST_F(FrameSinks, ObjFilesHoldEveryPosition) {
   ObjSink obj(folder_);
   FilmSink film;

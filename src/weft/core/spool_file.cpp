@@ -47,14 +47,32 @@ SpoolFile::SpoolFile(const std::filesystem::path& target) : target_(target) {
 
 void SpoolFile::append(const void* bytes, std::size_t count) {
   if (count == 0) return;
+  if (!is_at_end_) seek(size_);
+  is_at_end_ = true;
   errno = 0;
   if (std::fwrite(bytes, 1, count, file_.get()) != count) fail(target_);
   size_ += count;
 }
 
-void SpoolFile::copy_to(std::ostream& out) {
+void SpoolFile::seek(std::size_t position) {
   errno = 0;
-  if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) fail(target_);
+#ifdef _WIN32
+  const int status = _fseeki64(file_.get(), static_cast<long long>(position), SEEK_SET);
+#else
+  const int status = fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET);
+#endif
+  if (status != 0) fail(target_);
+}
+
+void SpoolFile::read(std::size_t position, void* bytes, std::size_t count) {
+  seek(position);
+  is_at_end_ = false;
+  if (std::fread(bytes, 1, count, file_.get()) != count) fail(target_);
+}
+
+void SpoolFile::copy_to(std::ostream& out) {
+  seek(0);
+  is_at_end_ = false;
   std::array<char, 1 << 16> buffer;
   for (std::size_t left = size_; left > 0;) {
     const std::size_t count = std::fread(buffer.data(), 1, std::min(left, buffer.size()), file_.get());

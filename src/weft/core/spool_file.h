@@ -1,5 +1,5 @@
 #pragma once
-/// Bytes that are kept on disk until they are copied elsewhere.
+/// Bytes that are kept on disk for a while.
 
 #include <cstddef>
 #include <cstdio>
@@ -19,7 +19,10 @@ class SpoolFile {
   void append(const void* bytes, std::size_t count);
   std::size_t size() const { return size_; }  // [bytes]
 
-  /// Writes all bytes to `out`. Nothing is appended afterwards.
+  /// Copies `count` bytes from `position` on, which are there.
+  void read(std::size_t position, void* bytes, std::size_t count);
+
+  /// Writes all bytes to `out`.
   void copy_to(std::ostream& out);
 
  private:
@@ -27,9 +30,12 @@ class SpoolFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
+  void seek(std::size_t position);
+
   std::filesystem::path target_;
   std::unique_ptr<std::FILE, Close> file_;
   std::size_t size_ = 0;
+  bool is_at_end_ = true;  // of the file
 };
 
 }  // namespace weft::engine

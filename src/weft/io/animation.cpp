@@ -60,15 +60,6 @@ void append_frame(AnimationFrame frame, Animation& animation) {
   }
 }
 
-void replace_frames(AnimationFrame frame, Animation& animation) {
-  for (AnimatedCloth& cloth : animation.cloths) cloth.frames.clear();
-  for (AnimatedBody& body : animation.bodies) {
-    body.poses.clear();
-    body.frames.clear();
-  }
-  append_frame(std::move(frame), animation);
-}
-
 FramesInMemory::FramesInMemory(const Animation& animation)
     : animation_(animation), meshes_(without_frames(animation)) {}
 

@@ -48,10 +48,10 @@ struct AnimatedBody {
   std::vector<Pose> poses;                 // (1 or num_frames)
   std::vector<std::vector<float>> frames;  // of a body that deforms: (num_frames) of (num_vertices x 3), in
                                            // the mesh's coordinates; empty: rigid [m]
-  /// Position of a vertex in a frame, in the mesh's coordinates.
-  Vec3 vertex(std::size_t v, std::size_t frame) const {
-    if (frames.empty()) return mesh.positions[v];
-    return Eigen::Map<const Eigen::Vector3f>(&frames[frame][3 * v]).cast<double>();
+  /// A vertex in a frame with these `body_vertices`, in the mesh's coordinates.
+  Vec3 vertex(std::size_t v, const std::vector<float>& body_vertices) const {
+    if (body_vertices.empty()) return mesh.positions[v];
+    return Eigen::Map<const Eigen::Vector3f>(&body_vertices[3 * v]).cast<double>();
   }
 
   std::optional<SolidShape> shape;  // exact shape of `mesh`, in its coordinates; empty: only the mesh
@@ -71,6 +71,8 @@ struct AnimationFrame {
   std::vector<AnimatedBody::Pose> poses;          // (num_bodies)
   std::vector<std::vector<float>> body_vertices;  // (num_bodies) as in AnimatedBody::frames; empty for a body
                                                   // that does not deform [m]
+  std::vector<std::vector<float>> values =
+      {};  // (num_cloths) of (num_vertices) shown by colours; empty: none
 };
 
 /// Frames in memory or in a file, read one by one.
@@ -106,9 +108,6 @@ std::size_t count_frames(const Animation& animation);
 
 /// Frame `k` of the animation; a body with one pose has it in every frame.
 AnimationFrame get_frame(const Animation& animation, std::size_t k);
-
-/// Makes this frame the only one.
-void replace_frames(AnimationFrame frame, Animation& animation);
 
 /// Appends a frame. A body that is still at rest keeps one pose.
 void append_frame(AnimationFrame frame, Animation& animation);

@@ -14,8 +14,10 @@ namespace fs = std::filesystem;
 constexpr int kSheetGap = 6;  // between the pictures of a contact sheet [pixels]
 constexpr int kMaxColumns = 4;
 
-PaintSettings complete(PaintSettings settings, const Animation& animation) {
-  if (!settings.style.smooth) settings.style.smooth = choose_smoothness(animation);
+PaintSettings complete(PaintSettings settings, FrameSource& source) {
+  if (source.meshes().cloths.empty()) throw InputError("there is no cloth to draw");
+  if (!settings.style.smooth) settings.style.smooth = choose_smoothness(source.meshes());
+  if (settings.finds_ground && !settings.style.ground) settings.style.ground = find_ground(source);
   return settings;
 }
 
@@ -47,26 +49,24 @@ bool is_sequence(const fs::path& file) {
   return is_picture(file) && file.filename().string().find('#') != std::string::npos;
 }
 
-Painter::Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device)
-    : animation_(animation),
-      settings_(complete(settings, animation)),
+Painter::Painter(FrameSource& frames, const PaintSettings& settings, std::unique_ptr<Device> device)
+    : source_(frames),
+      settings_(complete(settings, frames)),
       renderer_(std::move(device), settings_.render),
-      pictures_(animation, settings_.style),
-      last_(num_frames(animation) - 1) {
-  if (last_ < 0) throw InputError("there is no cloth to draw");
-}
+      pictures_(frames.meshes(), frames.read(0), settings_.style),
+      last_(frames.num_frames() - 1) {}
 
 Camera Painter::frame(const std::vector<int>& frames) const {
   if (settings_.camera) return *settings_.camera;
-  Camera camera = frame_scene(animation_, frames, settings_.view, settings_.size.aspect(), settings_.framed);
+  Camera camera = frame_scene(source_, frames, settings_.view, settings_.size.aspect(), settings_.framed);
   camera.zoom(1 / settings_.zoom);
   if (settings_.look_at) camera.target = *settings_.look_at;
   return camera;
 }
 
 Image Painter::draw(int frame, const Camera& camera) {
-  Image image = renderer_.draw(pictures_.at(frame, camera), settings_.size);
-  if (const auto& values = settings_.style.values) draw_legend(image, {values->title, values->range});
+  Image image = renderer_.draw(pictures_.at(source_.read(frame), camera), settings_.size);
+  if (!settings_.legend.empty()) draw_legend(image, {settings_.legend, settings_.style.range});
   return image;
 }
 
@@ -86,7 +86,8 @@ std::vector<int> Painter::every(int step) const {
 }
 
 void Painter::write_video(const fs::path& file, int every, const GoOn& go_on) {
-  VideoWriter video(file, settings_.size.width, settings_.size.height, animation_.frames_per_second / every);
+  VideoWriter video(file, settings_.size.width, settings_.size.height,
+                    source_.meshes().frames_per_second / every);
   const std::vector<int> frames = this->every(every);
   const Camera camera = frame(frames);
   for (std::size_t k = 0; k < frames.size(); ++k) {

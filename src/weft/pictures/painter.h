@@ -22,6 +22,8 @@ struct PaintSettings {
   std::optional<Vec3> look_at;   // in the picture's middle, in place of the framed middle [m]
   std::optional<Camera> camera;  // in place of all of these
   SceneStyle style;              // `smooth` empty: chosen by the number of triangles
+  bool finds_ground = true;      // without style.ground: below all frames
+  std::string legend;            // of values, with their unit, as in "speed [m/s]"
   RenderSettings render;
 };
 
@@ -31,12 +33,12 @@ void require_frames(const std::vector<int>& frames, int last);
 /// Whether the file's name has places for a frame's number, as in "frame_####.png".
 bool is_sequence(const std::filesystem::path& file);
 
-/// Draws frames of an animation, which must outlive this. All frames of one file share a camera, which shows
-/// everything in them.
+/// Draws frames of an animation, which must outlive this, one after the other. All frames of one file share a
+/// camera, which shows everything in them.
 class Painter {
  public:
   /// Throws GraphicsError without graphics, InputError for an animation without cloth.
-  Painter(const Animation& animation, const PaintSettings& settings, std::unique_ptr<Device> device);
+  Painter(FrameSource& frames, const PaintSettings& settings, std::unique_ptr<Device> device);
 
   /// One frame, or several as a contact sheet with so many columns (0: at most four). Throws InputError for
   /// nonexistent frames.
@@ -57,7 +59,7 @@ class Painter {
   Image draw(int frame, const Camera& camera);
   std::vector<int> every(int step) const;
 
-  const Animation& animation_;
+  FrameSource& source_;
   PaintSettings settings_;
   Renderer renderer_;
   ScenePictures pictures_;

@@ -2,26 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 
 #include "weft/face/world_impl.h"
-#include "weft/io/glb_reader.h"
 #include "weft/pictures/painter.h"
 #include "weft/pictures/public_camera.h"
 #include "weft/render/depth_picture.h"
 #include "weft/render/video.h"
 #include "weft/run/film.h"
+#include "weft/run/playback.h"
 
 namespace weft {
 
 using engine::Animation;
 
-struct Recording::Impl {
-  Animation animation;
+struct Recording::Impl final : engine::FrameSource {
+  explicit Impl(const std::string& path) : file(engine::open_frames(path)) {}
+
+  const Animation& meshes() const override { return file->meshes(); }
+  int num_frames() override {
+    const std::lock_guard lock(mutex);
+    return file->num_frames();
+  }
+  engine::AnimationFrame read(int frame) override {
+    const std::lock_guard lock(mutex);
+    return file->read(frame);
+  }
+
+  std::mutex mutex;  // of file's frames
+  std::unique_ptr<engine::FrameSource> file;
 };
 
 struct RecordingAccess {
-  static const Animation& animation(const Recording& recording) { return recording.impl_->animation; }
+  static engine::FrameSource& frames(const Recording& recording) { return *recording.impl_; }
 };
 
 namespace {
@@ -29,11 +43,19 @@ namespace {
 constexpr int kMaxSamples = 16, kMaxSmooth = 2;
 
 /// The world's present state as the only frame.
-Animation make_still(const World& world) {
-  Animation animation = engine::make_animation(WorldAccess::engine(world));
-  engine::append_frame(engine::capture_frame(WorldAccess::engine(world)), animation);
-  return animation;
-}
+class Still final : public engine::FrameSource {
+ public:
+  explicit Still(const World& world)
+      : world_(WorldAccess::engine(world)), meshes_(engine::make_animation(world_)) {}
+
+  const Animation& meshes() const override { return meshes_; }
+  int num_frames() override { return 1; }
+  engine::AnimationFrame read(int) override { return engine::capture_frame(world_); }
+
+ private:
+  const engine::World& world_;
+  Animation meshes_;
+};
 
 void require_valid(const RenderOptions& options, const Animation& animation) {
   if (options.samples < 1 || options.samples > kMaxSamples)
@@ -54,10 +76,7 @@ void require_valid(const RenderOptions& options, const Animation& animation) {
 }
 
 engine::SceneStyle style_of(const RenderOptions& options) {
-  return {.has_ground = options.ground.has_value(),
-          .ground = options.ground,
-          .cloth_colors = options.cloth_colors,
-          .smooth = options.smooth};
+  return {.ground = options.ground, .cloth_colors = options.cloth_colors, .smooth = options.smooth};
 }
 
 engine::RenderSettings settings_of(const RenderOptions& options) {
@@ -67,11 +86,11 @@ engine::RenderSettings settings_of(const RenderOptions& options) {
           .occlusion = options.shadows};
 }
 
-Camera frame_all(const Animation& animation, const Camera& like) {
-  std::vector<int> frames(engine::count_frames(animation));
+Camera frame_all(engine::FrameSource& source, const Camera& like) {
+  std::vector<int> frames(source.num_frames());
   std::iota(frames.begin(), frames.end(), 0);
   const engine::Camera camera = engine::to_engine(like);
-  return engine::from_engine(engine::frame_scene(animation, frames, camera, engine::size_of(like).aspect()),
+  return engine::from_engine(engine::frame_scene(source, frames, camera, engine::size_of(like).aspect()),
                              like);
 }
 
@@ -87,38 +106,42 @@ void add_depths(const engine::Picture& picture, const std::vector<int>& shown, R
 
 }  // namespace
 
-Recording::Recording(const std::string& glb_file)
-    : impl_(std::make_shared<const Impl>(Impl{engine::read_glb(glb_file)})) {}
+Recording::Recording(const std::string& path) : impl_(std::make_shared<Impl>(path)) {}
 Recording::~Recording() = default;
 Recording::Recording(const Recording&) = default;
 Recording& Recording::operator=(const Recording&) = default;
 
-int Recording::num_frames() const { return static_cast<int>(engine::count_frames(impl_->animation)); }
-int Recording::num_cloths() const { return static_cast<int>(impl_->animation.cloths.size()); }
-double Recording::frames_per_second() const { return impl_->animation.frames_per_second; }
+int Recording::num_frames() const { return impl_->num_frames(); }
+int Recording::num_cloths() const { return static_cast<int>(impl_->meshes().cloths.size()); }
+double Recording::frames_per_second() const { return impl_->meshes().frames_per_second; }
 
-Camera frame_camera(const World& world, const Camera& like) { return frame_all(make_still(world), like); }
+Camera frame_camera(const World& world, const Camera& like) {
+  Still still(world);
+  return frame_all(still, like);
+}
 
 Camera frame_camera(const Recording& recording, const Camera& like) {
-  return frame_all(RecordingAccess::animation(recording), like);
+  return frame_all(RecordingAccess::frames(recording), like);
 }
 
 struct OffscreenRenderer::Impl {
   std::optional<engine::Renderer> renderer;  // from the first picture in colour on
 
-  Rendering render(const Animation& animation, int frame, const Camera& camera,
+  Rendering render(engine::FrameSource& source, int number, const Camera& camera,
                    const RenderOptions& options) {
-    require_valid(options, animation);
+    const Animation& meshes = source.meshes();
+    require_valid(options, meshes);
     engine::SceneStyle style = style_of(options);
     const engine::Camera view = engine::to_engine(camera);
+    const engine::AnimationFrame frame = source.read(number);
     Rendering rendering{.width = camera.width, .height = camera.height};
     if (options.color) {
-      const engine::Picture picture = engine::ScenePictures(animation, style).at(frame, view);
+      const engine::Picture picture = engine::ScenePictures(meshes, frame, style).at(frame, view);
       add_colors(picture, settings_of(options), rendering);
     }
     style.smooth = {};
-    const engine::ScenePictures triangles(animation, style);
-    add_depths(triangles.at(frame, view), triangles.shown(), rendering);
+    const engine::ScenePictures triangles(meshes, frame, style);
+    add_depths(triangles.at(frame, view), triangles.shown(frame), rendering);
     return rendering;
   }
 
@@ -139,7 +162,8 @@ OffscreenRenderer::OffscreenRenderer(OffscreenRenderer&&) noexcept = default;
 OffscreenRenderer& OffscreenRenderer::operator=(OffscreenRenderer&&) noexcept = default;
 
 Rendering OffscreenRenderer::render(const World& world, const Camera& camera, const RenderOptions& options) {
-  return impl_->render(make_still(world), 0, camera, options);
+  Still still(world);
+  return impl_->render(still, 0, camera, options);
 }
 
 Rendering OffscreenRenderer::render(const Recording& recording, int frame, const Camera& camera,
@@ -147,7 +171,7 @@ Rendering OffscreenRenderer::render(const Recording& recording, int frame, const
   if (frame < 0 || frame >= recording.num_frames())
     throw InputError("there is no frame " + std::to_string(frame) + "; the last one is " +
                      std::to_string(recording.num_frames() - 1));
-  return impl_->render(RecordingAccess::animation(recording), frame, camera, options);
+  return impl_->render(RecordingAccess::frames(recording), frame, camera, options);
 }
 
 void write_picture(const std::string& file, const Rendering& picture) {
@@ -164,8 +188,8 @@ void write_picture(const std::string& file, const Rendering& picture) {
 
 void write_video(const std::string& file, const Recording& recording, const Camera& camera,
                  const RenderOptions& options, int every) {
-  const Animation& animation = RecordingAccess::animation(recording);
-  require_valid(options, animation);
+  engine::FrameSource& frames = RecordingAccess::frames(recording);
+  require_valid(options, frames.meshes());
   if (!options.color) throw InputError(file + ": a video needs colours");
   if (every < 1)
     throw InputError(file + ": expected every 1st or a later frame, not " + std::to_string(every));
@@ -175,8 +199,9 @@ void write_video(const std::string& file, const Recording& recording, const Came
   const engine::PaintSettings settings{.size = engine::size_of(camera),
                                        .camera = engine::to_engine(camera),
                                        .style = style_of(options),
+                                       .finds_ground = false,
                                        .render = settings_of(options)};
-  engine::Painter(animation, settings, engine::make_offscreen_device()).write_video(file, every);
+  engine::Painter(frames, settings, engine::make_offscreen_device()).write_video(file, every);
 }
 
 }  // namespace weft

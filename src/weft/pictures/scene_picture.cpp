@@ -21,33 +21,37 @@ constexpr Color kStructural = {0.05, 0.10, 0.25}, kShear = {0.75, 0.22, 0.04}, k
 constexpr int kArcPieces = 8;        // lines in the arc of a bending spring
 constexpr double kArcHeight = 0.13;  // of the arc, as a share of its length [1]
 
-bool is_level_plane(const AnimatedBody& body) {
+bool is_level_plane(const AnimatedBody& body, const AnimatedBody::Pose& pose) {
   const Plane* plane = body.shape ? std::get_if<Plane>(&*body.shape) : nullptr;
-  return plane && body.poses.size() == 1 && (body.poses[0].rotation * plane->normal).y() > kLevel;
+  return plane && (pose.rotation * plane->normal).y() > kLevel;
+}
+
+/// The first level plane, or -1.
+int find_level_plane(const Animation& meshes, const AnimationFrame& frame) {
+  for (std::size_t b = 0; b < meshes.bodies.size(); ++b) {
+    if (is_level_plane(meshes.bodies[b], frame.poses[b])) return static_cast<int>(b);
+  }
+  return -1;
 }
 
 bool is_plane(const AnimatedBody& body) { return body.shape && std::holds_alternative<Plane>(*body.shape); }
-
-const AnimatedBody::Pose& pose_at(const AnimatedBody& body, int frame) {
-  return body.poses[std::min<std::size_t>(static_cast<std::size_t>(frame), body.poses.size() - 1)];
-}
 
 Vec3 vertex(const std::vector<float>& positions, std::size_t v) {
   return {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
 }
 
-/// Everything in a frame except for planes, which are infinite, or only cloth.
-void add_points(const Animation& animation, int frame, Framed framed, std::vector<Vec3>& points) {
-  for (const AnimatedCloth& cloth : animation.cloths) {
-    const std::vector<float>& positions = cloth.frames[frame];
-    for (std::size_t v = 0; 3 * v < positions.size(); ++v) points.push_back(vertex(positions, v));
+/// Calls visit(point) for everything in a frame except for planes, which are infinite, or only for cloth.
+template <class Visit>
+void visit_points(const Animation& meshes, const AnimationFrame& frame, Framed framed, const Visit& visit) {
+  for (const std::vector<float>& positions : frame.cloths) {
+    for (std::size_t v = 0; 3 * v < positions.size(); ++v) visit(vertex(positions, v));
   }
   if (framed == Framed::cloth) return;
-  for (const AnimatedBody& body : animation.bodies) {
+  for (std::size_t b = 0; b < meshes.bodies.size(); ++b) {
+    const AnimatedBody& body = meshes.bodies[b];
     if (is_plane(body)) continue;
-    const AnimatedBody::Pose& pose = pose_at(body, frame);
     for (std::size_t v = 0; v < body.mesh.positions.size(); ++v)
-      points.push_back(pose.rotation * body.vertex(v, static_cast<std::size_t>(frame)) + pose.translation);
+      visit(frame.poses[b].rotation * body.vertex(v, frame.body_vertices[b]) + frame.poses[b].translation);
   }
 }
 
@@ -81,12 +85,12 @@ void add_hem(const Hem& hem, DrawnMesh& mesh) {
 
 /// A body in a frame. Below smooth cloth its surface is moved inwards: such cloth lies a little inside its
 /// triangles in places.
-DrawnMesh draw_body(const AnimatedBody& body, int frame, double inset) {
+DrawnMesh draw_body(const AnimatedBody& body, const AnimatedBody::Pose& pose,
+                    const std::vector<float>& deformed, double inset) {
   DrawnMesh mesh{.triangles = body.mesh.triangles, .look = {.color = body.color}};
-  const AnimatedBody::Pose& pose = pose_at(body, frame);
   const OrientedBox* box = body.shape ? std::get_if<OrientedBox>(&*body.shape) : nullptr;
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
-    Vec3 p = body.vertex(v, static_cast<std::size_t>(frame));
+    Vec3 p = body.vertex(v, deformed);
     if (box) {  // its faces have their own corners, which move together
       const Vec3 local = box->rotation.transpose() * (p - box->center);
       const Vec3 share = (box->half_size.array() - inset).max(0) / box->half_size.array();
@@ -103,33 +107,16 @@ DrawnMesh draw_body(const AnimatedBody& body, int frame, double inset) {
 }
 
 /// Mean length of the edges of all cloth at its start [m].
-double find_edge_length(const Animation& animation) {
+double find_edge_length(const Animation& meshes, const AnimationFrame& start) {
   double sum = 0, count = 0;
-  for (const AnimatedCloth& cloth : animation.cloths) {
-    for (const Triangle& t : cloth.triangles) {
+  for (std::size_t c = 0; c < meshes.cloths.size(); ++c) {
+    for (const Triangle& t : meshes.cloths[c].triangles) {
       for (int k = 0; k < 3; ++k)
-        sum += (vertex(cloth.frames[0], t[k]) - vertex(cloth.frames[0], t[(k + 1) % 3])).norm();
+        sum += (vertex(start.cloths[c], t[k]) - vertex(start.cloths[c], t[(k + 1) % 3])).norm();
       count += 3;
     }
   }
   return count == 0 ? 0 : sum / count;
-}
-
-/// Height of a level plane, else the style's ground, by default below the lowest point of the animation.
-std::optional<double> find_ground(const Animation& animation, const SceneStyle& style) {
-  for (const AnimatedBody& body : animation.bodies) {
-    if (is_level_plane(body)) return body.poses[0].translation.y();
-  }
-  if (style.ground || !style.has_ground) return style.ground;
-  Eigen::AlignedBox3d box;
-  std::vector<Vec3> points;
-  for (int frame = 0; frame < num_frames(animation); ++frame) {
-    points.clear();
-    add_points(animation, frame, Framed::everything, points);
-    for (const Vec3& p : points) box.extend(p);
-  }
-  if (box.isEmpty()) return std::nullopt;
-  return box.min().y() - kBelow * box.diagonal().norm();
 }
 
 /// An arc from a to b, bent towards `side` (unit).
@@ -168,17 +155,13 @@ void draw_springs(const DrawnMesh& cloth, const ClothTopology& topology, Picture
 
 }  // namespace
 
-int num_frames(const Animation& animation) {
-  return animation.cloths.empty() ? 0 : static_cast<int>(animation.cloths[0].frames.size());
-}
-
-ScenePictures::ScenePictures(const Animation& animation, SceneStyle style)
-    : animation_(animation), style_(std::move(style)) {
-  style_.ground = find_ground(animation, style_);
-  if (!style_.smooth || num_frames(animation) == 0) return;
-  if (*style_.smooth > 0) inset_ = std::min(kInset * find_edge_length(animation), kMaxInset);
-  for (const AnimatedCloth& cloth : animation.cloths) {
-    const int num_vertices = static_cast<int>(cloth.frames.empty() ? 0 : cloth.frames[0].size() / 3);
+ScenePictures::ScenePictures(const Animation& meshes, const AnimationFrame& start, SceneStyle style)
+    : meshes_(meshes), style_(std::move(style)) {
+  if (!style_.smooth) return;
+  if (*style_.smooth > 0) inset_ = std::min(kInset * find_edge_length(meshes, start), kMaxInset);
+  for (std::size_t c = 0; c < meshes.cloths.size(); ++c) {
+    const AnimatedCloth& cloth = meshes.cloths[c];
+    const int num_vertices = static_cast<int>(start.cloths[c].size() / 3);
     LoopSubdivision subdivision(cloth.triangles, num_vertices, *style_.smooth);
     Hem hem(subdivision.triangles(), subdivision.num_vertices());
     std::vector<float> coordinates;
@@ -187,17 +170,17 @@ ScenePictures::ScenePictures(const Animation& animation, SceneStyle style)
   }
 }
 
-DrawnMesh ScenePictures::draw_cloth(int index, int frame, const Camera& camera) const {
-  const AnimatedCloth& cloth = animation_.cloths[index];
+DrawnMesh ScenePictures::draw_cloth(int index, const AnimationFrame& frame, const Camera& camera) const {
+  const AnimatedCloth& cloth = meshes_.cloths[index];
   DrawnMesh mesh{.triangles = cloth.triangles,
-                 .positions = cloth.frames[frame],
+                 .positions = frame.cloths[index],
                  .fabric_coordinates = cloth.fabric_coordinates,
                  .look = find_look(cloth)};
   if (static_cast<std::size_t>(index) < style_.cloth_colors.size())
     mesh.look.color = style_.cloth_colors[index];
-  if (style_.values) {
-    mesh.values = style_.values->frames[frame][index];
-    mesh.range = style_.values->range;
+  if (!frame.values.empty()) {
+    mesh.values = frame.values[index];
+    mesh.range = style_.range;
   }
   if (smooth_.empty() || find_springs(index)) return mesh;
   const auto& [subdivision, hem, coordinates] = smooth_[index];
@@ -210,38 +193,37 @@ DrawnMesh ScenePictures::draw_cloth(int index, int frame, const Camera& camera) 
   return mesh;
 }
 
-Picture ScenePictures::at(int frame, const Camera& camera) const {
+Picture ScenePictures::at(const AnimationFrame& frame, const Camera& camera) const {
   Picture picture;
   picture.camera = camera;
   picture.transparent = style_.transparent;
-  picture.ground = style_.ground;
-  for (int c = 0; c < static_cast<int>(animation_.cloths.size()); ++c) {
+  const int plane = find_level_plane(meshes_, frame);
+  picture.ground = plane < 0 ? style_.ground : frame.poses[plane].translation.y();
+  for (int c = 0; c < static_cast<int>(meshes_.cloths.size()); ++c) {
     DrawnMesh cloth = draw_cloth(c, frame, camera);
     if (const SpringsToDraw* springs = find_springs(c))
       draw_springs(cloth, *springs->topology, picture);
     else
       picture.meshes.push_back(std::move(cloth));
   }
-  for (const AnimatedBody& body : animation_.bodies) {
-    if (!is_level_plane(body)) picture.meshes.push_back(draw_body(body, frame, inset_));
+  for (std::size_t b = 0; b < meshes_.bodies.size(); ++b) {
+    const AnimatedBody& body = meshes_.bodies[b];
+    if (!is_level_plane(body, frame.poses[b]))
+      picture.meshes.push_back(draw_body(body, frame.poses[b], frame.body_vertices[b], inset_));
   }
   return picture;
 }
 
-std::vector<int> ScenePictures::shown() const {
+std::vector<int> ScenePictures::shown(const AnimationFrame& frame) const {
   std::vector<int> shown;
-  int ground = -1;
-  const int num_cloths = static_cast<int>(animation_.cloths.size());
+  const int num_cloths = static_cast<int>(meshes_.cloths.size()), plane = find_level_plane(meshes_, frame);
   for (int c = 0; c < num_cloths; ++c) {
     if (!find_springs(c)) shown.push_back(c);
   }
-  for (int b = 0; b < static_cast<int>(animation_.bodies.size()); ++b) {
-    if (!is_level_plane(animation_.bodies[b]))
-      shown.push_back(num_cloths + b);
-    else if (ground < 0)
-      ground = num_cloths + b;
+  for (int b = 0; b < static_cast<int>(meshes_.bodies.size()); ++b) {
+    if (!is_level_plane(meshes_.bodies[b], frame.poses[b])) shown.push_back(num_cloths + b);
   }
-  shown.push_back(ground);
+  shown.push_back(plane < 0 ? -1 : num_cloths + plane);
   return shown;
 }
 
@@ -258,11 +240,11 @@ int choose_smoothness(const Animation& animation) {
   return 16 * triangles <= kSmoothTriangles ? 2 : 4 * triangles <= kSmoothTriangles ? 1 : 0;
 }
 
-std::array<double, 2> find_range(const ShownValues& values, const std::vector<int>& frames) {
+std::array<double, 2> find_range(FrameSource& source, const std::vector<int>& frames) {
   std::array<double, 2> range = {0, 0};
   bool is_first = true;
   for (const int frame : frames) {
-    for (const std::vector<float>& cloth : values.frames[frame]) {
+    for (const std::vector<float>& cloth : source.read(frame).values) {
       for (const double value : cloth) {
         range = is_first ? std::array{value, value}
                          : std::array{std::min(range[0], value), std::max(range[1], value)};
@@ -273,25 +255,38 @@ std::array<double, 2> find_range(const ShownValues& values, const std::vector<in
   return range;
 }
 
-std::vector<std::vector<std::vector<float>>> compute_speeds(const Animation& animation) {
-  std::vector<std::vector<std::vector<float>>> speeds(num_frames(animation));
-  for (int frame = 0; frame < num_frames(animation); ++frame) {
-    for (const AnimatedCloth& cloth : animation.cloths) {
-      std::vector<float>& values = speeds[frame].emplace_back();
-      const std::vector<float>&now = cloth.frames[frame], &before = cloth.frames[std::max(frame - 1, 0)];
-      for (std::size_t v = 0; 3 * v < now.size(); ++v)
-        values.push_back(
-            static_cast<float>(animation.frames_per_second * (vertex(now, v) - vertex(before, v)).norm()));
+AnimationFrame FramesWithSpeeds::read(int number) {
+  AnimationFrame frame = source_.read(number);
+  const AnimationFrame before = number > 0 ? source_.read(number - 1) : frame;
+  const double rate = meshes().frames_per_second;
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    std::vector<float>& speeds = frame.values.emplace_back();
+    for (std::size_t v = 0; 3 * v < frame.cloths[c].size(); ++v) {
+      const Vec3 moved = vertex(frame.cloths[c], v) - vertex(before.cloths[c], v);
+      speeds.push_back(static_cast<float>(rate * moved.norm()));
     }
   }
-  return speeds;
+  return frame;
 }
 
-Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
-                   double aspect, Framed framed) {
-  std::vector<Vec3> points;
-  for (const int frame : frames) add_points(animation, frame, framed, points);
-  return frame_points(like, points, aspect);
+Camera frame_scene(FrameSource& source, const std::vector<int>& frames, const Camera& like, double aspect,
+                   Framed framed) {
+  CameraFit fit(like, aspect);
+  for (const int frame : frames)
+    visit_points(source.meshes(), source.read(frame), framed, [&](const Vec3& p) { fit.add(p); });
+  return fit.camera();
+}
+
+std::optional<double> find_ground(FrameSource& source) {
+  Eigen::AlignedBox3d box;
+  const int num_frames = source.num_frames();
+  for (int k = 0; k < num_frames; ++k) {
+    const AnimationFrame frame = source.read(k);
+    if (k == 0 && find_level_plane(source.meshes(), frame) >= 0) return std::nullopt;
+    visit_points(source.meshes(), frame, Framed::everything, [&](const Vec3& p) { box.extend(p); });
+  }
+  if (box.isEmpty()) return std::nullopt;
+  return box.min().y() - kBelow * box.diagonal().norm();
 }
 
 }  // namespace weft::engine

@@ -17,41 +17,43 @@ struct SpringsToDraw {
   std::shared_ptr<const ClothTopology> topology;
 };
 
-/// Values of cloth's vertices, shown by colours.
-struct ShownValues {
-  std::string title;                                    // with the unit, as in "speed [m/s]"
-  std::vector<std::vector<std::vector<float>>> frames;  // (num_frames) of (num_cloths) of (num_vertices)
-  std::array<double, 2> range = {0, 1};                 // of the first and the last colour
-};
-
 /// The least and the largest value in these frames.
-std::array<double, 2> find_range(const ShownValues& values, const std::vector<int>& frames);
+std::array<double, 2> find_range(FrameSource& source, const std::vector<int>& frames);
 
-/// Speeds of all vertices, from differences of frames; 0 in the first one [m/s].
-std::vector<std::vector<std::vector<float>>> compute_speeds(const Animation& animation);
+/// The frames of a source, which must outlive this, with the vertices' speeds as values: from differences of
+/// frames; 0 in the first one [m/s].
+class FramesWithSpeeds final : public FrameSource {
+ public:
+  explicit FramesWithSpeeds(FrameSource& source) : source_(source) {}
+  const Animation& meshes() const override { return source_.meshes(); }
+  int num_frames() override { return source_.num_frames(); }
+  AnimationFrame read(int frame) override;
+
+ private:
+  FrameSource& source_;
+};
 
 struct SceneStyle {
   bool transparent = false;            // no background behind cloth and colliders
-  bool has_ground = true;              // false: only if the scene has a level plane
-  std::optional<double> ground;        // height if the scene has no level plane; empty: below all frames [m]
+  std::optional<double> ground;        // height of a ground where no plane is level; empty: none [m]
   std::vector<Color> cloth_colors;     // of the first cloths, in place of the animation's
   std::vector<SpringsToDraw> springs;  // of cloths that are drawn as springs
   std::optional<int> smooth;           // Loop subdivisions of cloth, with hems; empty: its triangles, without
-  std::optional<ShownValues> values;   // in place of the cloths' colours
+  std::array<double, 2> range = {0, 1};  // of a frame's values, by the first and the last colour
 };
 
-/// Draws the frames of an animation, which must outlive this. Cloth of a preset's fabric has its weave, other
-/// cloth with fabric coordinates has checks; level planes are drawn as endless ground.
+/// Draws the frames of an animation, whose meshes must outlive this. Cloth of a preset's fabric has its weave,
+/// other cloth with fabric coordinates has checks; level planes are drawn as endless ground. A frame's values
+/// are shown in place of the cloths' colours.
 class ScenePictures {
  public:
-  explicit ScenePictures(const Animation& animation, SceneStyle style = {});
+  ScenePictures(const Animation& meshes, const AnimationFrame& start, SceneStyle style = {});
 
-  /// Frame 0 is the start.
-  Picture at(int frame, const Camera& camera) const;
+  Picture at(const AnimationFrame& frame, const Camera& camera) const;
 
   /// What each mesh of at() shows, then the ground. A cloth is its index, a body its index plus the number of
   /// cloths; -1: the ground is no body.
-  std::vector<int> shown() const;
+  std::vector<int> shown(const AnimationFrame& frame) const;
 
  private:
   /// Topology of a cloth that is drawn smooth.
@@ -62,9 +64,9 @@ class ScenePictures {
   };
 
   const SpringsToDraw* find_springs(int cloth) const;
-  DrawnMesh draw_cloth(int cloth, int frame, const Camera& camera) const;
+  DrawnMesh draw_cloth(int cloth, const AnimationFrame& frame, const Camera& camera) const;
 
-  const Animation& animation_;
+  const Animation& meshes_;
   SceneStyle style_;
   std::vector<Smooth> smooth_;  // (num_cloths), or empty
   double inset_ = 0;            // of bodies below smooth cloth [m]
@@ -77,9 +79,10 @@ enum class Framed { everything, cloth };
 
 /// The camera with the orientation of `like`, at a distance that shows all cloth, and all bodies but planes, in
 /// these frames; `like` itself if there is nothing.
-Camera frame_scene(const Animation& animation, const std::vector<int>& frames, const Camera& like,
-                   double aspect, Framed framed = Framed::everything);
+Camera frame_scene(FrameSource& source, const std::vector<int>& frames, const Camera& like, double aspect,
+                   Framed framed = Framed::everything);
 
-int num_frames(const Animation& animation);
+/// Height of a ground below all frames, for scenes without a level plane; empty: there is one, or nothing [m].
+std::optional<double> find_ground(FrameSource& source);
 
 }  // namespace weft::engine

@@ -16,12 +16,6 @@ double half_height(double fov_deg) {
   return half.sin / half.cos;
 }
 
-/// The point in the camera's own axes: right, up, and away from the eye.
-Vec3 in_view(const Camera& camera, const Vec3& p) {
-  const Vec3 d = p - camera.eye();
-  return {d.dot(camera.right()), d.dot(camera.up()), d.dot(camera.forward())};
-}
-
 }  // namespace
 
 Vec3 Camera::forward() const {
@@ -76,29 +70,41 @@ void Camera::pan(double right_share, double up_share) {
 
 void Camera::zoom(double factor) { distance *= factor; }
 
-Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double aspect) {
-  Camera camera = like;
-  if (points.empty()) return camera;
-  const double half_y = half_height(like.fov_deg) / kMargin, half_x = half_y * aspect;
+CameraFit::CameraFit(const Camera& like, double aspect)
+    : like_(like),
+      x_axis_(like.right()),
+      y_axis_(like.up()),
+      z_axis_(like.forward()),
+      half_y_(half_height(like.fov_deg) / kMargin),
+      half_x_(half_y_ * aspect) {}
+
+void CameraFit::add(const Vec3& p) {
   // In the camera's axes each point bounds four planes of the view pyramid: the eye is at the intersection of
   // opposite bounds.
-  camera.target = Vec3::Zero();
-  camera.distance = 0;
-  double left = -1e30, right = -1e30, below = -1e30, above = -1e30;
-  for (const Vec3& p : points) {
-    const Vec3 v = in_view(camera, p);
-    right = std::max(right, v.x() / half_x - v.z());
-    left = std::max(left, -v.x() / half_x - v.z());
-    above = std::max(above, v.y() / half_y - v.z());
-    below = std::max(below, -v.y() / half_y - v.z());
-  }
-  const double x = half_x * (right - left) / 2, y = half_y * (above - below) / 2;
-  const double back = std::max(right + left, above + below) / 2;  // distance of the eye from the origin
-  double depth = 0;
-  for (const Vec3& p : points) depth += in_view(camera, p).z() / static_cast<double>(points.size());
+  const Vec3 v(p.dot(x_axis_), p.dot(y_axis_), p.dot(z_axis_));
+  right_ = std::max(right_, v.x() / half_x_ - v.z());
+  left_ = std::max(left_, -v.x() / half_x_ - v.z());
+  above_ = std::max(above_, v.y() / half_y_ - v.z());
+  below_ = std::max(below_, -v.y() / half_y_ - v.z());
+  depths_ += v.z();
+  ++count_;
+}
+
+Camera CameraFit::camera() const {
+  if (count_ == 0) return like_;
+  const double x = half_x_ * (right_ - left_) / 2, y = half_y_ * (above_ - below_) / 2;
+  const double back = std::max(right_ + left_, above_ + below_) / 2;  // distance of the eye from the origin
+  const double depth = depths_ / static_cast<double>(count_);
+  Camera camera = like_;
   camera.distance = std::max(back + depth, 1e-3);
-  camera.target = x * like.right() + y * like.up() + depth * like.forward();
+  camera.target = x * x_axis_ + y * y_axis_ + depth * z_axis_;
   return camera;
+}
+
+Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double aspect) {
+  CameraFit fit(like, aspect);
+  for (const Vec3& p : points) fit.add(p);
+  return fit.camera();
 }
 
 }  // namespace weft::engine

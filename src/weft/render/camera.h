@@ -51,8 +51,24 @@ struct Camera {
   void zoom(double factor);  // > 1: away
 };
 
-/// A camera oriented as `like`, at the smallest distance at which all points are in the picture, with a
+/// Finds the camera oriented as another, at the smallest distance at which all points are in the picture, with a
 /// margin.
+class CameraFit {
+ public:
+  CameraFit(const Camera& like, double aspect);
+
+  void add(const Vec3& point);
+  Camera camera() const;  // without points the one that it was given
+
+ private:
+  Camera like_;
+  Vec3 x_axis_, y_axis_, z_axis_;  // of the camera: right, up, away from the eye
+  double half_y_, half_x_;         // of the picture at distance 1, without its margin
+  double left_ = -1e30, right_ = -1e30, below_ = -1e30, above_ = -1e30, depths_ = 0;
+  std::size_t count_ = 0;
+};
+
+/// The same of these points.
 Camera frame_points(const Camera& like, const std::vector<Vec3>& points, double aspect);
 
 }  // namespace weft::engine

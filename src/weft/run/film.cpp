@@ -122,13 +122,20 @@ void FilmSink::add_frame(const SceneRun& run, RunReport&) {
   append_frame(capture_frame(run.world()), animation_);
 }
 
-void ValueSink::begin(SceneRun& run, RunReport&) { add(run.world()); }
-void ValueSink::add_frame(const SceneRun& run, RunReport&) { add(run.world()); }
+FilmSpool::FilmSpool(const std::filesystem::path& target, std::optional<ParticleValue> value)
+    : value_(value), frames_(target) {}
 
-void ValueSink::add(const World& world) {
-  std::vector<std::vector<float>>& cloths = frames_.emplace_back();
-  for (int c = 0; c < world.num_cloths(); ++c)
-    cloths.push_back(compute_values(value_, world.model(world.cloth(c)), world.state(world.cloth(c))));
+void FilmSpool::begin(SceneRun& run, RunReport& report) {
+  meshes_ = make_animation(run.scene(), run.world());
+  add_frame(run, report);
+}
+
+void FilmSpool::add_frame(const SceneRun& run, RunReport&) {
+  const World& world = run.world();
+  AnimationFrame frame = capture_frame(world);
+  for (int c = 0; value_ && c < world.num_cloths(); ++c)
+    frame.values.push_back(compute_values(*value_, world.model(world.cloth(c)), world.state(world.cloth(c))));
+  frames_.append(std::move(frame));
 }
 
 }  // namespace weft::engine

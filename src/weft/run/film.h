@@ -1,7 +1,11 @@
 #pragma once
 /// Worlds as animations, for files and pictures.
 
+#include <filesystem>
+#include <optional>
+
 #include "weft/io/animation.h"
+#include "weft/run/frame_log.h"
 #include "weft/run/frame_sink.h"
 #include "weft/scene/scene_desc.h"
 #include "weft/world/particle_values.h"
@@ -31,22 +35,23 @@ class FilmSink : public FrameSink {
   Animation animation_;
 };
 
-/// Keeps the values of particles in every frame, with the start.
-class ValueSink : public FrameSink {
+/// Keeps every frame in a temporary file, with the start, and reads them back.
+class FilmSpool final : public FrameSink, public FrameSource {
  public:
-  explicit ValueSink(ParticleValue value) : value_(value) {}
+  /// For pictures in `target` (FrameSpool); with these values of particles, or without.
+  FilmSpool(const std::filesystem::path& target, std::optional<ParticleValue> value);
 
   void begin(SceneRun& run, RunReport& report) override;
   void add_frame(const SceneRun& run, RunReport& report) override;
 
-  /// (num_frames) of (num_cloths) of (num_particles).
-  std::vector<std::vector<std::vector<float>>> take() { return std::move(frames_); }
+  const Animation& meshes() const override { return meshes_; }
+  int num_frames() override { return frames_.num_frames(); }
+  AnimationFrame read(int frame) override { return frames_.read(frame); }
 
  private:
-  void add(const World& world);
-
-  ParticleValue value_;
-  std::vector<std::vector<std::vector<float>>> frames_;
+  std::optional<ParticleValue> value_;
+  Animation meshes_;
+  FrameSpool frames_;
 };
 
 }  // namespace weft::engine

@@ -16,6 +16,7 @@ void visit_numbers(Frame& frame, const Visit& visit) {
     visit(pose.rotation.coeffs().data(), 4 * sizeof(double));
   }
   for (auto& body : frame.body_vertices) visit(body.data(), body.size() * sizeof(float));
+  for (auto& cloth : frame.values) visit(cloth.data(), cloth.size() * sizeof(float));
 }
 
 std::uintmax_t size_of(const AnimationFrame& frame) {
@@ -59,6 +60,22 @@ const AnimationFrame& FrameLogReader::read(int frame) {
   });
   if (!in_) throw InputError(log_.string() + " cannot be read");
   return frame_;
+}
+
+void FrameSpool::append(AnimationFrame frame) {
+  visit_numbers(frame, [&](const void* numbers, std::size_t bytes) { file_.append(numbers, bytes); });
+  like_ = std::move(frame);
+  ++num_frames_;
+}
+
+AnimationFrame FrameSpool::read(int frame) {
+  AnimationFrame read = like_;
+  std::size_t position = size_of(like_) * static_cast<std::size_t>(frame);
+  visit_numbers(read, [&](void* numbers, std::size_t bytes) {
+    file_.read(position, numbers, bytes);
+    position += bytes;
+  });
+  return read;
 }
 
 }  // namespace weft::engine

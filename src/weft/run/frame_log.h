@@ -1,10 +1,11 @@
 #pragma once
-/// Frames of an animation on disk, until a file is made of them.
+/// Frames of an animation on disk, one after the other, all of the same size.
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 
+#include "weft/core/spool_file.h"
 #include "weft/core/staged_file.h"
 #include "weft/io/animation.h"
 
@@ -26,7 +27,7 @@ class FrameLogReader {
   std::ifstream in_;
 };
 
-/// Frames of the same size, one after the other. Every error is an InputError with the name of the file that
+/// Frames until a file is made of them. Every error is an InputError with the name of the file that
 /// the frames are for, and the system's reason.
 class FrameLog {
  public:
@@ -50,6 +51,22 @@ class FrameLog {
   AnimationFrame like_;
   StagedFile file_;
   int num_frames_;
+};
+
+/// Frames in a temporary file, which is gone with this. Every error is an InputError.
+class FrameSpool {
+ public:
+  /// For the file `target`; beside it if that folder can be written.
+  explicit FrameSpool(const std::filesystem::path& target) : file_(target) {}
+
+  void append(AnimationFrame frame);
+  int num_frames() const { return num_frames_; }
+  AnimationFrame read(int frame);
+
+ private:
+  SpoolFile file_;
+  AnimationFrame like_;
+  int num_frames_ = 0;
 };
 
 }  // namespace weft::engine
