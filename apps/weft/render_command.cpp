@@ -173,9 +173,9 @@ RunOutcome render(const RenderRequest& request) {
   if (!is_sequence(request.out)) require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
   catch_interrupts();
-  const auto [frames, outcome] = source.get();
-  FramesWithSpeeds with_speeds(*frames);
-  FrameSource& shown = request.color && source.is_file() ? with_speeds : *frames;
+  const auto [film, outcome] = source.get();
+  FramesWithSpeeds with_speeds(*film);
+  FrameSource& shown = request.color && source.is_file() ? with_speeds : *film;
   settings.style.springs = source.springs();
   if (request.color) {
     const int last = shown.num_frames() - 1;

@@ -124,7 +124,7 @@ frame_rate = 30
   ASSERT_EQ(read.bodies.size(), 1u);
   ASSERT_EQ(read.bodies[0].frames.size(), 3u);
   for (const int k : {0, 1, 2})
-    EXPECT_NEAR(read.bodies[0].vertex(0, static_cast<std::size_t>(k)).norm(), 0.2 + 0.05 * k, 1e-6);
+    EXPECT_NEAR(read.bodies[0].vertex(0, read.bodies[0].frames.at(k)).norm(), 0.2 + 0.05 * k, 1e-6);
 }
 
 /// Two squares that touch, and a vertex of neither. The first is cut along a seam of the texture.
@@ -190,7 +190,7 @@ TEST_F(FrameSinks, FilmSpoolHasTheFramesOnDiskWhileTheyAreMade) {
   FilmSink film;
   FilmSpool spool(folder_ / "picture.png", ParticleValue::speed);
   struct Reader : FrameSink {
-    explicit Reader(FrameSource& source) : source(source) {}
+    explicit Reader(FrameSource& frames) : source(frames) {}
     void begin(SceneRun&, RunReport&) override { start = source.read(0); }
     void add_frame(const SceneRun& run, RunReport&) override {
       EXPECT_EQ(source.num_frames(), run.frame() + 1);
