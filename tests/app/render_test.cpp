@@ -136,7 +136,7 @@ TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
   expect_bad_input("weft render paper/fig6_ball --size 100000x100000", "each from 1 to 16384");
   expect_bad_input("weft render paper/fig6_ball --camera 0,95", "elevation between -90 and 90");
   expect_bad_input("weft render no/such/scene", "no/such/scene");
-  expect_bad_input("mkdir d; weft render d", "d/animation.glb");
+  expect_bad_input("mkdir d; weft render d", "d holds no run: there is no run.json");
   expect_bad_input("touch f; weft render paper/fig6_ball --out f/a.png", "f");
   if (fs::exists("/proc/version"))
     expect_bad_input("weft render paper/fig6_ball --out /proc/a.png", "/proc/a.png");

@@ -199,7 +199,8 @@ TEST_F(FrameSinks, FilmSpoolHasTheFramesOnDiskWhileTheyAreMade) {
     FrameSource& source;
     AnimationFrame start;
   } reader(spool);
-  run_scene(shipped("rotating_ball", {"cloth[0].grid.cells=[6, 6]"}), {.frames = 3}, {&film, &spool, &reader});
+  run_scene(shipped("contact/rotating_ball", {"cloth[0].grid.cells=[6, 6]"}), {.frames = 3},
+            {&film, &spool, &reader});
   ASSERT_EQ(spool.num_frames(), 4);
   for (int k = 3; k >= 0; --k) {
     const AnimationFrame frame = spool.read(k), kept = get_frame(film.animation(), k);
