@@ -201,6 +201,10 @@ class Job:
             said = (self.folder / "errors.txt").read_text(errors="replace").strip().splitlines()
             reason = said[-1] if said else f"exit code {self._process.returncode}"
             self.words.append(f"The engine ended unexpectedly ({reason}); Resume goes on from its last checkpoint.")
+        gone = [given for given in self._gather.job.cloths if given.name not in bpy.data.objects]
+        if gone and self.outcome == "done":
+            self.outcome = "failed"
+            self.words = [f'"{given.name}" is no longer there; its frames are in {given.cache}.' for given in gone] + self.words
         scene = bpy.data.scenes.get(self._scene)
         if scene:
             scene.weft.report = "\n".join(self.words)

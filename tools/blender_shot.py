@@ -93,25 +93,23 @@ def add_light(location: tuple[float, float, float], watts: float, size: float) -
 
 def picture(file: str) -> None:
     begin()
-    skirt, shirt = add_garment("skirt", "wool_suiting"), add_garment("shirt", "cotton_shirting")
+    skirt, shirt = add_garment("skirt", "silk"), add_garment("shirt", "cotton_shirting")
     skirt.weft.pin_group = "waist"
     follow_body(skirt)
     bake()
     scene = bpy.context.scene
-    scene.frame_set(72)
+    scene.frame_set(84)
     for garment in (skirt, shirt):
         garment.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
         garment.modifiers.new("Thickness", "SOLIDIFY").thickness = 0.002
     colour(figure(), (0.55, 0.42, 0.34), 0.6)
     colour(skirt, (0.03, 0.09, 0.28), 0.8, 0.3)
     colour(shirt, (0.7, 0.62, 0.5), 0.85, 0.3)
-    bpy.ops.mesh.primitive_plane_add(size=40)
+    body = figure().evaluated_get(bpy.context.evaluated_depsgraph_get())
+    points = [body.matrix_world @ v.co for v in body.data.vertices]
+    centre = sum(points, start=body.location * 0) / len(points)
+    bpy.ops.mesh.primitive_plane_add(size=40, location=(0, 0, min(point.z for point in points)))
     colour(bpy.context.object, (0.6, 0.6, 0.62), 0.9)
-    body = figure()
-    centre = sum((body.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world @ v.co
-                  for v in body.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices), start=body.location * 0)  # fmt: skip
-    centre /= len(body.data.vertices)
-    print("centre", centre)
     bpy.ops.object.camera_add(location=(centre.x + 1.9, centre.y - 3.6, 1.3))
     camera = bpy.context.object
     camera.data.lens = 62

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import struct
 import sys
@@ -381,9 +382,8 @@ def _sentence(note: str) -> str:
 
 def _in_words(sentence: str) -> str:
     """Keys of scenes are settings of the program here."""
-    for key in ("solver.iterations or solver.steps_per_frame", "solver.steps_per_frame", "steps_per_frame"):
-        sentence = sentence.replace(key, "the quality")
-    return sentence
+    key = r"(solver\.)?(max_steps_per_frame|steps_per_frame|iterations)"
+    return re.sub(rf"{key}( or {key})*", "the quality", sentence)
 
 
 def _say(line: dict[str, Any]) -> None:

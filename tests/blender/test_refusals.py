@@ -163,3 +163,14 @@ def test_a_cloth_that_goes_away_during_the_bake_is_named() -> None:
     bpy.data.objects.remove(cloth)
     finish(gone)
     assert gone.outcome == "failed" and '"Sheet" is no longer there' in gone.words[0], gone.words
+
+
+def test_a_cloth_that_goes_away_after_the_gathering_is_named_with_its_frames() -> None:
+    bpy.context.scene.frame_end = 12
+    cloth = add_cloth(cells=40)
+    gone = begin()
+    while gone.poll() and not gone._process.stdin.closed:
+        pass
+    bpy.data.objects.remove(cloth)
+    finish(gone)
+    assert gone.outcome == "failed" and gone.words[0].startswith('"Sheet" is no longer there; its frames are in '), gone.words

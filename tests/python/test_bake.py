@@ -253,3 +253,16 @@ def test_jobs_tell_what_differs(tmp_path: Path) -> None:
     other = make_job(tmp_path)
     other.cloths[0].start = other.cloths[0].start + 0.1
     assert one.difference(other) == 'start of "sheet"'
+
+
+@pytest.mark.parametrize(
+    ("engine", "program"),
+    [
+        ("raise solver.max_steps_per_frame or solver.steps_per_frame", "raise the quality"),
+        ("raise solver.iterations or solver.steps_per_frame", "raise the quality"),
+        ("raise steps_per_frame", "raise the quality"),
+        ("solver.steps_per_frame is 4", "the quality is 4"),
+    ],
+)
+def test_keys_of_scenes_are_settings_of_the_program(engine: str, program: str) -> None:
+    assert bake._in_words(engine) == program
