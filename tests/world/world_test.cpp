@@ -279,6 +279,26 @@ TEST(World, ShowsEverySubstepToItsObserver) {
   EXPECT_EQ(heights.back(), world.state(cloth).position(0).y());
 }
 
+// Contact moves the apex of a sliver by hundredths of a millimetre, which is 2000 % of its height.
+TEST(Measures, SliversHaveNoStrain) {
+  const Fabric fabric = find_fabric("denim");
+  const auto measure = [&](double height) {
+    const TriangleMesh mesh{{{0, 0, 0}, {0.01, 0, 0}, {0.01, 0, 0.01}, {0.005, 0, -height}},
+                            {{0, 2, 1}, {0, 1, 3}}};
+    const auto model =
+        build_cloth_model(build_mesh_topology(mesh), {.density = fabric.density, .thickness = 1e-3},
+                          build_mesh_elements(mesh, warp_from_direction(mesh, Vec3::UnitX()), fabric));
+    ClothState state = make_state(mesh.positions);
+    state.x.set(3, {0.005, 0, -height - 1e-5});
+    return std::pair(compute_yarn_strain(*model, state).max,
+                     compute_principal_stretches(*model, state)->max - 1);
+  };
+  EXPECT_LT(measure(5e-7).first, 1e-5);
+  EXPECT_LT(measure(5e-7).second, 1e-5);
+  EXPECT_NEAR(measure(1e-3).first, 0.01, 1e-4);
+  EXPECT_NEAR(measure(1e-3).second, 0.01, 1e-4);
+}
+
 TEST(Measures, AgreeWithHandCalculation) {
   const auto topology = test::chain({{0, 0, 0}, {0, -1.5, 0}}, 2.0, 1.0);
   const auto model = build_cloth_model(topology, {.density = 1, .structural = 8});

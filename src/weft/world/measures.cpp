@@ -114,46 +114,64 @@ Vec3 compute_center_of_mass(const ClothModel& model, const ClothState& state) {
   return state.origin + sum / mass;
 }
 
+namespace {
+
+double smallest_height(const RestTriangle& rest) {
+  double most = 0;
+  for (const Vec2& gradient : rest.gradient) most = std::max(most, gradient.squaredNorm());
+  return 1 / std::sqrt(most);
+}
+
+}  // namespace
+
+double measurable_length(const ClothModel& model) { return 0.1 * model.material.thickness; }
+
 Strain compute_strain(const ClothModel& model, const ClothState& state) {
   Strain strain{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0};
+  const double shortest = measurable_length(model);
   int count = 0;
   for (const Spring& s : model.topology->springs) {
-    if (s.kind != SpringKind::structural) continue;
+    if (s.kind != SpringKind::structural || s.rest_length < shortest) continue;
     const double value = (state.x.get(s.j) - state.x.get(s.i)).norm() / s.rest_length - 1;
     strain.min = std::min(strain.min, value);
     strain.max = std::max(strain.max, value);
     strain.mean += value;
     ++count;
   }
+  if (count == 0) return {};
   strain.mean /= count;
   return strain;
 }
 
 std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state) {
   if (!model.elements || model.elements->membranes.empty()) return {};
+  const double shortest = measurable_length(model);
   Stretches all{std::numeric_limits<double>::infinity(), 0};
   for (const auto& [v, rest] : model.elements->membranes) {
+    if (smallest_height(rest) < shortest) continue;
     const auto [least, most] =
         principal_stretches(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
     all = {std::min(all.min, least), std::max(all.max, most)};
   }
-  return all;
+  return all.max > 0 ? all : Stretches{1, 1};
 }
 
 YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state) {
+  const double shortest = measurable_length(model);
   YarnStrain worst;
   const auto include = [&](double strain, int particle) {
     if (strain > worst.max) worst = {strain, particle};
   };
   if (model.elements && !model.elements->membranes.empty()) {
     for (const auto& [v, rest] : model.elements->membranes) {
+      if (smallest_height(rest) < shortest) continue;
       const Vec3 green = membrane_strain(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
       include(std::sqrt(1 + 2 * std::max(green.x(), green.y())) - 1, v[0]);
     }
     return worst;
   }
   for (const Spring& s : model.topology->springs) {
-    if (s.kind == SpringKind::structural)
+    if (s.kind == SpringKind::structural && s.rest_length >= shortest)
       include((state.x.get(s.j) - state.x.get(s.i)).norm() / s.rest_length - 1, s.i);
   }
   return worst;

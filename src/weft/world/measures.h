@@ -31,6 +31,10 @@ Vec3 compute_angular_momentum(const ClothModel& model, const ClothState& state, 
 
 Vec3 compute_center_of_mass(const ClothModel& model, const ClothState& state);  // [m]
 
+/// What is shorter at rest has no meaningful strain: a tenth of the cloth's thickness [m]. Edges that are shorter, and
+/// triangles with a smaller height, do not count below. Slivers of garments are such, and contact moves them by more.
+double measurable_length(const ClothModel& model);
+
 /// l/l0 − 1 over the structural springs: the mesh's edges, without grid diagonals and bending springs [1].
 struct Strain {
   double min = 0, max = 0, mean = 0;
