@@ -20,7 +20,7 @@ packages=(
   ffmpeg                  # videos
   python3-dev python3-venv                    # the Python package
   libgtest-dev            # tests
-  xvfb xdotool            # tests of the window
+  xvfb xdotool libx11-dev # tests of the window
 )
 for flag in "$@"; do
   case "$flag" in

@@ -33,8 +33,9 @@ struct RenderRequest {
   int columns = 0;          // of a contact sheet; 0: as many as pictures, at most 4
   int every = 1;            // of a video: every so many frames
   std::string size = "1280x720";
-  std::vector<double> camera;   // azimuth, elevation, zoom
-  std::vector<double> look_at;  // empty: the middle of what is framed
+  std::vector<double> camera;      // azimuth, elevation, zoom
+  std::vector<double> look_at;     // empty: the middle of what is framed
+  std::optional<double> distance;  // of the eye from look_at, in place of the framing [m]
   bool fits_cloth = false;
   std::optional<int> smooth;
   std::optional<ParticleValue> color;
@@ -63,7 +64,7 @@ class Source {
     if (!request.overrides.empty())
       throw InputError("--set does not apply to " + file_.string() + ": it is already simulated");
     if (request.color && *request.color != ParticleValue::speed)
-      throw InputError("--color strain and shear require a scene: " + file_.string() +
+      throw InputError("--color strain, shear and contact require a scene: " + file_.string() +
                        " contains positions; speed is computed from them");
     if (request.springs)
       throw InputError("--springs requires a scene: " + file_.string() + " does not contain springs");
@@ -124,6 +125,15 @@ PaintSettings paint_settings(const RenderRequest& request) {
     throw InputError(
         "--camera: expected azimuth from -360 to 360, elevation between -90 and 90 (degrees), zoom above 0");
   }
+  if (request.distance) {
+    if (!settings.look_at || request.camera.size() > 2)
+      throw InputError(
+          "--distance is from the point of --look-at, and takes the place of the zoom: write both "
+          "without a zoom, as in --camera 30,20 --look-at 0,1,0 --distance 3");
+    settings.camera = settings.view;
+    settings.camera->target = *settings.look_at;
+    settings.camera->distance = *request.distance;
+  }
   return settings;
 }
 
@@ -133,11 +143,6 @@ std::vector<int> choose_frames(std::vector<int> frames, RunOutcome outcome, int 
   if (outcome != RunOutcome::done) std::erase_if(frames, [&](int frame) { return frame > last; });
   if (frames.empty()) frames = {last};
   return frames;
-}
-
-std::string legend_of(ParticleValue value) {
-  const ValueLabel label = label_of(value);
-  return label.name + " [" + label.unit + "]";
 }
 
 /// Frames of a video or sequence, or the pictures.
@@ -181,7 +186,7 @@ RunOutcome render(const RenderRequest& request) {
     const int last = shown.num_frames() - 1;
     const std::vector<int> drawn = drawn_frames(request, outcome, last);
     require_frames(drawn, last);
-    settings.legend = legend_of(*request.color);
+    settings.legend = label_of(*request.color).text();
     settings.style.range =
         request.range.empty() ? find_range(shown, drawn) : std::array{request.range[0], request.range[1]};
   }
@@ -203,6 +208,12 @@ RunOutcome render(const RenderRequest& request) {
   if (interrupted()) fmt::print("interrupted: partial results kept\n");
   fmt::print("written {}\n", request.out.string());
   return interrupted() ? RunOutcome::interrupted : outcome;
+}
+
+std::map<std::string, ParticleValue> values_by_word() {
+  std::map<std::string, ParticleValue> values;
+  for (const ParticleValue value : kParticleValues) values[label_of(value).word] = value;
+  return values;
 }
 
 }  // namespace
@@ -250,6 +261,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->expected(3)
       ->type_name("X,Y,Z");
   command
+      ->add_option("--distance", request->distance,
+                   "Distance of the eye from the point of --look-at, in metres")
+      ->check(CLI::PositiveNumber)
+      ->type_name("D");
+  command
       ->add_option_function<std::string>(
           "--fit", [request](const std::string& what) { request->fits_cloth = what == "cloth"; },
           "The camera frames everything, or only the cloth")
@@ -262,12 +278,10 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->type_name("N");
   command
       ->add_option("--color", request->color,
-                   "Colour cloth by the strain of its threads, its shear or its speed, with a legend")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ParticleValue>{{"strain", ParticleValue::strain},
-                                                                       {"shear", ParticleValue::shear},
-                                                                       {"speed", ParticleValue::speed}}))
-      ->type_name("strain|shear|speed");
+                   "Colour cloth by the strain of its threads, its shear, its speed or the pressure of "
+                   "contacts, with a legend")
+      ->transform(CLI::CheckedTransformer(values_by_word()))
+      ->type_name("strain|shear|speed|contact");
   command
       ->add_option(
           "--range", request->range,

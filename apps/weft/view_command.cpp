@@ -65,7 +65,7 @@ void add_view_command(CLI::App& app, int& exit_code) {
       "(default: a gallery of the shipped scenes)");
   command
       ->add_option("--compare", request->compare,
-                   "Compare two integrators, as in --compare paper,paper_fixed")
+                   "Compare two integrators or two fabrics, as in --compare paper,newton or denim,silk")
       ->delimiter(',')
       ->expected(2)
       ->type_name("A,B");
@@ -81,8 +81,7 @@ void add_view_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
   command
-      ->add_option("--report", request->report,
-                   "Write what the window shows as JSON, at the end and on the key J")
+      ->add_option("--report", request->report, "Write what the window shows as JSON, at the end and on F12")
       ->type_name("FILE");
   add_set_option(*command, request->overrides);
   command->callback([request, &exit_code] {

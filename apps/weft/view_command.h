@@ -13,7 +13,7 @@ namespace weft::engine::app {
 struct ViewRequest {
   std::string scene;  // or the folder of a run, or its .glb; empty: the gallery
   std::string size = "1280x720";
-  std::vector<std::string> compare;  // integrators, none or two
+  std::vector<std::string> compare;  // integrators or fabrics, none or two
   int threads = 0;                   // of each simulation; 0: the processors, except one for drawing
   std::int64_t frames = 0;           // pictures until the window closes; 0: until the user closes it
   std::filesystem::path report;

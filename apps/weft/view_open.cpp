@@ -7,6 +7,7 @@
 #include "weft/io/mesh_files.h"
 #include "weft/scene/fabric_reader.h"
 #include "weft/scene/scene_library.h"
+#include "weft/scene/tunables.h"
 
 namespace weft::engine::app {
 namespace {
@@ -79,18 +80,32 @@ Opened open_toml(const ViewRequest& request) {
 
 }  // namespace
 
+void take_variant(const std::string& name, SceneDesc& scene) {
+  const std::vector<std::string_view>& integrators = integrator_names();
+  if (std::ranges::find(integrators, name) != integrators.end()) {
+    scene.solver.integrator = name;
+    return;
+  }
+  const FabricPreset* fabric = nullptr;
+  try {
+    fabric = &find_fabric_preset(name);
+  } catch (const InputError& error) {
+    throw InputError("--compare: no integrator has the name \"" + name + "\", and " + error.what());
+  }
+  for (ClothSceneDesc& cloth : scene.cloths) take_fabric(*fabric, cloth);
+  settle_tunables(scene);
+}
+
 std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, SceneDesc scene) {
-  std::vector<std::string> integrators = request.compare;
-  if (integrators.empty()) integrators = {scene.solver.integrator};
-  const int count = static_cast<int>(integrators.size());
+  std::vector<std::string> names = request.compare;
+  if (names.empty()) names = {scene.solver.integrator};
+  const int count = static_cast<int>(names.size());
   const int threads =
       request.threads > 0 ? choose_threads(request.threads) : std::max(1, (num_processors() - 1) / count);
+  std::vector<SceneDesc> variants(names.size(), scene);  // all of them, before a scene is built
+  for (std::size_t k = 0; k < names.size(); ++k) take_variant(names[k], variants[k]);
   std::vector<std::unique_ptr<ViewSide>> sides;
-  for (const std::string& name : integrators) {
-    scene.solver.integrator = name;
-    make_integrator(scene.solver);  // throws before a scene is built
-    sides.push_back(std::make_unique<LiveSide>(scene, threads));
-  }
+  for (const SceneDesc& variant : variants) sides.push_back(std::make_unique<LiveSide>(variant, threads));
   return sides;
 }
 
@@ -105,6 +120,7 @@ Opened open_view(const ViewRequest& request) {
     opened = open_toml(request);
   }
   if (opened.scene) opened.sides = make_sides(request, *opened.scene);
+  opened.compared = request.compare;
   return opened;
 }
 

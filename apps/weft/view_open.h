@@ -15,6 +15,7 @@ namespace weft::engine::app {
 struct Opened {
   std::vector<std::unique_ptr<ViewSide>> sides;  // one or two; empty: a fabric
   std::optional<SceneDesc> scene;                // of simulations
+  std::vector<std::string> compared;             // (sides) integrators or fabrics, if there are two
   std::filesystem::path file;                    // of the scene, the run or the fabric
   std::optional<FabricPreset> fabric;            // of a fabric file, for the scene that is shown
 };
@@ -23,7 +24,11 @@ struct Opened {
 /// Throws InputError with the mistakes of the file.
 Opened open_view(const ViewRequest& request);
 
-/// The simulations of a scene: one, or one per integrator to compare.
+/// Gives a scene what is compared: the integrator of this name, or the fabric on all cloths. Throws InputError for
+/// other names.
+void take_variant(const std::string& name, SceneDesc& scene);
+
+/// The simulations of a scene: one, or one for each name to compare.
 std::vector<std::unique_ptr<ViewSide>> make_sides(const ViewRequest& request, SceneDesc scene);
 
 }  // namespace weft::engine::app

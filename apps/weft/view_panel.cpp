@@ -16,10 +16,6 @@ namespace {
 constexpr float kMargin = 14, kWidth = 292, kQuestionWidth = 400;  // [pixels]
 constexpr float kStrongestWind = 15;                               // [m/s]
 const ImVec4 kInk(0.10f, 0.12f, 0.16f, 1), kPale(0.36f, 0.40f, 0.46f, 1), kAlarm(0.72f, 0.14f, 0.05f, 1);
-constexpr ImGuiWindowFlags kBox = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
-                                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
-                                  ImGuiWindowFlags_NoNav;
 
 const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
 
@@ -113,7 +109,8 @@ void draw_status(const LiveStatus& s) {
   if (s.too_heavy)
     say(kAlarm, fmt::format("Slower than real time by a factor of {:.3g}", 1 / s.simulated_per_second));
   if (!s.failure.empty()) say(kAlarm, "Paused: " + s.failure);
-  for (const std::string& warning : s.step_warnings) say(kAlarm, warning);
+  for (const RunProblem& problem : s.problems)
+    say(kAlarm, fmt::format("{}: {}", to_string(problem.code), problem.message));
   for (const std::string& warning : s.warnings) say(kAlarm, warning);
 }
 
@@ -164,13 +161,107 @@ void draw_time(Viewer& viewer) {
   note_control(viewer, "speed");
 }
 
-void draw_view(Viewer& viewer) {
-  if (viewer.is_simulation()) {
-    bool springs = viewer.shows_springs();
-    if (ImGui::Checkbox("show springs", &springs)) viewer.toggle_springs();
-    note_control(viewer, "springs");
-    ImGui::SameLine(kWidth * 0.62f * scale());
+/// `anchor`: the point of the box that is at (x, y), as shares of its size.
+void begin_box(const char* name, float x, float y, float width, const ImVec2& anchor = {0, 0}) {
+  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, anchor);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, FLT_MAX});
+  ImGui::Begin(name, nullptr, kBoxFlags);
+}
+
+void draw_colors(Viewer& viewer) {
+  const std::string now = viewer.look.color ? label_of(*viewer.look.color).name : "its own";
+  ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
+  const bool is_open = ImGui::BeginCombo("colour", now.c_str());
+  if (!is_open) note_control(viewer, "colour");
+  if (is_open) {
+    if (ImGui::Selectable("its own", !viewer.look.color)) viewer.set_color({});
+    for (const ParticleValue value : kParticleValues) {
+      if (ImGui::Selectable(label_of(value).name.c_str(), viewer.look.color == value))
+        viewer.set_color(value);
+      note_control(viewer, "colour " + label_of(value).word);
+    }
+    ImGui::EndCombo();
   }
+  if (viewer.look.color && !viewer.side(0).no_color().empty()) say(kAlarm, viewer.side(0).no_color());
+}
+
+/// What the exact checker has found, last.
+void draw_findings(const ViewSide& side) {
+  if (!side.findings()) return say(kPale, "The checker is at work");
+  const FrameFindings& found = *side.findings();
+  say(found.intersections > 0 ? kAlarm : kPale,
+      fmt::format("{} crossing pairs of triangles", found.intersections));
+  if (!found.sentences.empty()) say(kAlarm, found.sentences[0]);
+  if (found.penetration && *found.penetration > 0)
+    say(kAlarm, fmt::format("{:.3g} mm deep: {}", 1000 * *found.penetration, found.deepest));
+}
+
+/// What is drawn besides the cloth.
+void draw_look(Viewer& viewer) {
+  const bool is_open = ImGui::CollapsingHeader("look");
+  note_control(viewer, "look");
+  if (!is_open) return;
+  draw_colors(viewer);
+  ViewLook& look = viewer.look;
+  struct Switch {
+    const char* name;
+    bool* value;
+    const char* meaning;
+  };
+  const Switch switches[] = {
+      {"springs", &look.springs, "Particles and springs in place of the cloth (G)"},
+      {"yarns", &look.yarns, "Warp blue and weft orange, of fabrics: as long as they are stretched (Y)"},
+      {"seams", &look.seams, "Edges where the texture coordinates break (E)"},
+      {"pins", &look.pins, "Pinned particles (X)"},
+      {"contacts", &look.contacts, "Forces of contacts on cloth, in the last step (F)"},
+      {"checker", &look.checker, "Crossings of triangles, found by the exact checker (K)"},
+  };
+  int column = 0;
+  for (const auto& [name, value, meaning] : switches) {
+    if (!viewer.is_simulation() && value != &look.checker) continue;
+    if (column++ % 2 == 1) ImGui::SameLine(kWidth * 0.5f * scale());
+    ImGui::Checkbox(name, value);
+    if (ImGui::IsItemHovered()) show_tooltip(meaning);
+    note_control(viewer, name);
+  }
+  if (look.contacts) say(kPale, fmt::format("longest arrows: {:g} N", viewer.scales().force));
+  for (int s = 0; look.checker && s < viewer.num_sides(); ++s) draw_findings(viewer.side(s));
+}
+
+void draw_record(Viewer& viewer) {
+  begin_box("record", kMargin, ImGui::GetIO().DisplaySize.y - kMargin, kWidth * scale(), {0, 1});
+  if (const Recording* recording = viewer.recording()) {
+    ImGui::ProgressBar(static_cast<float>(recording->drawn()) / static_cast<float>(recording->wanted()),
+                       {-1, 0},
+                       fmt::format("{} of {} pictures", recording->drawn(), recording->wanted()).c_str());
+    if (draw_button(viewer, "Finish", "record finish", 1 / 2.0f)) viewer.stop_recording(true);
+    ImGui::SameLine();
+    if (draw_button(viewer, "Cancel", "record cancel", 1)) viewer.stop_recording(false);
+    return ImGui::End();
+  }
+  RecordRequest& request = viewer.record_request;
+  edit_text("file", request.file);
+  if (ImGui::IsItemHovered())
+    show_tooltip("A .mp4, .webp, .gif or .glb file; frame_####.png: numbered pictures");
+  note_control(viewer, "record file");
+  edit_text("size", request.size);
+  note_control(viewer, "record size");
+  ImGui::InputInt("frames", &request.frames);
+  request.frames = std::clamp(request.frames, 0, 1000000);
+  note_control(viewer, "record frames");
+  ImGui::InputInt("every", &request.every);
+  request.every = std::clamp(request.every, 1, 1000);
+  if (ImGui::IsItemHovered()) show_tooltip("1: every frame; 2: every second one");
+  note_control(viewer, "record every");
+  if (draw_button(viewer, "Record", "record", 1)) viewer.record();
+  ImGui::End();
+}
+
+void draw_view(Viewer& viewer) {
+  draw_look(viewer);
+  if (ImGui::SmallButton("record (V)")) viewer.toggle_record();
+  note_control(viewer, "recorder");
+  ImGui::SameLine();
   if (ImGui::SmallButton("help (H)")) viewer.toggle_help();
   note_control(viewer, "help");
   if (viewer.is_simulation()) {
@@ -185,19 +276,13 @@ void draw_view(Viewer& viewer) {
   note_control(viewer, "gallery");
 }
 
-/// `anchor`: the point of the box that is at (x, y), as shares of its size.
-void begin_box(const char* name, float x, float y, float width, const ImVec2& anchor = {0, 0}) {
-  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, anchor);
-  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, FLT_MAX});
-  ImGui::Begin(name, nullptr, kBox);
-}
-
 /// Centred at the lower edge of a side, with two sides.
 void draw_side_box(Viewer& viewer, int s) {
   const WindowPart part = viewer.part(s);
   const float x = static_cast<float>(part.x) + 0.5f * static_cast<float>(part.size.width);
   begin_box(("side " + std::to_string(s)).c_str(), x, static_cast<float>(part.size.height) - kMargin,
             kWidth * scale(), {0.5f, 1});
+  ImGui::TextUnformatted(viewer.compared()[s].c_str());
   draw_integrator(viewer, s);
   draw_status(*viewer.side(s).status());
   ImGui::End();
@@ -241,6 +326,12 @@ struct KeyHelp {
 
 constexpr KeyHelp kHelp[] = {
     {"left drag on cloth", "grab, pull, release", KeyOf::simulation},
+    {"left drag on a body", "move it; let go on the move: throw it", KeyOf::simulation},
+    {"ctrl+left drag on a body", "turn it", KeyOf::simulation},
+    {"Delete", "remove the body that was clicked", KeyOf::simulation},
+    {"ctrl+click on cloth", "pin, unpin a particle", KeyOf::simulation},
+    {"ctrl+drag, +shift", "pin, unpin in a box", KeyOf::simulation},
+    {"right click on cloth", "probe; elsewhere: no probe", KeyOf::simulation},
     {"left or right drag", "rotate the view"},
     {"middle or shift drag", "pan the view"},
     {"wheel", "zoom"},
@@ -252,7 +343,13 @@ constexpr KeyHelp kHelp[] = {
     {"L", "loop, or stop at the end", KeyOf::run},
     {"I, shift+I", "next, previous integrator", KeyOf::simulation},
     {"M", "next spring model", KeyOf::simulation},
-    {"G", "cloth or springs", KeyOf::simulation},
+    {"W", "wind: drag the arrow's tip", KeyOf::simulation},
+    {"1, 2, 3, 4, 5", "colour: its own, strain, shear, speed, contact", KeyOf::simulation},
+    {"1, 4", "colour: its own, speed", KeyOf::run},
+    {"G, Y, E", "springs, yarns, seams", KeyOf::simulation},
+    {"X, F", "pins, contact forces", KeyOf::simulation},
+    {"K", "the exact checker"},
+    {"V", "record"},
     {"N", "numbers: fabric, solver, colliders", KeyOf::simulation},
     {"T", "plots over time", KeyOf::simulation},
     {"ctrl+Z, ctrl+Y", "undo, redo a change of numbers", KeyOf::simulation},
@@ -261,7 +358,7 @@ constexpr KeyHelp kHelp[] = {
     {"ctrl+O", "other scenes"},
     {"C", "reset the view"},
     {"P", "save the picture as PNG"},
-    {"J", "write the report (--report)"},
+    {"F12", "write the report (--report)"},
     {"H, F1", "this help"},
     {"Q, Esc", "close"},
 };
@@ -269,7 +366,7 @@ constexpr KeyHelp kHelp[] = {
 void draw_help(bool is_simulation) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::Begin("keys", nullptr, kBox);
+  ImGui::Begin("keys", nullptr, kBoxFlags);
   if (ImGui::BeginTable("keyboard shortcuts", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const auto& [key, meaning, of] : kHelp) {
       if (of == (is_simulation ? KeyOf::run : KeyOf::simulation)) continue;
@@ -323,6 +420,7 @@ void draw_panel(Viewer& viewer) {
   for (int s = 0; viewer.num_sides() > 1 && s < viewer.num_sides(); ++s) draw_side_box(viewer, s);
   if (viewer.is_simulation() && viewer.shows_numbers()) draw_tuning(viewer);
   if (viewer.is_simulation() && viewer.shows_plots()) draw_plots(viewer);
+  if (viewer.shows_record()) draw_record(viewer);
   if (viewer.shows_help()) draw_help(viewer.is_simulation());
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// Controls over the picture.
 
+#include <imgui.h>
+
 #include <string>
 
 namespace weft::engine::app {
@@ -17,6 +19,11 @@ void draw_panel(Viewer& viewer);
 void draw_question(Viewer& viewer);
 
 // Parts that all panels share.
+
+inline constexpr ImGuiWindowFlags kBoxFlags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
+                                              ImGuiWindowFlags_AlwaysAutoResize |
+                                              ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
 
 void note_control(Viewer& viewer, const std::string& name);  // records the place of the last control
 void show_tooltip(const std::string& words);

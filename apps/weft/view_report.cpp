@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+Json to_json(const std::vector<RunProblem>& problems) {
+  Json json = Json::array();
+  for (const RunProblem& problem : problems)
+    json.push_back({{"code", to_string(problem.code)}, {"message", problem.message}});
+  return json;
+}
+
 Json to_json(const LiveStatus& s, const Vec3& center) {
   return {{"integrator", s.integrator},
           {"model", s.model},
@@ -32,18 +39,55 @@ Json to_json(const LiveStatus& s, const Vec3& center) {
           {"last_step", s.last_step},
           {"speed", s.speed},
           {"keys_for_restart", s.keys_for_restart},
-          {"troubles", s.step_warnings},
+          {"problems", to_json(s.problems)},
           {"warnings", s.warnings}};
 }
 
+Json to_json(const ViewLook& look) {
+  return {{"color", look.color ? Json(label_of(*look.color).word) : Json()},
+          {"springs", look.springs},
+          {"yarns", look.yarns},
+          {"seams", look.seams},
+          {"pins", look.pins},
+          {"contacts", look.contacts},
+          {"checker", look.checker}};
+}
+
+Json to_json(const std::vector<ColliderSceneDesc>& colliders) {
+  Json names = Json::array();
+  for (const ColliderSceneDesc& collider : colliders) names.push_back(collider.name);
+  return names;
+}
+
+/// What its instruments show.
+Json instruments(const ViewSide& side) {
+  Json json = {{"largest_value", side.largest_value()},
+               {"crossings", side.findings() ? Json(side.findings()->intersections) : Json()},
+               {"no_color", side.no_color()}};
+  for (std::size_t b = 0; b < side.meshes().bodies.size(); ++b)
+    json["bodies"].push_back(to_json(side.box_of_body(static_cast<int>(b)).center()));
+  const LiveFrame* frame = side.live_frame();
+  if (!frame) return json;
+  json["pinned"] = frame->pins ? (*frame->pins)[0].particles.size() : 0;
+  json["contacts"] = frame->contacts.size();
+  json["yarns"] = frame->yarns.size();
+  json["probe"] = frame->probe ? Json(frame->probe->particle) : Json();
+  return json;
+}
+
 Json to_json(ViewSide& side) {
-  if (side.status()) return to_json(*side.status(), side.center());
+  if (side.status()) {
+    Json json = to_json(*side.status(), side.center());
+    json["instruments"] = instruments(side);
+    return json;
+  }
   const PlayHead& head = *side.head();
   return {{"playing", head.is_playing},
           {"loops", head.loops},
           {"frame", side.frame()},
           {"frames", side.num_frames()},
           {"time", side.frame() / head.frames_per_second},
+          {"instruments", instruments(side)},
           {"center", to_json(side.center())}};
 }
 
@@ -75,14 +119,22 @@ Json tuned(SceneDesc scene) {
 void write_view_report(const std::filesystem::path& file, const Viewer& viewer) {
   Json json = {{"scene", viewer.shows_gallery() ? Json() : Json(viewer.side(0).title())},
                {"playing", viewer.is_playing()},
-               {"view", viewer.shows_springs() ? "springs" : "cloth"},
+               {"view", viewer.look.springs ? "springs" : "cloth"},
+               {"look", to_json(viewer.look)},
+               {"scales", {{"color", viewer.scales().color}, {"force", viewer.scales().force}}},
+               {"touched", viewer.hands().touched()},
+               {"throwing", viewer.hands().is_throwing()},
+               {"record_file", viewer.record_request.file},
+               {"recording", viewer.recording() ? Json(viewer.recording()->drawn()) : Json()},
+               {"bodies", viewer.edits() ? to_json(viewer.edits()->now().colliders) : Json::array()},
                {"help", viewer.shows_help()},
                {"gallery", viewer.shows_gallery()},
                {"message", viewer.message()},
                {"asking", viewer.is_asking()},
+               {"typing", viewer.window().is_typing()},
                {"changed", viewer.edits() && viewer.edits()->is_changed()},
                {"tuned", viewer.edits() ? tuned(viewer.edits()->now()) : Json::object()},
-               {"grabbing", viewer.is_grabbing()},
+               {"grabbing", viewer.hands().is_grabbing()},
                {"camera", to_json(viewer.camera())},
                {"size", {viewer.window().size().width, viewer.window().size().height}},
                {"driver", viewer.window().driver()},

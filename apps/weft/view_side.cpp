@@ -6,9 +6,14 @@ namespace weft::engine::app {
 namespace {
 
 constexpr double kGroundBelow = 0.1;  // below all expected positions, as a share of their extent [1]
-constexpr Color kHand = {0.95, 0.35, 0.02};
-constexpr std::size_t kSamples = 600;  // of steps, in plots
-constexpr int kSampled = 60;           // frames of a run, evenly spaced, that the first view contains
+constexpr Color kPin = {0.02, 0.02, 0.02}, kSeam = {0.02, 0.02, 0.02}, kContact = {0.62, 0.05, 0.02},
+                kWarp = {0.0, 0.17, 0.44}, kWeft = {0.80, 0.34, 0.0}, kCrossing = {0.9, 0.0, 0.0};
+constexpr double kTowardsEye = 0.003;    // lines on cloth, as a share of their distance from the eye [1]
+constexpr double kArrow = 0.12;          // of the longest force, as a share of the camera's distance [1]
+constexpr double kYarn = 0.35;           // half of a yarn's line, as a share of the triangle's size [1]
+constexpr std::size_t kMaxYarns = 4000;  // triangles whose yarns are drawn [1]
+constexpr std::size_t kSamples = 600;    // of steps, in plots
+constexpr int kSampled = 60;             // frames of a run, evenly spaced, that the first view contains
 
 double find_ground(const std::vector<Vec3>& reach) {
   Eigen::AlignedBox3d box;
@@ -46,27 +51,128 @@ std::vector<Vec3> find_reach(FrameSource& run) {
   return points;
 }
 
+/// The same pixel, in front of the cloth that the point is on.
+Vec3 towards_eye(const Vec3& point, const Camera& camera) {
+  return point + kTowardsEye * (camera.eye() - point);
+}
+
 }  // namespace
 
-Picture ViewSide::draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const {
-  SceneStyle style{.ground = ground_};
-  for (int c = 0; springs && c < static_cast<int>(topologies_.size()); ++c)
+Picture ViewSide::draw(const Camera& camera, const ViewLook& look, const ViewScales& scales,
+                       bool best) const {
+  SceneStyle style{.ground = ground_, .range = {0, scales.color}};
+  for (int c = 0; look.springs && c < static_cast<int>(topologies_.size()); ++c)
     style.springs.push_back({c, topologies_[c]});
+  if (best) style.smooth = choose_smoothness(meshes_);
   Picture picture = ScenePictures(meshes_, frame_, std::move(style)).at(frame_, camera);
-  if (status() && status()->held) {
-    const Vec3 held = *status()->held;
-    picture.dots.push_back({.positions = {held}, .color = kHand, .diameter = 11});
-    if (target) picture.lines.push_back({.ends = {held, *target}, .color = kHand, .width = 2.5});
-  }
+  if (look.pins) add_pins(picture);
+  if (look.seams) add_seams(picture);
+  if (look.yarns) add_yarns(picture);
+  if (look.contacts) add_contacts(scales, picture);
+  if (look.checker) add_crossings(picture);
   return picture;
 }
 
-std::optional<ViewSide::ClothHit> ViewSide::pick(const Ray& ray) const {
-  // Cloths come first among the meshes.
-  const Picture picture = ScenePictures(meshes_, frame_, {.ground = ground_}).at(frame_, {});
-  const std::optional<Hit> hit = find_first_hit(picture.meshes, ray);
-  if (!hit || hit->mesh >= static_cast<int>(meshes_.cloths.size())) return std::nullopt;
-  return ClothHit{{hit->mesh, hit->triangle, hit->weights}, hit->point};
+void ViewSide::add_pins(Picture& picture) const {
+  if (!live_frame() || !live_frame()->pins) return;
+  DrawnDots dots{.color = kPin, .diameter = 7};
+  const std::vector<LivePins>& pins = *live_frame()->pins;
+  for (std::size_t c = 0; c < pins.size(); ++c) {
+    for (const int particle : pins[c].particles)
+      dots.positions.push_back(towards_eye(position(static_cast<int>(c), particle), picture.camera));
+  }
+  picture.dots.push_back(std::move(dots));
+}
+
+void ViewSide::add_seams(Picture& picture) const {
+  if (!live_frame() || !live_frame()->seams) return;
+  DrawnLines lines{.color = kSeam, .width = 2};
+  const std::vector<SeamEdges>& seams = *live_frame()->seams;
+  for (std::size_t c = 0; c < seams.size(); ++c) {
+    for (const auto& edge : seams[c]) {
+      for (const int particle : edge)
+        lines.ends.push_back(towards_eye(position(static_cast<int>(c), particle), picture.camera));
+    }
+  }
+  picture.lines.push_back(std::move(lines));
+}
+
+void ViewSide::add_yarns(Picture& picture) const {
+  if (!live_frame()) return;
+  DrawnLines warp{.color = kWarp, .width = 2}, weft{.color = kWeft, .width = 2};
+  const std::vector<YarnCross>& yarns = live_frame()->yarns;
+  const std::size_t step = yarns.size() / kMaxYarns + 1;
+  for (std::size_t k = 0; k < yarns.size(); k += step) {
+    const Vec3 middle = towards_eye(yarns[k].position, picture.camera);
+    for (const auto& [lines, yarn] :
+         {std::pair(&warp, yarns[k].yarns.warp), std::pair(&weft, yarns[k].yarns.weft)}) {
+      for (const double end : {-kYarn, kYarn}) lines->ends.push_back(middle + end * yarns[k].size * yarn);
+    }
+  }
+  picture.lines.push_back(std::move(warp));
+  picture.lines.push_back(std::move(weft));
+}
+
+void ViewSide::add_contacts(const ViewScales& scales, Picture& picture) const {
+  if (!live_frame()) return;
+  DrawnLines arrows{.color = kContact, .width = 2};
+  DrawnDots feet{.color = kContact, .diameter = 4};
+  const double length = kArrow * picture.camera.distance / scales.force;
+  for (const ContactForce& contact : live_frame()->contacts) {
+    const Vec3 foot = towards_eye(contact.position, picture.camera);
+    feet.positions.push_back(foot);
+    arrows.ends.insert(arrows.ends.end(), {foot, foot + length * contact.force});
+  }
+  picture.lines.push_back(std::move(arrows));
+  picture.dots.push_back(std::move(feet));
+}
+
+void ViewSide::add_crossings(Picture& picture) const {
+  if (!findings()) return;
+  DrawnDots dots{.color = kCrossing, .diameter = 9};
+  for (const Vec3& place : findings()->places) dots.positions.push_back(towards_eye(place, picture.camera));
+  picture.dots.push_back(std::move(dots));
+}
+
+std::optional<ViewHit> ViewSide::pick(const Ray& ray) const {
+  const ScenePictures pictures(meshes_, frame_, {.ground = ground_});
+  const std::optional<Hit> hit = find_first_hit(pictures.at(frame_, {}).meshes, ray);
+  if (!hit) return std::nullopt;
+  const int shown = pictures.shown(frame_)[hit->mesh], num_cloths = static_cast<int>(meshes_.cloths.size());
+  if (shown < 0) return std::nullopt;
+  if (shown < num_cloths)
+    return ViewHit{.cloth = ClothPoint{shown, hit->triangle, hit->weights}, .place = hit->point};
+  return ViewHit{.body = shown - num_cloths, .place = hit->point};
+}
+
+Vec3 ViewSide::position(int cloth, int vertex) const {
+  return Eigen::Map<const Eigen::Vector3f>(&frame_.cloths[cloth][3 * static_cast<std::size_t>(vertex)])
+      .cast<double>();
+}
+
+Eigen::AlignedBox3d ViewSide::box_of_body(int body) const {
+  const AnimatedBody& mesh = meshes_.bodies[body];
+  Eigen::AlignedBox3d box;
+  for (std::size_t v = 0; v < mesh.mesh.positions.size(); ++v)
+    box.extend(frame_.poses[body].rotation * mesh.vertex(v, frame_.body_vertices[body]) +
+               frame_.poses[body].translation);
+  return box;
+}
+
+double ViewSide::largest_value() const {
+  float largest = 0;
+  for (const std::vector<float>& values : frame_.values) {
+    for (const float value : values) largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+double ViewSide::largest_force() const {
+  double largest = 0;
+  if (!live_frame()) return largest;
+  for (const ContactForce& contact : live_frame()->contacts)
+    largest = std::max(largest, contact.force.norm());
+  return largest;
 }
 
 Vec3 ViewSide::center() const {
@@ -83,7 +189,7 @@ LiveSide::LiveSide(const SceneDesc& scene, int threads)
 }
 
 void LiveSide::step_frame(bool backwards) {
-  if (!backwards) step(live_.scene().steps_per_frame);
+  if (!backwards) live_.step_frame();
 }
 
 bool LiveSide::update() {
@@ -93,6 +199,7 @@ bool LiveSide::update() {
     meshes_ = without_frames(*start_);
   }
   frame_ = newest_.meshes;
+  ++num_updates_;
   for (const LiveSample& sample : newest_.samples) samples_.push_back(sample);
   while (samples_.size() > kSamples) samples_.pop_front();
   newest_.samples.clear();
@@ -108,7 +215,7 @@ RunSide::RunSide(const std::filesystem::path& path)
       reach_(find_reach(*frames_)),
       head_{.frames_per_second = frames_->meshes().frames_per_second, .is_playing = false} {
   meshes_ = frames_->meshes();
-  frame_ = frames_->read(0);
+  frame_ = read(0);
   ground_ = find_ground(reach_);
 }
 
@@ -119,8 +226,27 @@ bool RunSide::update() {
   updated_ = now;
   if (head_.frame() == number_) return was_playing != head_.is_playing;
   number_ = head_.frame();
-  frame_ = frames_->read(number_);
+  frame_ = read(number_);
+  ++num_updates_;
   return true;
+}
+
+/// A run has positions only: speeds are computed from them.
+AnimationFrame RunSide::read(int frame) {
+  if (color_ != ParticleValue::speed) return frames_->read(frame);
+  return FramesWithSpeeds(*frames_).read(frame);
+}
+
+void RunSide::measure(const LiveInstruments& instruments) {
+  if (color_ == instruments.color) return;
+  color_ = instruments.color;
+  frame_ = read(number_);
+}
+
+std::string RunSide::no_color() const {
+  if (!color_ || *color_ == ParticleValue::speed) return "";
+  return label_of(*color_).name +
+         " requires a simulation: a run contains positions; speed is computed from them";
 }
 
 }  // namespace weft::engine::app

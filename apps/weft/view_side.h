@@ -4,12 +4,33 @@
 #include <chrono>
 #include <deque>
 
+#include "view_checker.h"
 #include "weft/pictures/scene_picture.h"
 #include "weft/render/pick.h"
 #include "weft/run/live.h"
 #include "weft/run/playback.h"
 
 namespace weft::engine::app {
+
+/// What is drawn besides the cloth itself.
+struct ViewLook {
+  std::optional<ParticleValue> color;  // of the cloth; empty: its fabric's
+  bool springs = false;                // in place of the cloth
+  bool yarns = false, seams = false, pins = false, contacts = false, checker = false;
+};
+
+/// Scales that all sides share, for comparisons.
+struct ViewScales {
+  double color = 1;  // value of the last colour; the first one is 0
+  double force = 1;  // of the longest arrows [N]
+};
+
+/// What is under the mouse.
+struct ViewHit {
+  std::optional<ClothPoint> cloth;  // empty: no cloth
+  int body = -1;                    // -1: no body
+  Vec3 place = Vec3::Zero();        // [m]
+};
 
 class ViewSide {
  public:
@@ -32,9 +53,10 @@ class ViewSide {
   /// Whether it goes on by itself: false after a failed step, and at the end of a run that does not loop.
   virtual bool is_going() const = 0;
 
-  virtual LiveSimulation* live() { return nullptr; }            // null: frames of a run
-  virtual const LiveStatus* status() const { return nullptr; }  // of live()
-  virtual const std::deque<LiveSample>& samples() const {       // of the last steps of live()
+  virtual LiveSimulation* live() { return nullptr; }               // null: frames of a run
+  virtual const LiveFrame* live_frame() const { return nullptr; }  // the newest of live()
+  const LiveStatus* status() const { return live_frame() ? &live_frame()->status : nullptr; }
+  virtual const std::deque<LiveSample>& samples() const {  // of the last steps of live()
     static const std::deque<LiveSample> kNone;
     return kNone;
   }
@@ -42,17 +64,26 @@ class ViewSide {
   virtual int num_frames() { return 0; }        // of a run, with the start
   virtual int frame() const { return 0; }       // of a run: the current one
 
-  /// The current picture: cloth, or its springs; and the attachment, drawn towards `target`.
-  Picture draw(const Camera& camera, bool springs, const std::optional<Vec3>& target) const;
+  virtual void measure(const LiveInstruments& instruments) = 0;  // from the next frame on
+  virtual std::string no_color() const = 0;  // why there are no values to colour by; empty: there are
 
-  /// The first hit of a ray, if it is on a cloth.
-  struct ClothHit {
-    ClothPoint point;
-    Vec3 place;  // [m]
-  };
-  std::optional<ClothHit> pick(const Ray& ray) const;
+  /// The current picture; `best`: smooth cloth with hems, as in files.
+  Picture draw(const Camera& camera, const ViewLook& look, const ViewScales& scales, bool best) const;
 
-  Vec3 center() const;  // of the first cloth's particles [m]
+  std::optional<ViewHit> pick(const Ray& ray) const;
+
+  /// Starts the exact checker for the current frame when it has time; true: there are new findings.
+  bool check() { return checker_.update(meshes_, frame_, num_updates_); }
+  const std::optional<FrameFindings>& findings() const { return checker_.findings(); }
+
+  const Animation& meshes() const { return meshes_; }  // without frames
+  const AnimationFrame& current_frame() const { return frame_; }
+  Vec3 position(int cloth, int vertex) const;       // [m]
+  Eigen::AlignedBox3d box_of_body(int body) const;  // [m]
+  double ground() const { return ground_; }         // height of the ground without a floor [m]
+  double largest_value() const;                     // of the colours; 0 without
+  double largest_force() const;                     // of contacts; 0 without [N]
+  Vec3 center() const;                              // of the first cloth's particles [m]
 
  protected:
   ViewSide() = default;
@@ -60,7 +91,17 @@ class ViewSide {
   Animation meshes_;                                              // without frames
   AnimationFrame frame_;                                          // the current one
   std::vector<std::shared_ptr<const ClothTopology>> topologies_;  // (num_cloths) of live()
-  double ground_ = 0;  // height of the ground in scenes without a floor [m]
+  double ground_ = 0;             // height of the ground in scenes without a floor [m]
+  std::int64_t num_updates_ = 0;  // of frame_
+
+ private:
+  void add_pins(Picture& picture) const;
+  void add_seams(Picture& picture) const;
+  void add_yarns(Picture& picture) const;
+  void add_contacts(const ViewScales& scales, Picture& picture) const;
+  void add_crossings(Picture& picture) const;
+
+  ViewChecker checker_;
 };
 
 /// A simulation in real time.
@@ -78,7 +119,9 @@ class LiveSide : public ViewSide {
   bool update() override;
   bool is_going() const override { return newest_.status.failure.empty(); }
   LiveSimulation* live() override { return &live_; }
-  const LiveStatus* status() const override { return &newest_.status; }
+  const LiveFrame* live_frame() const override { return &newest_; }
+  void measure(const LiveInstruments& instruments) override { live_.measure(instruments); }
+  std::string no_color() const override { return newest_.no_color; }
   const std::deque<LiveSample>& samples() const override { return samples_; }
 
  private:
@@ -106,11 +149,16 @@ class RunSide : public ViewSide {
   PlayHead* head() override { return &head_; }
   int num_frames() override { return frames_->num_frames(); }
   int frame() const override { return number_; }
+  void measure(const LiveInstruments& instruments) override;
+  std::string no_color() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  AnimationFrame read(int frame);
+
   std::unique_ptr<FrameSource> frames_;
+  std::optional<ParticleValue> color_;
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;

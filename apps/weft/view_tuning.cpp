@@ -103,6 +103,23 @@ void draw_presets(Viewer& viewer, int c, SceneDesc& scene) {
   ImGui::EndCombo();
 }
 
+void draw_bodies(Viewer& viewer) {
+  constexpr std::pair<const char*, NewCollider> kKinds[] = {{"+ ball", NewCollider::ball},
+                                                            {"+ box", NewCollider::box},
+                                                            {"+ capsule", NewCollider::capsule},
+                                                            {"+ floor", NewCollider::floor}};
+  for (const auto& [name, kind] : kKinds) {
+    if (kind != NewCollider::ball) ImGui::SameLine();
+    if (ImGui::Button(name)) viewer.hands().add_body(kind);
+    note_control(viewer, name);
+  }
+  const std::string& touched = viewer.hands().touched();
+  if (ImGui::Button(touched.empty() ? "remove" : ("remove " + touched + "###remove").c_str()))
+    viewer.hands().remove_body();
+  if (ImGui::IsItemHovered()) show_tooltip("The body that was clicked (Delete)");
+  note_control(viewer, "remove");
+}
+
 void draw_file(Viewer& viewer) {
   if (ImGui::Button("Undo")) viewer.undo();
   note_control(viewer, "undo");
@@ -136,6 +153,7 @@ void draw_tuning(Viewer& viewer) {
     for (const std::string& key : waiting) keys += (keys.empty() ? "" : ", ") + key;
     show_alarm("Applied at the next restart (R): " + keys);
   }
+  draw_bodies(viewer);
   SceneDesc scene = viewer.edits()->now();
   int number = 0;  // names of colliders may be equal
   for (const TunableGroup& group : list_tunables(scene)) {

@@ -5,6 +5,7 @@
 
 #include "apps/common/progress.h"
 #include "recent_files.h"
+#include "view_overlays.h"
 #include "view_panel.h"
 #include "view_report.h"
 #include "weft/error.h"
@@ -13,7 +14,6 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr double kOrbitDegrees = 0.35;          // per pixel of a drag
 constexpr double kWheelFactor = 0.88;           // of the distance, per click
 constexpr double kRoom = 1.1;                   // extra camera distance, for grabs and swings [1]
 constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures with software OpenGL [s]
@@ -57,19 +57,61 @@ void Viewer::run() {
 
 /// A side whose step has failed pauses itself; the other one then pauses too.
 void Viewer::update() {
+  hands_.update();
+  measure();
   bool has_stopped = false;
   for (const auto& side : sides_) {
     if (!side->update()) continue;
     has_news_ = true;
     has_stopped |= !side->is_going();
   }
+  if (look.checker) {
+    for (const auto& side : sides_) has_news_ |= side->check();
+  }
+  update_scales();
   if (has_stopped && is_playing_) toggle_play();
+  if (!recording_) return;
+  has_news_ = true;
+  try {
+    recording_->advance(renderer_);
+    if (recording_->is_done()) stop_recording(true);
+  } catch (const InputError& error) {
+    recording_.reset();
+    say(error.what());
+  }
+}
+
+/// What the look and the probe need.
+void Viewer::measure() {
+  const LiveInstruments wanted{
+      .color = look.color, .contacts = look.contacts, .yarns = look.yarns, .probe = probe_};
+  if (wanted == instruments_) return;
+  instruments_ = wanted;
+  for (const auto& side : sides_) side->measure(wanted);
+}
+
+void Viewer::update_scales() {
+  double value = 0, force = 0;
+  for (const auto& side : sides_) {
+    value = std::max(value, side->largest_value());
+    force = std::max(force, side->largest_force());
+  }
+  color_scale_.update(value);
+  force_scale_.update(force);
+  scales_ = {.color = color_scale_.end(), .force = force_scale_.end()};
 }
 
 // ---- Files ----------------------------------------------------------------------------------------------
 
 void Viewer::show(Opened opened) {
+  recording_.reset();
+  hands_.forget();
+  probe_.reset();
+  instruments_ = {};
+  color_scale_.forget();
+  force_scale_.forget();
   sides_ = std::move(opened.sides);
+  compared_ = std::move(opened.compared);
   edits_.reset();
   if (opened.scene) edits_.emplace(std::move(*opened.scene), opened.file);
   shown_file_ = opened.file.string();
@@ -77,8 +119,8 @@ void Viewer::show(Opened opened) {
   remember_file(opened.file);
   window_.set_title("Weft: " + sides_[0]->title());
   message_.clear();
-  drag_ = Drag::none;
-  grab_target_.reset();
+  record_request.file = opened.file.stem().string() + ".mp4";
+  record_request.frames = is_simulation() ? edits_->now().num_frames() : sides_[0]->num_frames() - 1;
   is_playing_ = true;
   if (is_simulation()) set_speed(speed_);
   for (const auto& side : sides_) side->play();
@@ -109,6 +151,8 @@ void Viewer::open_gallery() {
   leave([this] {
     try {
       gallery_ = make_gallery();
+      recording_.reset();
+      hands_.forget();
       sides_.clear();
       edits_.reset();
       message_.clear();
@@ -173,13 +217,16 @@ void Viewer::redo() {
   apply_edits();
 }
 
-/// Of two sides each keeps its integrator.
+/// Of two sides each keeps what is compared: its integrator or its fabric.
 void Viewer::apply_edits() {
   has_news_ = true;
-  for (const auto& side : sides_) {
+  for (int s = 0; s < num_sides(); ++s) {
     SceneDesc scene = edits_->now();
-    if (num_sides() > 1) scene.solver.integrator = side->status()->integrator;
-    side->live()->change(std::move(scene));
+    if (num_sides() > 1) {
+      take_variant(compared_[s], scene);
+      scene.solver.integrator = sides_[s]->status()->integrator;
+    }
+    sides_[s]->live()->change(std::move(scene));
   }
 }
 
@@ -195,6 +242,7 @@ void Viewer::save_scene() {
 }
 
 void Viewer::seek_step(std::int64_t step) {
+  if (refuse_while_recording()) return;
   is_playing_ = false;
   for (const auto& side : sides_) side->live()->seek(step);
 }
@@ -207,6 +255,7 @@ void Viewer::set_speed(double speed) {
 // ---- User input -----------------------------------------------------------------------------------------
 
 void Viewer::toggle_play() {
+  if (refuse_while_recording()) return;
   is_playing_ = !is_playing_;
   for (const auto& side : sides_) {
     is_playing_ ? side->play() : side->pause();
@@ -214,21 +263,24 @@ void Viewer::toggle_play() {
 }
 
 void Viewer::step(int count) {
+  if (refuse_while_recording()) return;
   is_playing_ = false;
   for (const auto& side : sides_) side->step(count);
 }
 
 void Viewer::step_frame(bool backwards) {
-  if (backwards && is_simulation()) return;
+  if ((backwards && is_simulation()) || refuse_while_recording()) return;
   is_playing_ = false;
   for (const auto& side : sides_) side->step_frame(backwards);
 }
 
 void Viewer::reset() {
+  if (refuse_while_recording()) return;
   for (const auto& side : sides_) side->reset();
 }
 
 void Viewer::seek(int frame) {
+  if (refuse_while_recording()) return;
   for (const auto& side : sides_) side->head()->seek(frame, side->num_frames());
 }
 
@@ -252,7 +304,7 @@ void Viewer::set_integrator(int side, const std::string& name) {
 
 void Viewer::cycle_integrator(bool backwards) {
   if (!is_simulation()) return;
-  const int s = side_at(mouse_x_);
+  const int s = hands_.side();
   const auto& names = integrator_names();
   const auto now = std::find(names.begin(), names.end(), sides_[s]->status()->integrator) - names.begin();
   const auto count = static_cast<std::ptrdiff_t>(names.size());
@@ -285,8 +337,48 @@ void Viewer::set_wind(const Vec3& velocity) {
   edit(std::move(next), "wind");
 }
 
-void Viewer::toggle_springs() {
-  if (is_simulation()) shows_springs_ = !shows_springs_;
+void Viewer::set_color(std::optional<ParticleValue> value) {
+  look.color = value;
+  color_scale_.forget();
+  has_news_ = true;
+}
+
+void Viewer::set_probe(const std::optional<ClothPoint>& point) {
+  probe_ = point;
+  has_news_ = true;
+}
+
+double Viewer::frames_per_second() const {
+  return is_simulation() ? edits_->now().fps : sides_[0]->head()->frames_per_second;
+}
+
+// ---- Recording ------------------------------------------------------------------------------------------
+
+void Viewer::record() {
+  if (recording_ || shows_gallery()) return;
+  if (is_playing_) toggle_play();
+  try {
+    recording_ = std::make_unique<Recording>(*this, record_request);
+  } catch (const InputError& error) {
+    say(error.what());
+  }
+}
+
+void Viewer::stop_recording(bool keeps) {
+  if (!recording_) return;
+  const std::unique_ptr<Recording> ended = std::move(recording_);
+  if (!keeps) return say("the recording is cancelled");
+  try {
+    if (!ended->is_done()) ended->finish();
+    say("written " + ended->file());
+  } catch (const InputError& error) {
+    say(error.what());
+  }
+}
+
+bool Viewer::refuse_while_recording() {
+  if (recording_) say("the recording goes from frame to frame: finish or cancel it first (V)");
+  return recording_ != nullptr;
 }
 
 void Viewer::frame_scene() {
@@ -296,15 +388,14 @@ void Viewer::frame_scene() {
 
 WindowEvents Viewer::make_events() {
   const auto news = [this] { has_news_ = true; };
-  return {.on_key = [=, this](int key, bool shift, bool control) { news(), on_key(key, shift, control); },
-          .on_press = [=, this](MouseButton b, double x, double y,
-                                bool shift) { news(), on_press(b, x, y, shift); },
-          .on_release =
-              [=, this](MouseButton b) {
+  return {.on_key = [=, this](int key, Modifiers held) { news(), on_key(key, held); },
+          .on_press =
+              [=, this](MouseButton b, double x, double y, Modifiers held) {
                 news();
-                if (b == drag_button_) release();
+                if (!shows_gallery()) hands_.press(b, x, y, held);
               },
-          .on_move = [=, this](double x, double y) { news(), on_move(x, y); },
+          .on_release = [=, this](MouseButton b) { news(), hands_.release(b); },
+          .on_move = [=, this](double x, double y) { news(), hands_.move(x, y); },
           .on_wheel =
               [=, this](double clicks) {
                 news();
@@ -317,8 +408,8 @@ WindowEvents Viewer::make_events() {
               }};
 }
 
-void Viewer::on_key(int key, bool shift, bool control) {
-  if (key == 'J') return write_report();
+void Viewer::on_key(int key, Modifiers held) {
+  if (key == kKeyReport) return write_report();
   if (is_asking()) {
     if (key == 'S') answer(Answer::save);
     if (key == 'D') answer(Answer::discard);
@@ -326,22 +417,22 @@ void Viewer::on_key(int key, bool shift, bool control) {
     return;
   }
   if (key == 'Q' || key == kKeyEscape) return window_.close();
-  if (control) {
-    if (key == 'Z') shift ? redo() : undo();
+  if (held.control) {
+    if (key == 'Z') held.shift ? redo() : undo();
     if (key == 'Y') redo();
     if (key == 'S') save_scene();
     if (key == 'R') reload();
     if (key == 'O') open_gallery();
     return;
   }
-  if (shows_gallery()) return;
+  if (shows_gallery() || on_look_key(key)) return;
   switch (key) {
     case ' ':
       return toggle_play();
     case '.':
       return step(1);
     case 'S':
-      return shift ? step_frame(false) : step(1);
+      return held.shift ? step_frame(false) : step(1);
     case kKeyRight:
       return step_frame(false);
     case kKeyLeft:
@@ -351,11 +442,14 @@ void Viewer::on_key(int key, bool shift, bool control) {
     case 'R':
       return reset();
     case 'I':
-      return cycle_integrator(shift);
+      return cycle_integrator(held.shift);
     case 'M':
       return cycle_model();
-    case 'G':
-      return toggle_springs();
+    case 'V':
+      return toggle_record();
+    case kKeyDelete:
+      if (is_simulation()) hands_.remove_body();
+      return;
     case 'C':
       return frame_scene();
     case 'P':
@@ -372,60 +466,20 @@ void Viewer::on_key(int key, bool shift, bool control) {
   }
 }
 
-void Viewer::on_press(MouseButton button, double x, double y, bool shift) {
-  if (drag_ != Drag::none || shows_gallery()) return;
-  mouse_x_ = x;
-  mouse_y_ = y;
-  drag_button_ = button;
-  if (button == MouseButton::middle || shift)
-    drag_ = Drag::pan;
-  else if (button == MouseButton::left && grab(x, y))
-    drag_ = Drag::grab;
-  else
-    drag_ = Drag::orbit;
-}
-
-void Viewer::on_move(double x, double y) {
-  const double dx = x - mouse_x_, dy = y - mouse_y_;
-  mouse_x_ = x;
-  mouse_y_ = y;
-  if (drag_ == Drag::orbit) {
-    camera_.orbit(-kOrbitDegrees * dx, kOrbitDegrees * dy);
-  } else if (drag_ == Drag::pan) {
-    const double height = part(0).size.height;
-    camera_.pan(-dx / height, dy / height);
-  } else if (drag_ == Drag::grab) {
-    drag_grab(x, y);
-  }
-}
-
-/// Grabs the same point of the cloth on both sides.
-bool Viewer::grab(double x, double y) {
+/// Keys of what is shown. False: another key.
+bool Viewer::on_look_key(int key) {
+  if (key == '1') return set_color({}), true;
+  if (key >= '2' && key < '2' + static_cast<int>(kParticleValues.size()))
+    return set_color(kParticleValues[key - '2']), true;
+  if (key == 'K') return look.checker = !look.checker, true;
   if (!is_simulation()) return false;
-  grab_side_ = side_at(x);
-  const auto hit = sides_[grab_side_]->pick(ray_at(grab_side_, x, y));
-  if (!hit) return false;
-  grab_place_ = hit->place;
-  grab_target_ = hit->place;
-  for (const auto& side : sides_) side->live()->grab(hit->point);
-  return true;
-}
-
-/// Drags in the plane through the grabbed point that faces the camera.
-void Viewer::drag_grab(double x, double y) {
-  const Ray ray = ray_at(grab_side_, x, y);
-  const double along = ray.direction.dot(camera_.forward());
-  const double t = (grab_place_ - ray.origin).dot(camera_.forward()) / along;
-  grab_target_ = ray.origin + t * ray.direction;
-  for (const auto& side : sides_) side->live()->move_grab(*grab_target_);
-}
-
-void Viewer::release() {
-  if (drag_ == Drag::grab) {
-    for (const auto& side : sides_) side->live()->release();
+  if (key == 'W') return hands_.toggle_wind(), true;
+  for (const auto& [letter, shown] :
+       {std::pair('G', &look.springs), std::pair('Y', &look.yarns), std::pair('E', &look.seams),
+        std::pair('X', &look.pins), std::pair('F', &look.contacts)}) {
+    if (key == letter) return *shown = !*shown, true;
   }
-  grab_target_.reset();
-  drag_ = Drag::none;
+  return false;
 }
 
 // ---- Layout ---------------------------------------------------------------------------------------------
@@ -468,10 +522,12 @@ void Viewer::draw() {
   renderer_.set_settings(quality_.settings(is_still));
   for (int s = 0; s < num_sides(); ++s) {
     const WindowPart where = part(s);
-    const Picture picture = sides_[s]->draw(camera_, shows_springs_, grab_target_);
+    Picture picture = sides_[s]->draw(camera_, look, scales_, false);
+    hands_.mark(s, picture);
     renderer_.show(picture, quality_.scaled(where.size, is_still), where);
   }
   controls.clear();
+  if (!shows_gallery()) draw_overlays(*this);
   shows_gallery() ? draw_gallery(*this, gallery_) : draw_panel(*this);
   if (is_asking()) draw_question(*this);
 }

@@ -13,8 +13,11 @@
 #include "scene_edits.h"
 #include "view_command.h"
 #include "view_gallery.h"
+#include "view_hands.h"
 #include "view_open.h"
 #include "view_quality.h"
+#include "view_record.h"
+#include "view_scale.h"
 #include "view_side.h"
 #include "weft/render/renderer.h"
 #include "weft/window/window.h"
@@ -23,7 +26,7 @@ namespace weft::engine::app {
 
 struct ViewOptions {
   PictureSize size;
-  std::filesystem::path report;  // JSON state of the window, written at the end and on the key J; empty: none
+  std::filesystem::path report;  // JSON state of the window, written at the end and on F12; empty: none
   std::int64_t frames = 0;       // number to show before closing; 0: until the user closes it
 };
 
@@ -80,9 +83,16 @@ class Viewer {
   void set_model(SpringModel model);
   void cycle_model();
   void set_wind(const Vec3& velocity);  // uniform and constant [m/s]
-  void toggle_springs();
+  void set_color(std::optional<ParticleValue> value);
+  void set_probe(const std::optional<ClothPoint>& point);
+  void toggle_record() { shows_record_ = !shows_record_; }
+  void record();  // by record_request
+  void stop_recording(bool keeps);
   void toggle_help() { shows_help_ = !shows_help_; }
   void frame_scene();  // the initial camera
+  Camera& camera() { return camera_; }
+  Hands& hands() { return hands_; }
+  const Hands& hands() const { return hands_; }
   void save_picture() { wants_picture_ = true; }
   void write_report();
 
@@ -93,7 +103,10 @@ class Viewer {
     return !sides_.empty() && sides_[0]->live() != nullptr;
   }  // else frames of a run
   bool is_playing() const { return is_playing_; }
-  bool shows_springs() const { return shows_springs_; }
+  bool shows_record() const { return shows_record_; }
+  const Recording* recording() const { return recording_.get(); }
+  const ViewScales& scales() const { return scales_; }
+  double frames_per_second() const;  // of the scene or the run
   bool shows_help() const { return shows_help_; }
   const Camera& camera() const { return camera_; }
   const Window& window() const { return window_; }
@@ -101,28 +114,29 @@ class Viewer {
   std::int64_t drawn_frames() const { return drawn_frames_; }
   double drawn_per_second() const { return drawn_per_second_; }
   double picture_ms() const { return picture_ms_; }  // to draw and show one during motion [ms]
-  bool is_grabbing() const { return drag_ == Drag::grab; }
   const std::vector<std::string>& pictures() const { return pictures_; }
   const std::string& message() const { return message_; }
   WindowPart part(int side) const;  // part of the window of a side
+  int side_at(double x) const;      // of a position in the window [pixels]
+  Ray ray_at(int side, double x, double y) const;
+  const std::vector<std::string>& compared() const { return compared_; }  // (num_sides) or empty
+
+  ViewLook look;  // changed by keys and panel
+  RecordRequest record_request;
 
   /// Rectangle of each control: left, top, right, bottom [pixels].
   std::map<std::string, std::array<double, 4>> controls;
 
  private:
-  enum class Drag { none, orbit, pan, grab };
   using Clock = std::chrono::steady_clock;
 
   void update();
   WindowEvents make_events();
-  void on_key(int key, bool shift, bool control);
-  void on_press(MouseButton button, double x, double y, bool shift);
-  void on_move(double x, double y);
-  bool grab(double x, double y);
-  void drag_grab(double x, double y);
-  void release();
-  int side_at(double x) const;
-  Ray ray_at(int side, double x, double y) const;
+  void on_key(int key, Modifiers held);
+  bool on_look_key(int key);
+  void measure();
+  void update_scales();
+  bool refuse_while_recording();
   void draw();
   void finish_frame();
   void wait();
@@ -133,6 +147,7 @@ class Viewer {
 
   std::vector<std::unique_ptr<ViewSide>> sides_;
   std::optional<SceneEdits> edits_;
+  std::vector<std::string> compared_;
   std::string save_as_, shown_file_;
   std::function<void()> after_question_;
   Gallery gallery_;
@@ -143,17 +158,18 @@ class Viewer {
   ViewQuality quality_;
 
   Camera camera_;
-  bool is_playing_ = true, shows_springs_ = false, shows_help_ = false, wants_picture_ = false;
-  bool shows_numbers_ = false, shows_plots_ = false;
+  bool is_playing_ = true, shows_help_ = false, wants_picture_ = false;
+  bool shows_numbers_ = false, shows_plots_ = false, shows_record_ = false;
   double speed_ = 1;
 
-  // The mouse.
-  Drag drag_ = Drag::none;
-  MouseButton drag_button_ = MouseButton::left;
-  double mouse_x_ = 0, mouse_y_ = 0;
-  int grab_side_ = 0;
-  Vec3 grab_place_ = Vec3::Zero();   // grabbed point, on the clicked side [m]
-  std::optional<Vec3> grab_target_;  // [m]
+  Hands hands_{*this};
+  std::unique_ptr<Recording> recording_;
+
+  // What is measured and shown.
+  LiveInstruments instruments_;
+  std::optional<ClothPoint> probe_;
+  RoundScale color_scale_, force_scale_;
+  ViewScales scales_;
 
   // Drawing.
   bool has_news_ = true;      // changes since the last picture

@@ -107,7 +107,8 @@ TEST_F(Render, ColoursClothByValues) {
   }
   ASSERT_EQ(shell("weft run paper/fig6_ball --frames 4 --out done" + kQuick).exit_code, 0);
   EXPECT_EQ(shell("weft render done --color speed --range 0,2 --out speeds.png").exit_code, 0);
-  expect_bad_input("weft render done --color strain --out a.png", "--color strain and shear require a scene");
+  expect_bad_input("weft render done --color strain --out a.png",
+                   "--color strain, shear and contact require a scene");
   expect_bad_input("weft render done --color speed --range 2,1 --out a.png", "--range: expected two values");
 }
 

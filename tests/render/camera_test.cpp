@@ -28,6 +28,10 @@ TEST(Camera, RayThroughAPixelHitsWhatIsDrawnThere) {
     const Ray ray = kCamera.ray(pixel.x(), pixel.y(), kSize);
     EXPECT_NEAR((project(kCamera, ray.origin + 3.3 * ray.direction, kSize) - pixel).norm(), 0, 1e-8);
     EXPECT_NEAR(ray.direction.norm(), 1, 1e-12);
+    const auto back = kCamera.pixel(ray.origin + 0.7 * ray.direction, kSize);
+    ASSERT_TRUE(back.has_value());
+    EXPECT_NEAR((*back - pixel).norm(), 0, 1e-9);
+    EXPECT_FALSE(kCamera.pixel(ray.origin - 0.7 * ray.direction, kSize)) << "behind the eye";
   }
 }
 

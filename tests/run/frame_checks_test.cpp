@@ -42,6 +42,23 @@ TEST(FrameChecks, TakeMeshesWhereTheirMotionHasTakenThem) {
   EXPECT_FALSE(check.deepest.has_value()) << "a plate has no inside";
 }
 
+TEST(FrameChecks, SayWhereClothCrosses) {
+  Animation meshes;
+  meshes.cloths.push_back({.name = "rag", .triangles = {{0, 1, 2}, {3, 4, 5}}});
+  AnimationFrame frame;
+  // The second triangle stands upright through the first.
+  frame.cloths = {{0, 0, 0, 1, 0, 0, 0, 0, 1, 0.2f, -1, 0.2f, 0.3f, 1, 0.2f, 0.2f, -1, 0.3f}};
+  const FrameFindings found = check_frame(meshes, frame, 10);
+  EXPECT_EQ(found.intersections, 1);
+  ASSERT_EQ(found.places.size(), 1u);
+  EXPECT_LT((found.places[0] - Vec3(1, 0, 1) / 3).norm(), 1) << "at a centre of the two";
+  ASSERT_EQ(found.sentences.size(), 1u);
+  EXPECT_NE(found.sentences[0].find("\"rag\""), std::string::npos) << found.sentences[0];
+  EXPECT_FALSE(found.penetration.has_value()) << "there is no collider";
+  frame.cloths[0] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1, 1, 0, 0, 1, 1};
+  EXPECT_EQ(check_frame(meshes, frame, 10).intersections, 0);
+}
+
 TEST(FrameChecks, KnowTheInsideOfClosedMeshes) {
   World world = make_sheet();
   const auto ball = std::make_shared<TriangleMesh>(make_sphere_mesh({0, 0, 0}, 0.4, 32));

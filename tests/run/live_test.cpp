@@ -7,6 +7,9 @@
 #include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/run/scene_run.h"
+#include "weft/scene/pin_edits.h"
+#include "weft/scene/scene_changes.h"
+#include "weft/scene/tunables.h"
 
 namespace weft::engine {
 namespace {
@@ -154,6 +157,7 @@ std::uint64_t hash_after(const SceneDesc& scene, const SceneDesc& other, int cha
   SceneRun run(scene, make_jobs(1));
   for (int s = 0; s < steps; ++s) {
     if (s == changed) run.change(other);
+    glide_colliders(run.scene(), run.scene().step_length(), run.public_world());
     run.step();
   }
   return run.world().state_hash();
@@ -219,19 +223,27 @@ TEST(Live, CollidersComeGoAndMoveWhileClothMoves) {
   LiveFrame frame = wait_for_steps(live, 3);
   EXPECT_EQ(frame.start->bodies.size(), scene.colliders.size() + 1);
   live.change(moved);
-  live.step(1);
-  frame = wait_for_steps(live, 4);
-  EXPECT_NEAR(frame.meshes.poses.back().translation.x(), 0.1, 1e-6);
+  double last = 0;
+  for (int s = 4; s <= 363; ++s) {
+    live.step(1);
+    frame = wait_for_steps(live, s);
+    const double x = frame.meshes.poses.back().translation.x();
+    EXPECT_GE(x, last);
+    EXPECT_LE(x - last, 4 * scene.step_length() + 1e-6) << "as fast as a hand";
+    last = x;
+  }
+  EXPECT_NEAR(last, 0.1, 1e-6) << "within a second";
   EXPECT_EQ(frame.status.failure, "");
   live.change(scene);
   live.step(1);
-  EXPECT_EQ(wait_for_steps(live, 5).start->bodies.size(), scene.colliders.size());
+  EXPECT_EQ(wait_for_steps(live, 364).start->bodies.size(), scene.colliders.size());
 }
 
 TEST(Live, ThePastHasTheSameBitsWithAllChangesMadeInIt) {
   const SceneDesc scene = small_scene();
   SceneDesc light = scene;
   light.gravity = {0, -2, 0};
+  std::get<Sphere>(light.colliders[0].shape).center.x() += 0.2;  // glides over many of the steps
   LiveSimulation live(scene, {.playing = false});
   std::vector<std::uint64_t> hashes = {live.state_hash()};
   for (int s = 1; s <= 64; ++s) {
@@ -255,6 +267,135 @@ TEST(Live, ThePastHasTheSameBitsWithAllChangesMadeInIt) {
   EXPECT_EQ(live.state_hash(), hash_after(scene, light, 12, 14));
   live.seek(12);
   EXPECT_EQ(live.state_hash(), hashes[12]);
+}
+
+TEST(Live, PinsComeAndGoWhileClothMovesWithTheSameBitsInThePast) {
+  const SceneDesc scene = small_scene();
+  SceneDesc pinned = scene;
+  pin_vertices(std::vector{0, 12}, {}, pinned.cloths[0]);
+  LiveSimulation live(scene, {.playing = false});
+  live.step(20);
+  wait_for_steps(live, 20);
+  live.change(pinned);
+  live.step(30);
+  LiveFrame frame = wait_for_steps(live, 50);
+  ASSERT_EQ((*frame.pins)[0].particles, (std::vector{0, 12}));
+  EXPECT_EQ((*frame.pins)[0].vertices, (PinnedVertices{{0, 12}}));
+  const float height = frame.meshes.cloths[0][1];
+  const std::uint64_t hung = live.state_hash();
+  live.change(scene);
+  live.step(30);
+  frame = wait_for_steps(live, 80);
+  EXPECT_TRUE((*frame.pins)[0].particles.empty());
+  EXPECT_LT(frame.meshes.cloths[0][1], height - 0.005f) << "it falls again";
+  EXPECT_TRUE(frame.status.keys_for_restart.empty());
+  live.seek(50);
+  EXPECT_EQ(live.state_hash(), hung);
+  live.seek(45);
+  frame = wait_for(live, [](const LiveFrame& f) { return f.status.steps == 45; });
+  EXPECT_EQ((*frame.pins)[0].particles.size(), 2u) << "the pins of that time";
+}
+
+TEST(Live, AGrabLeavesSoftPinsWhereTheyAre) {
+  SceneDesc scene = small_scene();
+  PinDesc& pin = scene.cloths[0].pins.emplace_back();
+  pin.select.emplace<ParticleIndices>().indices = {0, 12, 156, 168};
+  pin.stiffness = 500;
+  pin.damping = 1;
+  LiveSimulation live(scene, {.playing = false});
+  live.grab({.cloth = 0, .triangle = 144});
+  live.step(3);
+  wait_for_steps(live, 3);
+  live.release();
+  live.step(6 * 60);
+  const LiveFrame frame = wait_for_steps(live, 3 + 6 * 60);
+  const std::vector<float>& start = live.start().cloths[0].frames[0];
+  EXPECT_NEAR(frame.meshes.cloths[0][1], start[1], 0.05) << "a corner still hangs by its spring";
+}
+
+TEST(Live, InstrumentsChangeNoBits) {
+  const SceneDesc scene = small_scene();
+  LiveSimulation live(scene, {.playing = false});
+  live.measure({.color = ParticleValue::contact,
+                .contacts = true,
+                .yarns = true,
+                .probe = ClothPoint{.cloth = 0, .triangle = 144, .weights = {0.2, 0.7, 0.1}}});
+  live.step(240);
+  const LiveFrame frame = wait_for_steps(live, 240);
+  EXPECT_EQ(live.state_hash(), hash_after(scene, scene, 0, 240));
+  ASSERT_EQ(frame.meshes.values.size(), 1u);
+  EXPECT_EQ(frame.meshes.values[0].size(), 13u * 13);
+  EXPECT_FALSE(frame.contacts.empty()) << "the sheet lies on the ball";
+  EXPECT_GT(*std::ranges::max_element(frame.meshes.values[0]), 0);
+  EXPECT_TRUE(frame.yarns.empty()) << "a cloth of springs has no yarns";
+  ASSERT_TRUE(frame.probe.has_value());
+  EXPECT_EQ(frame.probe->particle, live.start().cloths[0].triangles[144][1]) << "the nearest corner";
+  EXPECT_GT(frame.probe->mass, 0);
+}
+
+TEST(Live, YarnsOfAFabricAreMeasuredAndWhatHasNoneSaysWhy) {
+  SceneDesc scene = small_scene("newton");
+  SceneDesc fabric = scene;
+  take_fabric(find_fabric_preset("cotton_shirting"), fabric.cloths[0]);
+  LiveSimulation live(fabric, {.playing = false});
+  live.measure({.yarns = true});
+  const LiveFrame frame = wait_for(live, [](const LiveFrame& f) { return !f.yarns.empty(); });
+  EXPECT_EQ(frame.yarns.size(), 2u * 12 * 12);
+  EXPECT_NEAR(frame.yarns[0].yarns.warp_strain(), 0, 1e-4) << "at rest, floats";
+
+  scene.cloths[0].shape =
+      MeshSource{.mesh = std::make_shared<weft::TriangleMesh>(weft::TriangleMesh{
+                     .positions = {{0, 1, 0}, {0.1, 1, 0}, {0, 1, 0.1}}, .triangles = {{0, 1, 2}}})};
+  LiveSimulation mesh(scene, {.playing = false});
+  mesh.measure({.color = ParticleValue::shear});
+  const LiveFrame none = wait_for(mesh, [](const LiveFrame& f) { return !f.no_color.empty(); });
+  EXPECT_NE(none.no_color.find("warp and weft"), std::string::npos) << none.no_color;
+  EXPECT_TRUE(none.meshes.values.empty());
+}
+
+TEST(Live, AMeshBodyIsDisplacedWhileClothMoves) {
+  SceneDesc scene = small_scene();
+  scene.colliders.push_back(
+      {.name = "tetrahedron",
+       .shape = PlacedMesh{.source = {.mesh = std::make_shared<weft::TriangleMesh>(weft::TriangleMesh{
+                                          .positions = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}},
+                                          .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}})},
+                           .position = {0.9, 0, 0}}});
+  SceneDesc moved = scene;
+  PlacedMesh& mesh = std::get<PlacedMesh>(moved.colliders.back().shape);
+  mesh.position = {0.9, 0.2, 0};
+  mesh.rotation_deg = {0, 45, 0};
+  LiveSimulation live(scene, {.playing = false});
+  live.step(2);
+  wait_for_steps(live, 2);
+  live.change(moved);
+  live.step(400);
+  const LiveFrame frame = wait_for_steps(live, 402);
+  EXPECT_EQ(frame.status.failure, "");
+  EXPECT_TRUE(frame.status.keys_for_restart.empty());
+  const AnimatedBody::Pose& pose = frame.meshes.poses.back();
+  const Vec3 corner =
+      pose.rotation * frame.start->bodies.back().vertex(0, frame.meshes.body_vertices.back()) +
+      pose.translation;
+  EXPECT_LT((corner - Vec3(0.9, 0.2, 0)).norm(), 1e-6);
+}
+
+TEST(Live, ProblemsHaveTheirCodesAndGoWithAReset) {
+  SceneDesc scene = small_scene("newton");
+  scene.steps_per_frame = 1;
+  scene.cloths[0].material.structural = 1;  // soft enough to be stretched by its weight
+  scene.colliders.clear();
+  pin_vertices(std::vector{0, 12}, {}, scene.cloths[0]);
+  LiveSimulation live(scene, {.playing = false});
+  live.step(60);
+  const LiveFrame frame = wait_for_steps(live, 60);
+  ASSERT_FALSE(frame.status.problems.empty());
+  const auto strained = std::ranges::find(frame.status.problems, WarningCode::yarn_strain, &RunProblem::code);
+  ASSERT_NE(strained, frame.status.problems.end());
+  EXPECT_GT(strained->frames, 5);
+  live.reset();
+  const LiveFrame fresh = wait_for(live, [](const LiveFrame& f) { return f.status.steps == 0; });
+  EXPECT_TRUE(fresh.status.problems.empty());
 }
 
 TEST(LiveHistory, KeepsTenSecondsAndAQuarterOfAGigabyte) {

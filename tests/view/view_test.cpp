@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/view/drop_source.h"
 #include "weft/render/camera.h"
 #include "weft/render/image.h"
 
@@ -155,7 +156,7 @@ class View : public testing::Test {
     until("the window is there", [&](const Json& j) { return j["controls"].contains(control); });
   }
 
-  /// Presses J until the window reports a wanted state.
+  /// Presses F12 until the window reports a wanted state.
   Json until(const std::string& what, const std::function<bool(const Json&)>& is_wanted) {
     const auto start = std::chrono::steady_clock::now();
     Json state;
@@ -164,7 +165,7 @@ class View : public testing::Test {
         ADD_FAILURE() << "the program has ended before " << what << ": " << words();
         return state;
       }
-      if (std::system("xdotool key j 2> /dev/null") != 0) break;
+      if (std::system("xdotool key F12 2> /dev/null") != 0) break;
       pause_for(30);
       std::ifstream in("view.json");
       const Json now = Json::parse(in, nullptr, false);
@@ -213,6 +214,7 @@ class View : public testing::Test {
     xdotool("mousedown 1");
     state();
     xdotool("mouseup 1");
+    state();
   }
 
   static void move(int x, int y) { xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y)); }
@@ -299,7 +301,7 @@ TEST_F(View, PausesStepsResetsAndSwitches) {
   xdotool("key s");
   until("there are two more steps", has_steps(steps + 2));
   xdotool("key Right");
-  until("there is a frame more", has_steps(steps + 8));
+  until("it is at the end of the frame", has_steps((steps + 2) / 6 * 6 + 6));
   xdotool("key i");
   until("the next integrator is in use",
         [](const Json& j) { return j["sides"][0]["integrator"] == "desbrun"; });
@@ -520,6 +522,262 @@ TEST_F(View, ShowsThePastAgain) {
   xdotool("key period");
   const Json other = until("other steps follow", [](const Json& j) { return j["sides"][0]["steps"] == 1; });
   EXPECT_EQ(other["sides"][0]["last_step"], 1);
+  close_by("q");
+}
+
+TEST_F(View, PinsAndUnpinsByClickAndByBox) {
+  open();
+  paused();
+  xdotool("key r");
+  const Json start = until("it is at the start", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  const Eigen::Vector2i at = pixel(camera(start), vector(start["sides"][0]["center"]));
+  const auto has_pins = [](int count) {
+    return [count](const Json& j) { return j["sides"][0]["instruments"]["pinned"] == count; };
+  };
+  const auto click_with = [&](const std::string& keys) {
+    move(at.x(), at.y());
+    for (const char* key : {"keydown", "keyup"}) {
+      xdotool(std::string(key) + " " + keys);
+      if (std::string(key) == "keydown") xdotool("click 1");
+    }
+  };
+  click_with("ctrl");
+  until("a particle is pinned", has_pins(1));
+  click_with("ctrl");
+  until("it is free again", has_pins(0));
+  const auto select = [&](const std::string& keys) {
+    xdotool("keydown " + keys);
+    drag("1", 730, 470, 330, 20);  // beside the panel, from below the cloth
+    xdotool("keyup " + keys);
+  };
+  select("ctrl");
+  const Json boxed = until("the particles in the box are pinned",
+                           [](const Json& j) { return j["sides"][0]["instruments"]["pinned"] > 20; });
+  EXPECT_EQ(boxed["camera"], start["camera"]);
+  EXPECT_EQ(boxed["look"]["pins"], true) << "pins are shown from the first one on";
+  xdotool("keydown ctrl");
+  select("shift");
+  xdotool("keyup ctrl");
+  until("they are free", has_pins(0));
+  xdotool("key ctrl+z");
+  until("they are pinned again", has_pins(boxed["sides"][0]["instruments"]["pinned"]));
+  close_by("q", true);
+}
+
+TEST_F(View, ShowsColoursContactsReadingsAndTheChecker) {
+  open();
+  until("it lies on the ball", [](const Json& j) { return j["sides"][0]["time"] > 0.8; });
+  paused();
+  const auto instrument = [](const Json& j, const std::string& name) {
+    return j["sides"][0]["instruments"][name];
+  };
+  xdotool("key 5");
+  const Json pressed = until("the pressure of contacts is measured", [&](const Json& j) {
+    return j["look"]["color"] == "contact" && j["controls"].contains("legend");
+  });
+  xdotool("key f");
+  xdotool("key period");
+  const Json touching =
+      until("forces of contacts are shown", [&](const Json& j) { return instrument(j, "contacts") > 0; });
+  EXPECT_GT(instrument(touching, "largest_value"), 0);
+  EXPECT_GE(touching["scales"]["color"].get<double>(), instrument(touching, "largest_value").get<double>());
+  for (const auto& [key, name] :
+       {std::pair("2", "strain"), std::pair("3", "shear"), std::pair("4", "speed")}) {
+    xdotool(std::string("key ") + key);
+    until("the colour is another", [&](const Json& j) { return j["look"]["color"] == name; });
+  }
+  const Eigen::Vector2i at = pixel(camera(pressed), vector(pressed["sides"][0]["center"]) + Vec3(0, 0.1, 0));
+  move(at.x(), at.y());
+  xdotool("click 3");
+  const Json probed = until("it is read", [&](const Json& j) { return !instrument(j, "probe").is_null(); });
+  EXPECT_EQ(probed["camera"], pressed["camera"]) << "a click does not turn the view";
+  xdotool("key k");
+  until("the checker has checked", [&](const Json& j) { return instrument(j, "crossings") == 0; });
+  xdotool("key 1");
+  until("the fabric is back",
+        [](const Json& j) { return j["look"]["color"].is_null() && !j["controls"].contains("legend"); });
+  close_by("q");
+}
+
+TEST_F(View, MovesThrowsAddsAndRemovesBodies) {
+  open({}, {1280, 720});
+  paused();
+  xdotool("key r");
+  const Json start = until("it is at the start", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  const auto ball = [](const Json& j) { return vector(j["sides"][0]["instruments"]["bodies"][0]); };
+  const Vec3 place = ball(start);
+  const auto on_screen = [&](const Vec3& point) {
+    const auto at = camera(start).pixel(point, {1280, 720});
+    return Eigen::Vector2i(static_cast<int>(at->x()), static_cast<int>(at->y()));
+  };
+  const Eigen::Vector2i at = on_screen(place - Vec3(0, 0.1, 0));
+  drag("1", at.x(), at.y(), at.x() + 90, at.y());
+  const Json moved = until("the scene is changed", [](const Json& j) { return j["changed"] == true; });
+  EXPECT_EQ(moved["touched"], "ball");
+  EXPECT_EQ(moved["camera"], start["camera"]);
+  EXPECT_LT((ball(moved) - place).norm(), 1e-6) << "it waits for the next step";
+  EXPECT_EQ(moved["throwing"], false) << "nothing flies while it is paused";
+  xdotool("key Right");
+  until("it glides", [&](const Json& j) { return (ball(j) - place).norm() > 0.02; });
+  xdotool("key ctrl+z");
+  until("it is not changed", [](const Json& j) { return j["changed"] == false; });
+  xdotool("key space");
+  until("it has gone back", [&](const Json& j) { return (ball(j) - place).norm() < 1e-3; });
+  // A slow machine may see a throw as a move: until it flies.
+  bool has_flown = false;
+  for (int k = 0; k < 20 && !has_flown; ++k) {
+    const Eigen::Vector2i now = on_screen(ball(state()) - Vec3(0, 0.1, 0));
+    move(now.x(), now.y());
+    xdotool("mousedown 1");
+    until("the ball is held", [](const Json& j) { return j["touched"] == "ball"; });
+    for (int step = 1; step <= 4; ++step) move(now.x() + 15 * step, now.y() - 8 * step);
+    xdotool("mouseup 1");
+    has_flown = state()["throwing"] == true;
+  }
+  EXPECT_TRUE(has_flown);
+  until("it has landed", [](const Json& j) { return j["throwing"] == false; });
+  paused();
+  xdotool("key Delete");
+  until("there is no ball", [](const Json& j) { return j["bodies"].empty(); });
+  xdotool("key n");
+  until("numbers are shown", [](const Json& j) { return j["controls"].contains("+ capsule"); });
+  click("+ capsule");
+  until("there is a capsule", [](const Json& j) { return j["bodies"] == Json{"capsule"}; });
+  move(640, 600);
+  xdotool("key ctrl+z");
+  until("there is none", [](const Json& j) { return j["bodies"].empty(); });
+  close_by("q", true);
+}
+
+TEST_F(View, DrawsTheWindAsAnArrow) {
+  open();
+  paused();
+  xdotool("key w");
+  const Json shown =
+      until("the arrow is there", [](const Json& j) { return j["controls"].contains("wind tip 0"); });
+  const Json& tip = shown["controls"]["wind tip 0"];
+  const int x = tip[0].get<int>() + 1, y = tip[1].get<int>() + 1;
+  drag("1", x, y, x + 60, y);
+  const Json blown = until(
+      "the wind blows", [](const Json& j) { return vector(j["sides"][0]["wind"]["velocity"]).norm() > 1; });
+  EXPECT_GT(vector(blown["sides"][0]["wind"]["velocity"]).dot(camera(blown).right()), 1) << "to the right";
+  EXPECT_EQ(blown["camera"], shown["camera"]);
+  close_by("q", true);
+}
+
+TEST_F(View, RecordsFramesByTheirNumbersAndAnAnimation) {
+  enter_folder();
+  start({WEFT_PROGRAM, "view", "drape_sphere", "--report", "view.json", "--size", "1280x720", "--set",
+         "cloth[0].grid.cells=[12, 12]", "--set", "scene.duration=0.1"},
+        "wind x");
+  paused();
+  xdotool("key r");
+  xdotool("key v");
+  until("the recorder is shown", [](const Json& j) { return j["controls"].contains("record file"); });
+  const auto type = [&](const std::string& control, const std::string& words) {
+    click(control);
+    until("the field has the keyboard", [](const Json& j) { return j["typing"] == true; });
+    xdotool("key ctrl+a");
+    state();
+    xdotool("type --delay 1 " + words);
+    state();
+    xdotool("key Return");
+    until("the field is left", [](const Json& j) { return j["typing"] == false; });
+    move(640, 600);
+    state();
+  };
+  type("record file", "'f_##.png'");
+  type("record size", "160x90");
+  click("record");
+  move(640, 600);
+  const Json done = until("it is recorded", [](const Json& j) { return j["message"] == "written f_##.png"; });
+  EXPECT_EQ(done["sides"][0]["frames"], 6);
+  for (int frame = 0; frame <= 6; ++frame) {
+    const Image image = read_png("f_0" + std::to_string(frame) + ".png");
+    EXPECT_EQ(image.width, 160);
+    EXPECT_EQ(image.height, 90);
+  }
+  EXPECT_FALSE(fs::exists("f_07.png"));
+  // The command in its first lines draws the same.
+  std::ifstream in("f_##.png.toml");
+  std::string line, command;
+  while (std::getline(in, line) && !line.empty()) {
+    if (line.starts_with("#   weft ")) command = line.substr(9);
+  }
+  fs::rename("f_06.png", "recorded.png");
+  ASSERT_EQ(std::system(("'" WEFT_PROGRAM "' " + command + " > drawn.txt 2>&1").c_str()), 0) << command;
+  const Image ours = read_png("recorded.png"), theirs = read_png("f_06.png");
+  double difference = 0;
+  for (std::size_t k = 0; k < ours.rgba.size(); ++k) difference += std::abs(ours.rgba[k] - theirs.rgba[k]);
+  EXPECT_LT(difference / static_cast<double>(ours.rgba.size()), 2);
+
+  type("record file", "run.glb");
+  click("record");
+  move(640, 600);
+  until("it is recorded", [](const Json& j) { return j["message"] == "written run.glb"; });
+  EXPECT_EQ(std::system("'" WEFT_PROGRAM "' verify run.glb > verified.txt 2>&1"), 0);
+  type("record file", "none.bmp");
+  click("record");
+  move(640, 600);
+  until("it says what it records", [](const Json& j) {
+    return j["message"].get<std::string>().find("record to a .mp4") == 0 && j["recording"].is_null();
+  });
+  xdotool("key r");
+  until("it is at the start", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  close_by("q");
+}
+
+TEST_F(View, ARecordingIsCancelled) {
+  open({"--set", "scene.duration=20"}, {1280, 720});
+  xdotool("key v");
+  until("the recorder is shown", [](const Json& j) { return j["controls"].contains("record"); });
+  click("record");
+  until("it records", [](const Json& j) { return j["recording"] > 0; });
+  move(640, 600);
+  xdotool("key space");
+  until("it refuses to play", [](const Json& j) {
+    return j["message"].get<std::string>().find("finish or cancel it first") != std::string::npos;
+  });
+  click("record cancel");
+  until("it is cancelled", [](const Json& j) { return j["recording"].is_null(); });
+  EXPECT_FALSE(fs::exists("fig6_ball.mp4"));
+  close_by("q");
+}
+
+TEST_F(View, ComparesTwoFabrics) {
+  open({"--set", "solver.integrator=newton", "--set", "solver.steps_per_frame=1", "--compare", "denim,silk"});
+  until("they fall apart", [](const Json& j) {
+    return j["sides"].size() == 2 && j["sides"][1]["time"] > 0.6 &&
+           j["sides"][0]["center"] != j["sides"][1]["center"];
+  });
+  close_by("q");
+  const int status =
+      std::system("'" WEFT_PROGRAM "' view paper/fig6_ball --compare denim,slik > words.txt 2>&1");
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_NE(words().find("no integrator has the name \"slik\""), std::string::npos) << words();
+}
+
+TEST_F(View, OpensWhatIsDroppedOnIt) {
+  enter_folder();
+  std::ofstream("triangle.obj") << "v 0 1 0\nv 0.4 1 0\nv 0 1 0.4\nf 1 2 3\n";
+  std::ofstream("broken.toml") << "[scene]\nformat = 1\nfsp = 60\n";
+  ASSERT_EQ(
+      WEXITSTATUS(std::system("'" WEFT_PROGRAM "' run paper/fig6_ball --set 'cloth[0].grid.cells=[12, 12]' "
+                              "--frames 4 --out run > run.txt 2>&1")),
+      0);
+  start({WEFT_PROGRAM, "view", "--report", "view.json", "--size", "760x480"}, "path");
+  const auto drop = [](const std::string& file) { return drop_file(fs::absolute(file).string(), 400, 300); };
+  ASSERT_TRUE(drop(std::string(WEFT_SCENES) + "/flag.toml"));
+  until("the scene is shown", [](const Json& j) { return j["scene"] == "flag" && j["gallery"] == false; });
+  ASSERT_TRUE(drop("broken.toml"));
+  const Json broken = until("its mistake is shown", [](const Json& j) {
+    return j["message"].get<std::string>().find("fsp") != std::string::npos;
+  });
+  EXPECT_EQ(broken["scene"], "flag") << "what was there stays";
+  ASSERT_TRUE(drop("triangle.obj"));
+  until("the mesh is cloth", [](const Json& j) { return j["scene"] == "triangle"; });
+  ASSERT_TRUE(drop("run/animation.glb"));
+  until("the run is shown", [](const Json& j) { return j["sides"][0].contains("loops"); });
   close_by("q");
 }
 

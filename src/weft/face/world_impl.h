@@ -1,6 +1,7 @@
 #pragma once
 /// Private to face/: the implementation of the public World.
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,6 +58,10 @@ struct Snapshot::Data {
 struct WorldAccess {
   static engine::World& engine(World& world) { return world.impl_->world; }
   static const engine::World& engine(const World& world) { return world.impl_->world; }
+  static std::size_t num_soft_pins(const World& world, ClothId cloth) {
+    const std::vector<char>& is_soft = world.impl_->at(cloth).is_soft;
+    return static_cast<std::size_t>(std::count(is_soft.begin(), is_soft.end(), 1));
+  }
   static const engine::RestShape& rest(const World& world, ClothId cloth) {
     return world.impl_->at(cloth).rest;
   }

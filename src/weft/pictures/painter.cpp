@@ -21,15 +21,6 @@ PaintSettings complete(PaintSettings settings, FrameSource& source) {
   return settings;
 }
 
-/// "frame_####.png" as "frame_0012.png".
-fs::path numbered(const fs::path& file, int frame) {
-  std::string name = file.filename().string(), digits = std::to_string(frame);
-  const std::size_t begin = name.find('#'), end = name.find_first_not_of('#', begin);
-  const std::size_t width = (end == std::string::npos ? name.size() : end) - begin;
-  if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
-  return file.parent_path() / name.replace(begin, width, digits);
-}
-
 }  // namespace
 
 void require_picture(const fs::path& file) {
@@ -47,6 +38,14 @@ void require_frames(const std::vector<int>& frames, int last) {
 
 bool is_sequence(const fs::path& file) {
   return is_picture(file) && file.filename().string().find('#') != std::string::npos;
+}
+
+fs::path numbered_picture(const fs::path& file, int frame) {
+  std::string name = file.filename().string(), digits = std::to_string(frame);
+  const std::size_t begin = name.find('#'), end = name.find_first_not_of('#', begin);
+  const std::size_t width = (end == std::string::npos ? name.size() : end) - begin;
+  if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+  return file.parent_path() / name.replace(begin, width, digits);
 }
 
 Painter::Painter(FrameSource& frames, const PaintSettings& settings, std::unique_ptr<Device> device)
@@ -101,7 +100,7 @@ void Painter::write_sequence(const fs::path& file, int every, const GoOn& go_on)
   const std::vector<int> frames = this->every(every);
   const Camera camera = frame(frames);
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    write_image(numbered(file, frames[k]), draw(frames[k], camera));
+    write_image(numbered_picture(file, frames[k]), draw(frames[k], camera));
     if (go_on && !go_on(static_cast<int>(k + 1), static_cast<int>(frames.size()))) break;
   }
 }

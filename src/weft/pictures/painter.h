@@ -33,6 +33,9 @@ void require_frames(const std::vector<int>& frames, int last);
 /// Whether the file's name has places for a frame's number, as in "frame_####.png".
 bool is_sequence(const std::filesystem::path& file);
 
+/// The file of a frame: "frame_0012.png" for "frame_####.png".
+std::filesystem::path numbered_picture(const std::filesystem::path& file, int frame);
+
 /// Draws frames of an animation, which must outlive this, one after the other. All frames of one file share a
 /// camera, which shows everything in them.
 class Painter {

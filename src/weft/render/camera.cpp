@@ -58,6 +58,15 @@ Ray Camera::ray(double x, double y, PictureSize size) const {
   return {eye(), (forward() + across * right() + upwards * up()).normalized()};
 }
 
+std::optional<Eigen::Vector2d> Camera::pixel(const Vec3& point, PictureSize size) const {
+  const Vec3 from_eye = point - eye();
+  const double depth = from_eye.dot(forward()), half = half_height(fov_deg);
+  if (!(depth > 1e-6 * distance)) return std::nullopt;
+  const double across = from_eye.dot(right()) / (depth * half * size.aspect()),
+               upwards = from_eye.dot(up()) / (depth * half);
+  return Eigen::Vector2d((1 + across) / 2 * size.width, (1 - upwards) / 2 * size.height);
+}
+
 void Camera::orbit(double azimuth, double elevation) {
   azimuth_deg = std::remainder(azimuth_deg + azimuth, 360);
   elevation_deg = std::clamp(elevation_deg + elevation, -kMaxElevation, kMaxElevation);

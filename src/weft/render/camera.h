@@ -1,6 +1,7 @@
 #pragma once
 /// Camera of a picture.
 
+#include <optional>
 #include <vector>
 
 #include "weft/core/vec.h"
@@ -44,6 +45,9 @@ struct Camera {
 
   /// Ray through a position in pixels; (0, 0) is the upper left corner of the picture.
   Ray ray(double x, double y, PictureSize size) const;
+
+  /// The position of a point in the picture [pixels]; empty: it is behind the eye.
+  std::optional<Eigen::Vector2d> pixel(const Vec3& point, PictureSize size) const;
 
   /// Mouse control. Angles in degrees; `pan` moves the target by shares of the picture's height.
   void orbit(double azimuth_deg, double elevation_deg);

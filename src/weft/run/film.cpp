@@ -127,6 +127,7 @@ FilmSpool::FilmSpool(const std::filesystem::path& target, std::optional<Particle
 
 void FilmSpool::begin(SceneRun& run, RunReport& report) {
   meshes_ = make_animation(run.scene(), run.world());
+  if (value_ == ParticleValue::contact) run.world().track_contacts(true);
   add_frame(run, report);
 }
 
@@ -134,7 +135,7 @@ void FilmSpool::add_frame(const SceneRun& run, RunReport&) {
   const World& world = run.world();
   AnimationFrame frame = capture_frame(world);
   for (int c = 0; value_ && c < world.num_cloths(); ++c)
-    frame.values.push_back(compute_values(*value_, world.model(world.cloth(c)), world.state(world.cloth(c))));
+    frame.values.push_back(compute_values(*value_, world, world.cloth(c)));
   frames_.append(std::move(frame));
 }
 

@@ -173,6 +173,22 @@ FrameToCheck WorldFrames::at(double time) const {
   return result;
 }
 
+FrameFindings check_frame(const Animation& meshes, const AnimationFrame& frame, int num_places) {
+  const FrameToCheck checked = AnimationFrames(meshes).at(frame);
+  const verify::FrameCheck check = verify::check_frame(checked.frame, num_places);
+  FrameFindings findings{.intersections = check.intersections,
+                         .sentences = verify::describe_by_surfaces(checked.frame, check.first)};
+  for (const verify::Crossing& crossing : check.first) {
+    const verify::NamedCloth& cloth = checked.frame.cloths[crossing.a.surface];
+    const Triangle& t = cloth.triangles[crossing.a.triangle];
+    findings.places.push_back((cloth.positions[t[0]] + cloth.positions[t[1]] + cloth.positions[t[2]]) / 3);
+  }
+  if (!check.deepest) return findings;
+  findings.penetration = check.penetration();
+  findings.deepest = verify::describe(checked.frame, *check.deepest);
+  return findings;
+}
+
 AnimationCheck check_animation(FrameSource& animation, const AnimationCheckOptions& options) {
   const AnimationFrames frames(animation.meshes());
   AnimationCheck sum;

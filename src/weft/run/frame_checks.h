@@ -37,6 +37,18 @@ class WorldFrames {
   std::vector<char> is_closed_;  // (colliders) meshes with an inside
 };
 
+/// Results of the checker for one frame.
+struct FrameFindings {
+  int intersections = 0;               // crossing pairs of triangles [1]
+  std::vector<Vec3> places;            // centres of the first crossing triangles of cloth [m]
+  std::vector<std::string> sentences;  // `cloth "sheet" triangle 7 crosses its triangle 120 …`
+  std::optional<double> penetration;   // depth of cloth in colliders; empty: none has an inside [m]
+  std::string deepest;                 // `cloth "sheet" triangle 7 in collider "ball"`; "nowhere"
+};
+
+/// `num_places`: the most that are listed [1].
+FrameFindings check_frame(const Animation& meshes, const AnimationFrame& frame, int num_places);
+
 /// Results of the checker for an animation. Frame 0 is the start.
 ///
 /// Between frames the checker assumes straight paths (verify/passages.h), which real paths are not. A passage

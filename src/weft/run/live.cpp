@@ -4,6 +4,7 @@
 #include <future>
 
 #include "weft/error.h"
+#include "weft/face/world_impl.h"
 #include "weft/run/reach.h"
 #include "weft/run/report.h"
 #include "weft/run/warnings.h"
@@ -13,12 +14,10 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kPatience = 0.05;           // maximum delay to real time before slow motion [s]
-constexpr double kWindow = 1;                // for measuring the pace [s]
-constexpr double kSlow = 0.95;               // of real time: a lower pace is too heavy [1]
-constexpr std::size_t kSteps = 512;          // in medians
-constexpr std::size_t kMaxStepWarnings = 4;  // maximum number reported
-
+constexpr double kPatience = 0.05;         // maximum delay to real time before slow motion [s]
+constexpr double kWindow = 1;              // for measuring the pace [s]
+constexpr double kSlow = 0.95;             // of real time: a lower pace is too heavy [1]
+constexpr std::size_t kSteps = 512;        // in medians
 constexpr double kSlowest = 0.01;          // speed of play [1]
 constexpr std::size_t kMaxSamples = 4096;  // that wait to be taken [1]
 
@@ -47,7 +46,8 @@ LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
   reach_ = find_reach(world());
   start_ = make_animation(start_scene_, world());
   append_frame(capture_frame(world()), start_);
-  meshes_ = std::make_shared<const Animation>(start_);
+  show_world();
+  clear_problems();
   status_.playing = settings.playing;
   status_.integrator = start_scene_.solver.integrator;
   status_.model = name_of_model(start_scene_);
@@ -104,6 +104,14 @@ void LiveSimulation::step(int count) {
   });
 }
 
+void LiveSimulation::step_frame() {
+  post([this] {
+    status_.playing = false;
+    const int steps = scene_now().steps_per_frame;
+    steps_to_make_ = steps - static_cast<int>(status_.steps % steps);
+  });
+}
+
 void LiveSimulation::reset() {
   post([this] {
     held_.reset();
@@ -118,7 +126,8 @@ void LiveSimulation::reset() {
     history_.clear();
     status_.steps = status_.frames = last_step_ = 0;
     status_.failure.clear();
-    status_.step_warnings.clear();
+    clear_problems();
+    find_pins();
     status_.keys_for_restart.clear();
     is_paced_ = false;
     check_solver();
@@ -172,6 +181,13 @@ void LiveSimulation::seek(std::int64_t steps) {
   });
 }
 
+void LiveSimulation::measure(const LiveInstruments& instruments) {
+  post([this, instruments] {
+    instruments_ = instruments;
+    world().track_contacts(instruments_.tracks_contacts());
+  });
+}
+
 void LiveSimulation::grab(const ClothPoint& point) {
   post_change([this, point] {
     held_ = point;
@@ -181,7 +197,9 @@ void LiveSimulation::grab(const ClothPoint& point) {
 
 void LiveSimulation::move_grab(const Vec3& target) {
   post_change([this, target] {
-    if (held_) world().set_attachment_target(world().cloth(held_->cloth), 0, target);
+    if (!held_) return;
+    const ClothId cloth = world().cloth(held_->cloth);
+    world().set_attachment_target(cloth, static_cast<int>(world().attachments(cloth).size()) - 1, target);
   });
 }
 
@@ -257,7 +275,7 @@ bool LiveSimulation::take_step() {
   leave_past();
   if (history_.wants(status_.steps)) remember();
   const Clock::time_point start = Clock::now();
-  const StepReport report = run_->step();
+  const StepReport report = make_step();
   step_ms_.push_back(1000 * seconds(Clock::now() - start));
   if (step_ms_.size() > kSteps) step_ms_.pop_front();
   status_.wind = world().wind();
@@ -265,6 +283,11 @@ bool LiveSimulation::take_step() {
   last_step_ = status_.steps;
   if (report.ok) sample(report);
   return report.ok;
+}
+
+StepReport LiveSimulation::make_step() {
+  glide_colliders(scene_now(), scene_now().step_length(), run_->public_world());
+  return run_->step();
 }
 
 /// Before the next step.
@@ -286,9 +309,10 @@ void LiveSimulation::show_past(std::int64_t steps) {
   held_ = from.held;
   for (status_.steps = from.steps; status_.steps < steps; ++status_.steps) {
     history_.repeat_changes(status_.steps);
-    if (!run_->step().ok) break;
+    if (!make_step().ok) break;
   }
   wanted_ = wanted;
+  find_pins();
   status_.frames = status_.steps / scene_now().steps_per_frame;
   status_.integrator = scene_now().solver.integrator;
   status_.wind = world().wind();
@@ -329,6 +353,7 @@ void LiveSimulation::measure_frame() {
     const ClothId cloth = world().cloth(c);
     last.strain = std::max(last.strain, compute_yarn_strain(world().model(cloth), world().state(cloth)).max);
   }
+  if (is_between_frames()) problems_->add_frame(last.energies.total());
 }
 
 void LiveSimulation::report_step(const StepReport& report) {
@@ -336,21 +361,14 @@ void LiveSimulation::report_step(const StepReport& report) {
   status_.iterations = report.iterations;
   status_.failure.clear();
   status_.divisions = report.divisions;
-  for (const StepWarning& warning : report.warnings) {
-    const std::string message = describe(world(), warning);
-    if (!report.ok) {
-      status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + message;
-      continue;
-    }
-    std::vector<std::string>& listed = status_.step_warnings;
-    if (std::find(listed.begin(), listed.end(), message) != listed.end()) continue;
-    if (listed.size() == kMaxStepWarnings) listed.erase(listed.begin());
-    listed.push_back(message);
-  }
   if (report.ok) {
+    problems_->add_step(report);
     ++status_.steps;
     return;
   }
+  for (const StepWarning& warning : report.warnings)
+    status_.failure = "step " + std::to_string(status_.steps + 1) + ", " + to_string(warning.code) + ": " +
+                      describe(world(), warning);
   status_.playing = false;
   steps_to_make_ = 0;
 }
@@ -387,8 +405,10 @@ void LiveSimulation::apply(const SceneDesc& wanted) {
   if (!(with_model == scene_now())) rebuild(std::move(with_model), true);
   if (has_new_bodies) {
     history_.clear();
-    meshes_ = std::make_shared<const Animation>(make_animation(scene_now(), world()));
+    show_world();
   }
+  clear_problems();
+  find_pins();
   status_.keys_for_restart = find_keys_for_restart(scene_now(), wanted);
   status_.integrator = scene_now().solver.integrator;
   status_.wind = world().wind();
@@ -405,7 +425,9 @@ void LiveSimulation::rebuild(SceneDesc scene, bool keeps_state) {
   snapshot_ = run_->public_world().snapshot();
   if (now) world().restore(*now);
   history_.clear();
-  meshes_ = std::make_shared<const Animation>(make_animation(built_, world()));
+  show_world();
+  clear_problems();
+  world().track_contacts(instruments_.tracks_contacts());
   hold();
   status_.model = name_of_model(built_);
   status_.integrator = built_.solver.integrator;
@@ -417,23 +439,48 @@ void LiveSimulation::rebuild(SceneDesc scene, bool keeps_state) {
 void LiveSimulation::check_solver() {
   status_.warnings = check_paper(scene_now().solver, scene_now().step_length(), world());
   status_.failure.clear();
-  status_.step_warnings.clear();
+  clear_problems();
   step_ms_.clear();
   is_paced_ = false;
 }
 
-/// Grabs `held_` at its current position; releases all other grabs.
+/// Grabs `held_` at its current position; releases all other grabs. Soft pins, which come before a grab, stay.
 void LiveSimulation::hold() {
   World& held = world();
-  for (int c = 0; c < held.num_cloths(); ++c) held.set_attachments(held.cloth(c), {});
-  if (!held_) return;
-  const ClothId cloth = held.cloth(held_->cloth);
-  held.set_attachments(
-      cloth, {make_attachment(held.model(cloth), held.state(cloth), held_->triangle, held_->weights)});
+  for (int c = 0; c < held.num_cloths(); ++c) {
+    const ClothId cloth = held.cloth(c);
+    std::vector<Attachment> attachments = held.attachments(cloth);
+    attachments.resize(WorldAccess::num_soft_pins(run_->public_world(), cloth));
+    if (held_ && held_->cloth == c)
+      attachments.push_back(
+          make_attachment(held.model(cloth), held.state(cloth), held_->triangle, held_->weights));
+    held.set_attachments(cloth, std::move(attachments));
+  }
 }
+
+/// Meshes and seams, after a change of bodies.
+void LiveSimulation::show_world() {
+  meshes_ = std::make_shared<const Animation>(make_animation(scene_now(), world()));
+  seams_ = std::make_shared<const std::vector<SeamEdges>>(find_seams(run_->public_world()));
+  pins_.reset();
+  find_pins();
+}
+
+/// Again only after changes: a selection may need the mesh's file.
+void LiveSimulation::find_pins() {
+  std::vector<std::vector<PinDesc>> now;
+  for (const ClothSceneDesc& cloth : scene_now().cloths) now.push_back(cloth.pins);
+  if (pins_ && now == found_pins_) return;
+  found_pins_ = std::move(now);
+  pins_ = std::make_shared<const std::vector<LivePins>>(
+      weft::engine::find_pins(scene_now(), run_->public_world()));
+}
+
+void LiveSimulation::clear_problems() { problems_.emplace(world()); }
 
 LiveStatus LiveSimulation::measure() const {
   LiveStatus status = status_;
+  status.problems = problems_->problems();
   status.time = world().time();
   status.first_step = history_.is_empty() ? status.steps : history_.first();
   status.last_step = last_step_;
@@ -467,6 +514,9 @@ void LiveSimulation::publish() {
   next_.topologies.clear();
   for (int c = 0; c < world().num_cloths(); ++c)
     next_.topologies.push_back(world().model(world().cloth(c)).topology);
+  next_.seams = seams_;
+  next_.pins = pins_;
+  read_instruments(world(), instruments_, *pins_, next_);
   const std::lock_guard lock(frame_mutex_);
   // A frame that nobody has taken leaves its samples to this one.
   if (is_fresh_) next_.samples.insert(next_.samples.begin(), frame_.samples.begin(), frame_.samples.end());

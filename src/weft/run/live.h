@@ -21,6 +21,7 @@
 
 #include "weft/run/film.h"
 #include "weft/run/live_history.h"
+#include "weft/run/live_instruments.h"
 #include "weft/run/live_values.h"
 #include "weft/run/scene_run.h"
 
@@ -45,19 +46,22 @@ class LiveSimulation {
   void play();
   void pause();
   void step(int count = 1);  // pauses, then makes `count` steps without pacing
+  void step_frame();         // likewise, to the end of the frame of the scene
   void reset();              // restarts with all changes; releases the grab
   /// Throws InputError for an unknown name. An integrator that supports springs only is refused, with a
   /// warning, if a cloth has a fabric.
   void set_integrator(const std::string& name);
   void set_model(SpringModel model);  // of cloths that are grids; positions are kept
   /// Takes what another scene changes (scene_changes.h); the rest waits for reset(), see
-  /// LiveStatus::keys_for_restart. A scene with invalid numbers is refused, with a failure.
+  /// LiveStatus::keys_for_restart. A scene with invalid numbers is refused, with a failure. Displaced colliders
+  /// glide to their places, see glide_colliders().
   void change(SceneDesc wanted);
   void set_speed(double speed);  // of play, as a share of real time, in (0, 1] [1]
 
   /// Shows the state after so many steps, of the last ten seconds, and pauses: the same bits as then. Steps
   /// from there take the newest change(), and those after it are forgotten.
   void seek(std::int64_t steps);
+  void measure(const LiveInstruments& instruments);
   void grab(const ClothPoint& point);  // replaces the current grab
   void move_grab(const Vec3& target);  // sets the target of the grab [m]
   void release();
@@ -89,11 +93,15 @@ class LiveSimulation {
   void leave_past();
   void remember();
   void sample(const StepReport& report);
+  void show_world();
+  void find_pins();
+  void clear_problems();
   void measure_frame();
   bool run_commands();
   void run();
   bool is_between_frames() const;
   bool take_step();
+  StepReport make_step();
   void report_step(const StepReport& report);
   void start_pace();
   void end_frame();
@@ -116,7 +124,12 @@ class LiveSimulation {
   weft::Snapshot snapshot_;  // of the start
   LiveHistory history_;
   std::int64_t last_step_ = 0;  // made; more than status_.steps while the past is shown
+  LiveInstruments instruments_;
+  std::optional<ProblemFinder> problems_;
   std::shared_ptr<const Animation> meshes_;
+  std::shared_ptr<const std::vector<SeamEdges>> seams_;
+  std::vector<std::vector<PinDesc>> found_pins_;  // (num_cloths) of pins_
+  std::shared_ptr<const std::vector<LivePins>> pins_;
   std::shared_ptr<const SceneDesc> moment_scene_;  // of the last moment
   LiveStatus status_;
   int steps_to_make_ = 0;

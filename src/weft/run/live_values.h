@@ -1,6 +1,7 @@
 #pragma once
 /// Inputs and results of a live simulation.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +12,9 @@
 #include "weft/io/animation.h"
 #include "weft/model/cloth_model.h"
 #include "weft/report.h"
+#include "weft/run/problems.h"
+#include "weft/scene/pin_edits.h"
+#include "weft/world/particle_values.h"
 
 namespace weft::engine {
 
@@ -23,7 +27,54 @@ struct LiveSettings {
 struct ClothPoint {
   int cloth = 0, triangle = 0;
   Vec3 weights = Vec3::Constant(1.0 / 3);  // [1]
+  bool operator==(const ClothPoint&) const = default;
 };
+
+/// What is measured for the display, besides the status. The motion is the same with all of it.
+struct LiveInstruments {
+  std::optional<ParticleValue> color;  // of LiveFrame::meshes
+  bool contacts = false;               // LiveFrame::contacts; their tracking costs some percent of a step
+  bool yarns = false;                  // LiveFrame::yarns
+  std::optional<ClothPoint> probe;     // LiveFrame::probe
+
+  bool tracks_contacts() const { return contacts || probe || color == ParticleValue::contact; }
+  bool operator==(const LiveInstruments&) const = default;
+};
+
+/// A contact of the last step.
+struct ContactForce {
+  Vec3 position;  // [m]
+  Vec3 force;     // on the cloth [N]
+};
+
+/// A triangle's warp and weft.
+struct YarnCross {
+  Vec3 position;  // of its centre [m]
+  Yarns yarns;
+  double size = 0;  // of the triangle: square root of its area [m]
+};
+
+/// Measurements at a point of a cloth, and at its nearest particle.
+struct ProbeReading {
+  std::string cloth;
+  int triangle = 0, particle = 0;
+  Vec3 point = Vec3::Zero();     // [m]
+  Vec3 velocity = Vec3::Zero();  // of the particle [m/s]
+  std::optional<Yarns> yarns;    // of the triangle; empty: cloth of springs
+  Vec3 contact = Vec3::Zero();   // force of contacts on the particle, in the last step [N]
+  double mass = 0;               // of the particle [kg]
+  bool is_pinned = false;        // the particle
+};
+
+/// Pins of a cloth.
+struct LivePins {
+  std::vector<int> vertex_of_particle;  // numbered as ParticleIndices does
+  PinnedVertices vertices;              // by the pins of the scene that is simulated
+  std::vector<int> particles;           // of all pins
+};
+
+/// Edges of a cloth's seams: the triangles at them have different texture coordinates there.
+using SeamEdges = std::vector<std::array<int, 2>>;
 
 /// Status of a live simulation.
 struct LiveStatus {
@@ -42,10 +93,10 @@ struct LiveStatus {
   double simulated_per_second = 0;  // likewise; 1: real time [1]
   bool too_heavy = false;           // for real time: slow motion
 
-  std::vector<std::string> warnings;       // of integrator and springs that do not fit each other
-  std::string failure;                     // of the last step, as text; empty: none. A failed step pauses
-  std::vector<std::string> step_warnings;  // warnings of the last steps, as text
-  std::optional<Vec3> held;                // position of the grabbed point [m]
+  std::vector<std::string> warnings;  // of integrator and springs that do not fit each other
+  std::string failure;                // of the last step, as text; empty: none. A failed step pauses
+  std::vector<RunProblem> problems;   // since the start, a reset or a change of the scene
+  std::optional<Vec3> held;           // position of the grabbed point [m]
 
   std::vector<std::string> keys_for_restart;   // that were changed, and need reset() [scene_changes.h]
   std::int64_t first_step = 0, last_step = 0;  // that seek() can show [1]
@@ -69,6 +120,12 @@ struct LiveFrame {
       start;  // names, triangles, colours, shapes of the meshes; see LiveSimulation
   AnimationFrame meshes;
   std::vector<std::shared_ptr<const ClothTopology>> topologies;  // (num_cloths)
+  std::shared_ptr<const std::vector<SeamEdges>> seams;           // (num_cloths)
+  std::shared_ptr<const std::vector<LivePins>> pins;             // (num_cloths)
+  std::vector<ContactForce> contacts;                            // see LiveInstruments
+  std::vector<YarnCross> yarns;                                  // likewise
+  std::optional<ProbeReading> probe;                             // likewise
+  std::string no_color;             // why meshes have no values although they were wanted; empty: they have
   std::vector<LiveSample> samples;  // of the steps since the last frame that was taken
 };
 

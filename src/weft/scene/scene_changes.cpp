@@ -1,6 +1,9 @@
 #include "weft/scene/scene_changes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "weft/error.h"
@@ -13,6 +16,10 @@ namespace weft::engine {
 namespace {
 
 constexpr double kSameSize = 1e-9;  // difference of two lengths by rounding [m]
+constexpr double kLag = 0.07;       // of a gliding collider [s]
+constexpr double kMaxSpeed = 4;     // of a gliding collider [m/s]
+constexpr double kMaxTurn = 6.3;    // of a gliding collider [rad/s]
+constexpr double kArrival = 1e-4;   // distance to the place, and angle, that a glide ends within [m], [rad]
 
 /// A fabric stays a fabric with the same membrane and warp, springs stay springs.
 bool has_same_kind(const ClothSceneDesc& a, const ClothSceneDesc& b) {
@@ -23,6 +30,15 @@ bool has_same_kind(const ClothSceneDesc& a, const ClothSceneDesc& b) {
 
 bool has_same_fabric(const ClothSceneDesc& a, const ClothSceneDesc& b) {
   return a.fabric == b.fabric && a.material == b.material;
+}
+
+/// Whether the pins differ in still ones only.
+bool has_same_motions(const ClothSceneDesc& a, const ClothSceneDesc& b) {
+  const auto moving = [](std::vector<PinDesc> pins) {
+    std::erase_if(pins, [](const PinDesc& pin) { return pin.is_still(); });
+    return pins;
+  };
+  return moving(a.pins) == moving(b.pins);
 }
 
 /// The displacement from one shape to another of the same size; empty for other sizes and kinds.
@@ -52,7 +68,17 @@ struct Displacement {
                       rotation_from_angles_deg(from.rotation_deg).transpose();
     return Pose{other->center - turn * from.center, turn};
   }
-  std::optional<Pose> operator()(const PlacedMesh&) const { return {}; }
+  std::optional<Pose> operator()(const PlacedMesh& from) const {
+    const PlacedMesh* other = std::get_if<PlacedMesh>(&to);
+    if (!other) return {};
+    PlacedMesh same = *other;
+    same.position = from.position;
+    same.rotation_deg = from.rotation_deg;
+    if (!(same == from)) return {};
+    const Mat3 turn = rotation_from_angles_deg(other->rotation_deg) *
+                      rotation_from_angles_deg(from.rotation_deg).transpose();
+    return Pose{other->position - turn * from.position, turn};
+  }
 };
 
 /// Whether a collider differs in friction or place only.
@@ -82,7 +108,8 @@ bool loses_followed(const SceneDesc& now, const SceneDesc& wanted) {
   return false;
 }
 
-/// A shape as it was when the world got it: the pose that is now wanted is relative to that.
+/// A shape as it was when the world got it: the pose that is now wanted is relative to that. A mesh has its own
+/// coordinates.
 weft::Pose pose_from(const weft::ColliderDesc& added, const ColliderSceneDesc& wanted) {
   std::optional<Pose> moved;
   if (const auto* sphere = std::get_if<weft::Sphere>(&added.shape))
@@ -96,15 +123,68 @@ weft::Pose pose_from(const weft::ColliderDesc& added, const ColliderSceneDesc& w
     const PlacedBox& to = std::get<PlacedBox>(wanted.shape);
     const Mat3 turn = rotation_from_angles_deg(to.rotation_deg) * to_engine(box->rotation).transpose();
     moved = Pose{to.center - turn * to_engine(box->center), turn};
+  } else {
+    const PlacedMesh& to = std::get<PlacedMesh>(wanted.shape);
+    moved = Pose{to.position, rotation_from_angles_deg(to.rotation_deg)};
   }
   return from_engine(moved.value_or(Pose()));
+}
+
+/// A point of a shape to move it by, in its own coordinates [m].
+Vec3 center_of(const weft::ColliderDesc& added) {
+  if (const auto* sphere = std::get_if<weft::Sphere>(&added.shape)) return to_engine(sphere->center);
+  if (const auto* plane = std::get_if<weft::Plane>(&added.shape)) return to_engine(plane->point);
+  if (const auto* box = std::get_if<weft::OrientedBox>(&added.shape)) return to_engine(box->center);
+  if (const auto* capsule = std::get_if<weft::Capsule>(&added.shape))
+    return (to_engine(capsule->a) + to_engine(capsule->b)) / 2;
+  return Vec3::Zero();
+}
+
+/// The share of a way that is made in a step.
+double share_of(double way, double max_speed, double dt) {
+  if (way < kArrival) return 1;
+  return std::min(1 - std::exp(-dt / kLag), max_speed * dt / way);
+}
+
+/// The pose after `dt` on the way from one to the other; empty: it is there.
+std::optional<Pose> glide(const Pose& from, const Pose& to, const Vec3& center, double dt) {
+  const Vec3 start = from.rotation * center + from.translation, end = to.rotation * center + to.translation;
+  const Eigen::AngleAxisd turn(Mat3(to.rotation * from.rotation.transpose()));
+  const double way = (end - start).norm(), angle = std::abs(turn.angle());
+  if (way < kSameSize && angle < kSameSize) return {};
+  if (way < kArrival && angle < kArrival) return to;
+  const Vec3 place = start + share_of(way, kMaxSpeed, dt) * (end - start);
+  const Eigen::AngleAxisd part(share_of(angle, kMaxTurn, dt) * turn.angle(), turn.axis());
+  const Mat3 rotation = part.toRotationMatrix() * from.rotation;
+  return Pose{place - rotation * center, rotation};
+}
+
+/// Particles that still pins hold, ascending, each once.
+std::vector<int> held_still(const ClothSceneDesc& desc, ClothId id, const weft::World& world) {
+  ClothSceneDesc still = desc;
+  std::erase_if(still.pins, [](const PinDesc& pin) { return !pin.is_still(); });
+  std::vector<int> particles;
+  for (const weft::Pin& pin : describe_pins(still, id, world))
+    particles.insert(particles.end(), pin.particles.begin(), pin.particles.end());
+  std::ranges::sort(particles);
+  return particles;
+}
+
+void change_pins(const ClothSceneDesc& now, const ClothSceneDesc& wanted, ClothId id, weft::World& world) {
+  const std::vector<int> before = held_still(now, id, world), after = held_still(wanted, id, world);
+  std::vector<int> fewer, more;
+  std::ranges::set_difference(before, after, std::back_inserter(fewer));
+  std::ranges::set_difference(after, before, std::back_inserter(more));
+  if (!fewer.empty()) world.unpin(id, fewer);
+  if (!more.empty()) world.add_pin(id, {.particles = more});
 }
 
 void change_cloths(const SceneDesc& now, const SceneDesc& wanted, weft::World& world) {
   for (std::size_t c = 0; c < now.cloths.size(); ++c) {
     const ClothSceneDesc& cloth = wanted.cloths[c];
-    if (has_same_fabric(now.cloths[c], cloth)) continue;
-    world.set_fabric(world.cloth(static_cast<int>(c)), describe_fabric(cloth));
+    const ClothId id = world.cloth(static_cast<int>(c));
+    if (!has_same_fabric(now.cloths[c], cloth)) world.set_fabric(id, describe_fabric(cloth));
+    if (!(now.cloths[c].pins == cloth.pins)) change_pins(now.cloths[c], cloth, id, world);
   }
 }
 
@@ -167,6 +247,7 @@ SceneDesc changeable_part(const SceneDesc& now, const SceneDesc& wanted) {
   if (has_same_pairs(now, wanted)) next.contacts = wanted.contacts;
   if (!loses_followed(now, wanted)) next.colliders = wanted.colliders;
   for (std::size_t c = 0; c < std::min(now.cloths.size(), wanted.cloths.size()); ++c) {
+    if (has_same_motions(now.cloths[c], wanted.cloths[c])) next.cloths[c].pins = wanted.cloths[c].pins;
     if (!has_same_kind(now.cloths[c], wanted.cloths[c])) continue;
     next.cloths[c].fabric = wanted.cloths[c].fabric;
     next.cloths[c].material = wanted.cloths[c].material;
@@ -215,6 +296,17 @@ void apply_changes(const SceneDesc& now, const SceneDesc& wanted, weft::World& w
   } catch (const InputError&) {
     change_world(next, now, world);
     throw;
+  }
+}
+
+void glide_colliders(const SceneDesc& scene, double dt, weft::World& world) {
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    if (!scene.colliders[k].motion.is_still()) continue;
+    const ColliderId id = world.collider(static_cast<int>(k));
+    const weft::ColliderDesc& added = world.description(id);
+    const std::optional<Pose> next = glide(
+        to_engine(world.pose(id)), to_engine(pose_from(added, scene.colliders[k])), center_of(added), dt);
+    if (next) world.move_collider(id, from_engine(*next));
   }
 }
 

@@ -46,6 +46,8 @@ struct PinDesc {
   std::string follow;               // name of the collider whose surface they follow; "": none
   std::optional<double> stiffness;  // of a spring per particle; empty: held exactly [N/m]
   double damping = 0;               // of that spring [N·s/m]
+  /// Whether it holds its particles still, exactly.
+  bool is_still() const { return motion.empty() && follow.empty() && !stiffness; }
   bool operator==(const PinDesc&) const = default;
 };
 

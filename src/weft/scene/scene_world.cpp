@@ -110,22 +110,18 @@ std::optional<ColliderId> find_followed(const ClothSceneDesc& cloth, const PinDe
                    (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
 }
 
-/// Pins and stiffened regions, selected by initial particle positions.
+/// The initial positions of a cloth's particles [m].
+std::vector<Vec3> initial_positions(const ClothSceneDesc& desc, ClothId id, const weft::World& world) {
+  return place(WorldAccess::engine(world).model(id).topology->mesh.positions, desc);
+}
+
+/// Pins and stiffened regions.
 void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
-  const std::vector<Vec3> positions =
-      place(WorldAccess::engine(built).model(id).topology->mesh.positions, desc);
+  const std::vector<Vec3> positions = initial_positions(desc, id, built);
   const Selector selector{desc, built.notes(id).particle_of_vertex, positions};
   for (const StiffenDesc& part : desc.stiffened)
     built.stiffen(id, select(selector, part.select, "a stiffened region"), part.factor);
-  std::vector<weft::Pin> pins;
-  for (const PinDesc& pin : desc.pins)
-    pins.push_back({.particles = select(selector, pin.select, "a pin's region"),
-                    .motion = from_engine(pin.motion),
-                    .pivot = from_engine(pin.pivot),
-                    .follow = find_followed(desc, pin, built),
-                    .stiffness = pin.stiffness,
-                    .damping = pin.damping});
-  built.set_pins(id, pins);
+  built.set_pins(id, describe_pins(desc, id, built));
 }
 
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {
@@ -221,6 +217,20 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
   PublicScene built = build_scene(scene, std::move(jobs));
   return {std::move(static_cast<SceneNotes&>(built)), std::move(WorldAccess::engine(built.world))};
+}
+
+std::vector<weft::Pin> describe_pins(const ClothSceneDesc& cloth, ClothId id, const weft::World& world) {
+  const std::vector<Vec3> positions = initial_positions(cloth, id, world);
+  const Selector selector{cloth, world.notes(id).particle_of_vertex, positions};
+  std::vector<weft::Pin> pins;
+  for (const PinDesc& pin : cloth.pins)
+    pins.push_back({.particles = select(selector, pin.select, "a pin's region"),
+                    .motion = from_engine(pin.motion),
+                    .pivot = from_engine(pin.pivot),
+                    .follow = find_followed(cloth, pin, world),
+                    .stiffness = pin.stiffness,
+                    .damping = pin.damping});
+  return pins;
 }
 
 weft::Wind describe_wind(const WindDesc& wind) {

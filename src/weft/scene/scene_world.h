@@ -37,6 +37,10 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
                         const SceneStart* start = nullptr);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
+/// The pins of a cloth as input for the world that has it, with particles selected by their initial positions.
+/// Throws InputError for a selection without particles.
+std::vector<weft::Pin> describe_pins(const ClothSceneDesc& cloth, ClothId id, const weft::World& world);
+
 /// A scene's wind as input for a World.
 weft::Wind describe_wind(const WindDesc& wind);
 

@@ -19,12 +19,15 @@ constexpr const char* kAdvice = "; weft render draws pictures and videos without
 
 struct KeyDown {
   int key;
-  bool shift, control;
+  Modifiers held;
+
+  /// Text fields leave function keys to the window.
+  bool is_text() const { return key != kKeyHelp && key != kKeyReport; }
 };
 struct Press {
   MouseButton button;
   double x, y;
-  bool shift;
+  Modifiers held;
 };
 struct Release {
   MouseButton button;
@@ -51,9 +54,17 @@ int to_key(int glfw_key) {
       return kKeyLeft;
     case GLFW_KEY_F1:
       return kKeyHelp;
+    case GLFW_KEY_F12:
+      return kKeyReport;
+    case GLFW_KEY_DELETE:
+      return kKeyDelete;
     default:
       return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_Z ? glfw_key : 0;
   }
+}
+
+Modifiers to_modifiers(int mods) {
+  return {.shift = (mods & GLFW_MOD_SHIFT) != 0, .control = (mods & GLFW_MOD_CONTROL) != 0};
 }
 
 std::string last_glfw_error() {
@@ -76,6 +87,7 @@ struct Window::System {
   GLFWwindow* window = nullptr;
   std::string driver;
   std::vector<Event> events;
+  std::vector<std::pair<int, Modifiers>> taps;  // GLFW keys pressed since the last frame
 
   explicit System(const WindowSettings& settings) {
 #ifndef _WIN32
@@ -116,8 +128,9 @@ struct Window::System {
   void listen() {
     glfwSetWindowUserPointer(window, this);
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
-      if (action != GLFW_RELEASE && to_key(key) != 0)
-        of(w).push_back(KeyDown{to_key(key), (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0});
+      if (action == GLFW_RELEASE) return;
+      if (to_key(key) != 0) of(w).push_back(KeyDown{to_key(key), to_modifiers(mods)});
+      static_cast<System*>(glfwGetWindowUserPointer(w))->taps.push_back({key, to_modifiers(mods)});
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
       if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
@@ -130,7 +143,7 @@ struct Window::System {
       }
       double x = 0, y = 0;
       glfwGetCursorPos(w, &x, &y);
-      of(w).push_back(Press{which, x, y, (mods & GLFW_MOD_SHIFT) != 0});
+      of(w).push_back(Press{which, x, y, to_modifiers(mods)});
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).push_back(Move{x, y}); });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).push_back(Wheel{y}); });
@@ -150,6 +163,32 @@ struct Window::System {
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
 
+  /// Dear ImGui before 1.87 does not see a key that was pressed and released between two frames: here it is down
+  /// for a frame. Later versions do so themselves.
+  void show_taps() {
+#if IMGUI_VERSION_NUM < 18700
+    ImGuiIO& io = ImGui::GetIO();
+    for (const auto& [key, held] : taps) {
+      if (key < 0) continue;
+      io.KeysDown[key] = true;
+      io.KeyShift |= held.shift;
+      io.KeyCtrl |= held.control;
+    }
+#endif
+  }
+
+  void end_taps() {
+#if IMGUI_VERSION_NUM < 18700
+    ImGuiIO& io = ImGui::GetIO();
+    for (const auto& [key, held] : taps) {
+      if (key >= 0) io.KeysDown[key] = glfwGetKey(window, key) == GLFW_PRESS;
+    }
+    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
+#endif
+    taps.clear();
+  }
+
   /// Pixels per unit of GLFW's positions.
   double pixels() const {
     int width = 1, height = 1, wide = 1, high = 1;
@@ -161,10 +200,10 @@ struct Window::System {
   void dispatch(const Event& event, const WindowEvents& to) const {
     const ImGuiIO& io = ImGui::GetIO();
     if (const KeyDown* key = std::get_if<KeyDown>(&event)) {
-      if (!io.WantTextInput) to.on_key(key->key, key->shift, key->control);
+      if (!io.WantTextInput || !key->is_text()) to.on_key(key->key, key->held);
     } else if (const Press* press = std::get_if<Press>(&event)) {
       if (!io.WantCaptureMouse)
-        to.on_press(press->button, pixels() * press->x, pixels() * press->y, press->shift);
+        to.on_press(press->button, pixels() * press->x, pixels() * press->y, press->held);
     } else if (const Release* release = std::get_if<Release>(&event)) {
       to.on_release(release->button);
     } else if (const Move* move = std::get_if<Move>(&event)) {
@@ -178,6 +217,7 @@ struct Window::System {
 
   void draw_controls() {
     ImGui::Render();
+    end_taps();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -219,6 +259,7 @@ double Window::scale() const {
 
 bool Window::is_software() const { return is_software_driver(system_->driver); }
 const std::string& Window::driver() const { return system_->driver; }
+bool Window::is_typing() const { return ImGui::GetIO().WantTextInput; }
 bool Window::is_closing() const { return glfwWindowShouldClose(system_->window); }
 void Window::close() { glfwSetWindowShouldClose(system_->window, GLFW_TRUE); }
 
@@ -242,6 +283,7 @@ void Window::begin_frame(const WindowEvents& events) {
   glfwPollEvents();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  system_->show_taps();
   ImGui::NewFrame();
   std::vector<Event> happened;
   happened.swap(system_->events);

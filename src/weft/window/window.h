@@ -12,15 +12,20 @@
 namespace weft::engine {
 
 /// Non-letter keys; letters and digits are their own codes, as in 'R'.
-enum SpecialKey { kKeyEscape = 256, kKeyRight, kKeyLeft, kKeyHelp };  // kKeyHelp: F1
+enum SpecialKey { kKeyEscape = 256, kKeyRight, kKeyLeft, kKeyDelete, kKeyHelp, kKeyReport };  // F1, F12
 
 enum class MouseButton { left, right, middle };
 
+/// Keys that are held down.
+struct Modifiers {
+  bool shift = false, control = false;
+};
+
 /// User input as callbacks. Positions are in pixels from the window's upper left corner. Input to the
-/// controls is not reported.
+/// controls is not reported, except function keys.
 struct WindowEvents {
-  std::function<void(int key, bool shift, bool control)> on_key;
-  std::function<void(MouseButton button, double x, double y, bool shift)> on_press;
+  std::function<void(int key, Modifiers held)> on_key;
+  std::function<void(MouseButton button, double x, double y, Modifiers held)> on_press;
   std::function<void(MouseButton button)> on_release;
   std::function<void(double x, double y)> on_move;
   std::function<void(double clicks)> on_wheel;                         // > 0: away from the user
@@ -58,6 +63,7 @@ class Window {
   bool is_software() const;           // OpenGL runs on the processor
   const std::string& driver() const;  // its name
 
+  bool is_typing() const;   // a text field has the keyboard
   bool is_closing() const;  // the user has requested to close it
   void close();
   void keep_open();  // refuses the request
