@@ -224,12 +224,16 @@ void draw_look(Viewer& viewer) {
     if (ImGui::IsItemHovered()) show_tooltip(meaning);
     note_control(viewer, name);
   }
-  if (look.contacts) say(kPale, fmt::format("longest arrows: {:g} N", viewer.scales().force));
+  if (look.contacts && viewer.side(0).largest_force() > 0)
+    say(kPale, fmt::format("longest arrows: {:g} N", viewer.scales().force));
+  else if (look.contacts)
+    say(kPale, "no contacts measured: they are from the next step on");
   for (int s = 0; look.checker && s < viewer.num_sides(); ++s) draw_findings(viewer.side(s));
 }
 
 void draw_record(Viewer& viewer) {
-  begin_box("record", kMargin, ImGui::GetIO().DisplaySize.y - kMargin, kWidth * scale(), {0, 1});
+  begin_box("record", 2 * kMargin + kWidth * scale(), ImGui::GetIO().DisplaySize.y - kMargin,
+            kWidth * scale(), {0, 1});
   if (const Recording* recording = viewer.recording()) {
     ImGui::ProgressBar(static_cast<float>(recording->drawn()) / static_cast<float>(recording->wanted()),
                        {-1, 0},
@@ -304,6 +308,7 @@ void draw_controls(Viewer& viewer) {
 }
 
 void draw_main_box(Viewer& viewer) {
+  if (viewer.wants_focus()) ImGui::SetNextWindowFocus();
   begin_box("weft", kMargin, kMargin, kWidth * scale());
   ImGui::TextUnformatted(viewer.side(0).title().c_str());
   ImGui::Separator();
@@ -356,6 +361,8 @@ constexpr KeyHelp kHelp[] = {
     {"ctrl+S", "save the scene", KeyOf::simulation},
     {"ctrl+R", "read the file again"},
     {"ctrl+O", "other scenes"},
+    {"F6", "the keyboard in the panels: arrows, space, Enter; Esc: out"},
+    {"ctrl+Tab", "meanwhile: the next panel"},
     {"C", "reset the view"},
     {"P", "save the picture as PNG"},
     {"F12", "write the report (--report)"},

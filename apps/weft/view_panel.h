@@ -20,10 +20,9 @@ void draw_question(Viewer& viewer);
 
 // Parts that all panels share.
 
-inline constexpr ImGuiWindowFlags kBoxFlags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
-                                              ImGuiWindowFlags_AlwaysAutoResize |
-                                              ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+inline constexpr ImGuiWindowFlags kBoxFlags =
+    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
 
 void note_control(Viewer& viewer, const std::string& name);  // records the place of the last control
 void show_tooltip(const std::string& words);

@@ -131,6 +131,7 @@ void write_view_report(const std::filesystem::path& file, const Viewer& viewer) 
                {"gallery", viewer.shows_gallery()},
                {"message", viewer.message()},
                {"asking", viewer.is_asking()},
+               {"navigating", viewer.window().is_navigating()},
                {"typing", viewer.window().is_typing()},
                {"changed", viewer.edits() && viewer.edits()->is_changed()},
                {"tuned", viewer.edits() ? tuned(viewer.edits()->now()) : Json::object()},

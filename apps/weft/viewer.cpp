@@ -153,6 +153,7 @@ void Viewer::open_gallery() {
       gallery_ = make_gallery();
       recording_.reset();
       hands_.forget();
+      window_.navigate(false);
       sides_.clear();
       edits_.reset();
       message_.clear();
@@ -416,6 +417,8 @@ void Viewer::on_key(int key, Modifiers held) {
     if (key == kKeyEscape) answer(Answer::cancel);
     return;
   }
+  if (!shows_gallery() && (key == kKeyPanels || (key == kKeyEscape && window_.is_navigating())))
+    return toggle_navigation();
   if (key == 'Q' || key == kKeyEscape) return window_.close();
   if (held.control) {
     if (key == 'Z') held.shift ? redo() : undo();
@@ -480,6 +483,11 @@ bool Viewer::on_look_key(int key) {
     if (key == letter) return *shown = !*shown, true;
   }
   return false;
+}
+
+void Viewer::toggle_navigation() {
+  window_.navigate(!window_.is_navigating());
+  wants_focus_ = window_.is_navigating();
 }
 
 // ---- Layout ---------------------------------------------------------------------------------------------

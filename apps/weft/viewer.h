@@ -88,6 +88,8 @@ class Viewer {
   void toggle_record() { shows_record_ = !shows_record_; }
   void record();  // by record_request
   void stop_recording(bool keeps);
+  void toggle_navigation();                                          // of the controls by the keyboard
+  bool wants_focus() { return std::exchange(wants_focus_, false); }  // of the first panel, once
   void toggle_help() { shows_help_ = !shows_help_; }
   void frame_scene();  // the initial camera
   Camera& camera() { return camera_; }
@@ -160,6 +162,7 @@ class Viewer {
   Camera camera_;
   bool is_playing_ = true, shows_help_ = false, wants_picture_ = false;
   bool shows_numbers_ = false, shows_plots_ = false, shows_record_ = false;
+  bool wants_focus_ = false;
   double speed_ = 1;
 
   Hands hands_{*this};

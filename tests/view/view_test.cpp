@@ -744,6 +744,71 @@ TEST_F(View, ARecordingIsCancelled) {
   close_by("q");
 }
 
+TEST_F(View, IsUsedByTheKeyboardAlone) {
+  open();
+  paused();
+  xdotool("key r");
+  until("it is at the start", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  xdotool("key F6");
+  until("the keyboard is in the panel", [](const Json& j) { return j["navigating"] == true; });
+  state();
+  for (int press = 0; press < 2; ++press) {  // shows where it is, then goes from Play to Step
+    xdotool("key Right");
+    state();
+  }
+  xdotool("key space");
+  const Json stepped =
+      until("there is one more step", [](const Json& j) { return j["sides"][0]["steps"] == 1; });
+  EXPECT_EQ(stepped["playing"], false) << "the space bar is the button's";
+  xdotool("key Escape");
+  until("it is out again", [](const Json& j) { return j["navigating"] == false; });
+  xdotool("key space");
+  until("it plays", [](const Json& j) { return j["playing"] == true; });
+  close_by("q");
+}
+
+/// The panels, as docs/manual/view.md shows them: WEFT_VIEW_PICTURES=docs/images makes its pictures again.
+TEST_F(View, ShowsItsPanels) {
+  const char* folder = std::getenv("WEFT_VIEW_PICTURES");
+  const fs::path pictures = folder ? fs::absolute(folder) : fs::path();
+  enter_folder();
+  start({WEFT_PROGRAM, "view", "fabrics/drape", "--report", "view.json", "--size", "1280x720"}, "wind x");
+  const auto save = [&](const std::string& name) {
+    const std::size_t before = state()["pictures"].size();
+    xdotool("key p");
+    const Json saved =
+        until("the picture is saved", [&](const Json& j) { return j["pictures"].size() > before; });
+    const Image image = read_png(saved["pictures"].back().get<std::string>());
+    int dark = 0;
+    for (std::size_t k = 0; k < image.rgba.size(); k += 4) dark += image.rgba[k] < 110;
+    EXPECT_GT(dark, 2000) << "text and cloth";
+    if (folder) write_image(pictures / ("view_" + name + ".jpg"), image);
+  };
+  until("cloth has fallen", [](const Json& j) { return j["sides"][0]["time"] > 0.9; });
+  paused();
+  xdotool("key n");
+  xdotool("key t");
+  until("numbers and plots are shown", [](const Json& j) { return j["controls"].contains("undo"); });
+  save("numbers");
+  xdotool("key n");
+  xdotool("key t");
+  xdotool("key 2");
+  xdotool("key f");
+  xdotool("key v");
+  xdotool("key w");
+  click("look");
+  move(640, 330);
+  xdotool("click 3");
+  xdotool("key period");
+  until("instruments are shown", [](const Json& j) {
+    return j["controls"].contains("checker") && j["sides"][0]["instruments"]["contacts"] > 0;
+  });
+  save("instruments");
+  xdotool("key h");
+  save("help");
+  close_by("q");
+}
+
 TEST_F(View, ComparesTwoFabrics) {
   open({"--set", "solver.integrator=newton", "--set", "solver.steps_per_frame=1", "--compare", "denim,silk"});
   until("they fall apart", [](const Json& j) {

@@ -21,8 +21,7 @@ struct KeyDown {
   int key;
   Modifiers held;
 
-  /// Text fields leave function keys to the window.
-  bool is_text() const { return key != kKeyHelp && key != kKeyReport; }
+  bool is_function() const { return key == kKeyHelp || key == kKeyPanels || key == kKeyReport; }
 };
 struct Press {
   MouseButton button;
@@ -54,6 +53,8 @@ int to_key(int glfw_key) {
       return kKeyLeft;
     case GLFW_KEY_F1:
       return kKeyHelp;
+    case GLFW_KEY_F6:
+      return kKeyPanels;
     case GLFW_KEY_F12:
       return kKeyReport;
     case GLFW_KEY_DELETE:
@@ -197,10 +198,15 @@ struct Window::System {
     return static_cast<double>(wide) / std::max(width, 1);
   }
 
+  static bool is_navigating() {
+    return (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0;
+  }
+
   void dispatch(const Event& event, const WindowEvents& to) const {
     const ImGuiIO& io = ImGui::GetIO();
     if (const KeyDown* key = std::get_if<KeyDown>(&event)) {
-      if (!io.WantTextInput || !key->is_text()) to.on_key(key->key, key->held);
+      const bool is_free = !io.WantTextInput && (!is_navigating() || key->key == kKeyEscape);
+      if (is_free || key->is_function()) to.on_key(key->key, key->held);
     } else if (const Press* press = std::get_if<Press>(&event)) {
       if (!io.WantCaptureMouse)
         to.on_press(press->button, pixels() * press->x, pixels() * press->y, press->held);
@@ -260,6 +266,13 @@ double Window::scale() const {
 bool Window::is_software() const { return is_software_driver(system_->driver); }
 const std::string& Window::driver() const { return system_->driver; }
 bool Window::is_typing() const { return ImGui::GetIO().WantTextInput; }
+bool Window::is_navigating() const { return System::is_navigating(); }
+
+void Window::navigate(bool enabled) {
+  ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
+  flags = enabled ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
 bool Window::is_closing() const { return glfwWindowShouldClose(system_->window); }
 void Window::close() { glfwSetWindowShouldClose(system_->window, GLFW_TRUE); }
 

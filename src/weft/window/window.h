@@ -11,8 +11,16 @@
 
 namespace weft::engine {
 
-/// Non-letter keys; letters and digits are their own codes, as in 'R'.
-enum SpecialKey { kKeyEscape = 256, kKeyRight, kKeyLeft, kKeyDelete, kKeyHelp, kKeyReport };  // F1, F12
+/// Non-letter keys; letters and digits are their own codes, as in 'R'. Help is F1, panels F6, report F12.
+enum SpecialKey {
+  kKeyEscape = 256,
+  kKeyRight,
+  kKeyLeft,
+  kKeyDelete,
+  kKeyHelp,
+  kKeyPanels,
+  kKeyReport
+};
 
 enum class MouseButton { left, right, middle };
 
@@ -22,7 +30,7 @@ struct Modifiers {
 };
 
 /// User input as callbacks. Positions are in pixels from the window's upper left corner. Input to the
-/// controls is not reported, except function keys.
+/// controls is not reported, except function keys, and Escape while the keyboard moves among controls.
 struct WindowEvents {
   std::function<void(int key, Modifiers held)> on_key;
   std::function<void(MouseButton button, double x, double y, Modifiers held)> on_press;
@@ -63,7 +71,12 @@ class Window {
   bool is_software() const;           // OpenGL runs on the processor
   const std::string& driver() const;  // its name
 
-  bool is_typing() const;   // a text field has the keyboard
+  bool is_typing() const;  // a text field has the keyboard
+
+  /// The keyboard moves among the controls: arrows, space to press, Enter to edit, ctrl+Tab for other panels.
+  void navigate(bool enabled);
+  bool is_navigating() const;
+
   bool is_closing() const;  // the user has requested to close it
   void close();
   void keep_open();  // refuses the request
