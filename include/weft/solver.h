@@ -70,7 +70,7 @@ struct StepDivision {
 
   /// Shortest part of a step. Longer is faster and less accurate in impacts: strain and intersections are
   /// then reported. > 0 [s].
-  double shortest = 1.0 / 960;
+  double shortest = 1.0 / 3840;
 };
 
 struct ContactSettings {

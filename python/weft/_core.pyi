@@ -756,7 +756,7 @@ class IntegratorSettings:
 class StepDivision:
     """Division of steps that end with excess stretch, collapse or energy."""
 
-    def __init__(self, *, enabled: bool | None = None, shortest: float = 0.0010416666666666667) -> None: ...
+    def __init__(self, *, enabled: bool | None = None, shortest: float = 0.00026041666666666666) -> None: ...
 
     @property
     def enabled(self) -> bool | None:

@@ -167,7 +167,7 @@ struct SceneDesc {
   IntegratorSettings solver;
   int steps_per_frame = 1;       // >= 1
   std::optional<bool> adaptive;  // divides steps that are too long; empty: only with newton
-  int max_steps_per_frame = 16;  // limit of that division, >= 1
+  int max_steps_per_frame = 64;  // limit of that division, >= 1
   bool contact = true;           // of cloth with colliders, itself and other cloths
   bool untangle = true;          // removes initial intersections, if `contact`
   CrossedStart crossed_start = CrossedStart::refuse;

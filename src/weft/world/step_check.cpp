@@ -15,40 +15,28 @@ constexpr double kEnergyRate = 0.3;  // maximum rise of energy, of the kinetic e
 constexpr double kRiseOfThickness =
     30;  // … and of the work against gravity of lifting all by its thickness [1/s]
 
-/// Shorter steps have no energy check: contact projection adds as much energy per step at any length.
-constexpr double kShortestForEnergy = 1.0 / 200;  // [s]
+/// Shorter steps have no energy check: what contact projection then adds does not fall with their length.
+constexpr double kShortestForEnergy = 1.0 / 500;  // [s]
 
-/// The gain of structural springs in a step: the largest of one, over its rest length, and the approximate
-/// energy of all.
-struct Stretching {
+/// The largest gain of a structural spring in a step, over its rest length.
+StepCheck check_stretch(const CheckedCloth& cloth, int index) {
   StepCheck worst{.fault = StepFault::stretch};
-  double energy = 0;  // [J]
-};
-
-Stretching check_stretch(const CheckedCloth& cloth, int index) {
-  Stretching result;
   const Vec3Array &x = cloth.before.x, &y = cloth.after.x;
   const auto length = [](const Vec3Array& at, int i, int j) {
     const float dx = at.x()[j] - at.x()[i], dy = at.y()[j] - at.y()[i], dz = at.z()[j] - at.z()[i];
     return std::sqrt(dx * dx + dy * dy + dz * dz);
   };
-  const ClothElements* elements = cloth.model.elements.get();
-  const double membrane = elements ? 0.5 * (elements->stiffness(0, 0) + elements->stiffness(1, 1)) : 0;
   float most = 0;
-  const std::vector<Spring>& springs = cloth.model.topology->springs;
-  for (std::size_t n = 0; n < springs.size(); ++n) {
-    const Spring& s = springs[n];
+  for (const Spring& s : cloth.model.topology->springs) {
     if (s.kind != SpringKind::structural) continue;
     const auto rest = static_cast<float>(s.rest_length);
     const float before = length(x, s.i, s.j) - rest, after = length(y, s.i, s.j) - rest;
-    const double stiffness = membrane > 0 ? membrane : cloth.model.stiffness(static_cast<int>(n));
-    result.energy += 0.5 * stiffness * static_cast<double>((after - before) * (after + before));
     const float gained = (after - std::max(before, 0.0f)) / rest;
     if (gained <= most) continue;
     most = gained;
-    result.worst = {StepFault::stretch, gained / kStretch, gained, index, s.i};
+    worst = {StepFault::stretch, gained / kStretch, gained, index, s.i};
   }
-  return result;
+  return worst;
 }
 
 StepCheck check_area(const CheckedCloth& cloth, int index) {
@@ -72,22 +60,18 @@ StepCheck check_area(const CheckedCloth& cloth, int index) {
   return worst;
 }
 
-/// The total elastic energy is computed only if the other terms, with the estimate `stretching`, have risen.
-StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step,
-                       double stretching) {
+StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step) {
   double rise = 0, kinetic = 0, lift = 0;
   for (const CheckedCloth& c : cloths) {
     const double before = compute_kinetic_energy(c.model, c.before);
     kinetic += before;
     rise += compute_kinetic_energy(c.model, c.after) - before +
             compute_gravity_energy(c.model, c.after, gravity) -
-            compute_gravity_energy(c.model, c.before, gravity);
+            compute_gravity_energy(c.model, c.before, gravity) + compute_elastic_energy(c.model, c.after) -
+            compute_elastic_energy(c.model, c.before);
     for (const double m : c.model.mass) lift += m * gravity.norm() * c.model.material.thickness;
   }
   const double tolerance = step * (kEnergyRate * kinetic + kRiseOfThickness * lift);
-  if (rise + stretching <= 0.5 * tolerance) return {};
-  for (const CheckedCloth& c : cloths)
-    rise += compute_elastic_energy(c.model, c.after) - compute_elastic_energy(c.model, c.before);
   return {StepFault::energy, std::max(0.0, rise / tolerance), rise, -1, -1};
 }
 
@@ -96,17 +80,14 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
 StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven) {
   StepCheck worst;
   bool is_in_contact = false;
-  double stretching = 0;  // [J]
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (!cloths[c].after.history.had_contact) continue;
     is_in_contact = true;
-    const Stretching stretched = check_stretch(cloths[c], static_cast<int>(c));
-    stretching += stretched.energy;
-    worst.include(stretched.worst);
+    worst.include(check_stretch(cloths[c], static_cast<int>(c)));
     worst.include(check_area(cloths[c], static_cast<int>(c)));
   }
   if (is_in_contact && !is_driven && step > kShortestForEnergy)
-    worst.include(check_energy(cloths, gravity, step, stretching));
+    worst.include(check_energy(cloths, gravity, step));
   return worst;
 }
 
