@@ -14,7 +14,7 @@ constexpr double kTip = 16;             // of the wind's arrow: what the mouse t
 constexpr double kWindLength = 0.02;    // of the arrow, per m/s, as a share of the camera's distance
 constexpr double kStrongestWind = 15;   // [m/s]
 constexpr double kMemory = 0.1;         // over which the speed of a throw is measured [s]
-constexpr double kSlowest = 0.5;        // of throws [m/s]
+constexpr double kSlowest = 0.3;        // of throws [m/s]
 constexpr double kFastest = 4;          // likewise, as colliders glide [m/s]
 constexpr double kFlight = 3;           // longest, without a floor [s]
 constexpr double kNewSize = 0.06, kNewAside = 0.25;  // of new bodies, as shares of the camera's distance [1]
@@ -122,11 +122,11 @@ void Hands::release(MouseButton button) {
 
 /// With the right button a probe; with the left one and control a pin.
 void Hands::click(MouseButton button) {
-  if (!viewer_.is_simulation()) return;
+  if (viewer_.shows_gallery()) return;
   const std::optional<ViewHit> hit = viewer_.side(side_).pick(viewer_.ray_at(side_, x_, y_));
   const std::optional<ClothPoint> point = hit ? hit->cloth : std::nullopt;
   if (button == MouseButton::right) return viewer_.set_probe(point);
-  if (button != MouseButton::left || !held_.control || !point) return;
+  if (button != MouseButton::left || !held_.control || !point || !viewer_.is_simulation()) return;
   Eigen::Index nearest = 0;
   point->weights.maxCoeff(&nearest);
   const ViewSide& side = viewer_.side(side_);
@@ -198,11 +198,13 @@ void Hands::put_body() {
 void Hands::let_go_of_body() {
   if (body_->is_moved) put_body();
   if (!body_) return;
+  std::deque<std::pair<Clock::time_point, Vec3>>& path = body_->path;
   const Clock::time_point now = Clock::now();
-  std::erase_if(body_->path, [&](const auto& at) { return seconds(now - at.first) > kMemory; });
-  if (body_->path.size() > 1 && viewer_.is_playing()) {
-    const auto& [first, from] = body_->path.front();
-    const Vec3 velocity = (body_->by.translation - from) / std::max(seconds(now - first), 1e-3);
+  if (!path.empty() && seconds(now - path.back().first) > kMemory) path.clear();  // it rested
+  while (path.size() > 2 && seconds(now - path[1].first) > kMemory) path.pop_front();
+  if (path.size() > 1 && viewer_.is_playing()) {
+    const double time = std::max(seconds(path.back().first - path.front().first), 1e-3);
+    const Vec3 velocity = (path.back().second - path.front().second) / time;
     if (velocity.norm() > kSlowest) {
       thrown_ = Throw{body_->by.translation, std::min(1.0, kFastest / velocity.norm()) * velocity,
                       viewer_.side(side_).status()->time};

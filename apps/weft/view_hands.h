@@ -23,6 +23,7 @@ class Hands {
 
   void update();                                // the held or thrown body, before each picture
   void mark(int side, Picture& picture) const;  // what a hand holds, and where to
+  void stop() { thrown_.reset(); }              // a body that flies, where it is
   void forget();                                // everything, for another scene
 
   /// Before the eye, beside the middle; a floor below everything. The new body is the touched one.

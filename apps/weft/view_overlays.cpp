@@ -60,6 +60,7 @@ std::string describe(const ProbeReading& reading) {
                                   reading.particle, reading.is_pinned ? " (pinned)" : "");
   words +=
       fmt::format("at {:.4f} {:.4f} {:.4f} m\n", reading.point.x(), reading.point.y(), reading.point.z());
+  if (reading.mass == 0) return words;  // of a run
   words += fmt::format("speed {:.4g} m/s, mass {:.4g} g\n", reading.velocity.norm(), 1000 * reading.mass);
   if (reading.yarns)
     words += fmt::format("warp {:+.3g} %, weft {:+.3g} %, shear {:.3g} deg\n", reading.yarns->warp_strain(),
@@ -73,16 +74,16 @@ std::string describe(const ProbeReading& reading) {
 }
 
 void draw_probe(Viewer& viewer, int s) {
-  const LiveFrame* frame = viewer.side(s).live_frame();
-  if (!frame || !frame->probe) return;
+  const std::optional<ProbeReading> reading = viewer.side(s).probe();
+  if (!reading) return;
   const WindowPart part = viewer.part(s);
-  const auto pixel = viewer.camera().pixel(frame->probe->point, part.size);
+  const auto pixel = viewer.camera().pixel(reading->point, part.size);
   if (!pixel) return;
   const ImVec2 point = at(*pixel, part);
   ImGui::GetBackgroundDrawList()->AddCircle(point, 6 * scale(), kBoxLine, 0, 2 * scale());
   ImGui::SetNextWindowPos({point.x + 12 * scale(), point.y + 12 * scale()});
   ImGui::Begin(fmt::format("probe {}", s).c_str(), nullptr, kBoxFlags | ImGuiWindowFlags_NoInputs);
-  ImGui::TextUnformatted(describe(*frame->probe).c_str());
+  ImGui::TextUnformatted(describe(*reading).c_str());
   ImGui::End();
 }
 

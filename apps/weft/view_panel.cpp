@@ -336,7 +336,7 @@ constexpr KeyHelp kHelp[] = {
     {"Delete", "remove the body that was clicked", KeyOf::simulation},
     {"ctrl+click on cloth", "pin, unpin a particle", KeyOf::simulation},
     {"ctrl+drag, +shift", "pin, unpin in a box", KeyOf::simulation},
-    {"right click on cloth", "probe; elsewhere: no probe", KeyOf::simulation},
+    {"right click on cloth", "probe; elsewhere: no probe"},
     {"left or right drag", "rotate the view"},
     {"middle or shift drag", "pan the view"},
     {"wheel", "zoom"},

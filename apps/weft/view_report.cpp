@@ -66,12 +66,13 @@ Json instruments(const ViewSide& side) {
                {"no_color", side.no_color()}};
   for (std::size_t b = 0; b < side.meshes().bodies.size(); ++b)
     json["bodies"].push_back(to_json(side.box_of_body(static_cast<int>(b)).center()));
+  const std::optional<ProbeReading> probe = side.probe();
+  json["probe"] = probe ? Json(probe->particle) : Json();
   const LiveFrame* frame = side.live_frame();
   if (!frame) return json;
   json["pinned"] = frame->pins ? (*frame->pins)[0].particles.size() : 0;
   json["contacts"] = frame->contacts.size();
   json["yarns"] = frame->yarns.size();
-  json["probe"] = frame->probe ? Json(frame->probe->particle) : Json();
   return json;
 }
 
@@ -144,6 +145,7 @@ void write_view_report(const std::filesystem::path& file, const Viewer& viewer) 
                {"drawn_frames", viewer.drawn_frames()},
                {"drawn_per_second", viewer.drawn_per_second()},
                {"ms_per_picture", viewer.picture_ms()},
+               {"ms_per_panel", viewer.panel_ms()},
                {"pictures", viewer.pictures()},
                {"sides", Json::array()},
                {"controls", viewer.controls}};

@@ -238,9 +238,23 @@ AnimationFrame RunSide::read(int frame) {
 }
 
 void RunSide::measure(const LiveInstruments& instruments) {
+  probe_ = instruments.probe;
   if (color_ == instruments.color) return;
   color_ = instruments.color;
   frame_ = read(number_);
+}
+
+/// Where the point is: a run has neither velocities nor forces.
+std::optional<ProbeReading> RunSide::probe() const {
+  if (!probe_) return std::nullopt;
+  const Triangle& corners = meshes_.cloths[probe_->cloth].triangles[probe_->triangle];
+  Eigen::Index nearest = 0;
+  probe_->weights.maxCoeff(&nearest);
+  ProbeReading reading{.cloth = meshes_.cloths[probe_->cloth].name,
+                       .triangle = probe_->triangle,
+                       .particle = corners[nearest]};
+  for (int k = 0; k < 3; ++k) reading.point += probe_->weights[k] * position(probe_->cloth, corners[k]);
+  return reading;
 }
 
 std::string RunSide::no_color() const {

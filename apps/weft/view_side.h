@@ -65,6 +65,7 @@ class ViewSide {
   virtual int frame() const { return 0; }       // of a run: the current one
 
   virtual void measure(const LiveInstruments& instruments) = 0;  // from the next frame on
+  virtual std::optional<ProbeReading> probe() const = 0;         // of the measured point
   virtual std::string no_color() const = 0;  // why there are no values to colour by; empty: there are
 
   /// The current picture; `best`: smooth cloth with hems, as in files.
@@ -121,6 +122,7 @@ class LiveSide : public ViewSide {
   LiveSimulation* live() override { return &live_; }
   const LiveFrame* live_frame() const override { return &newest_; }
   void measure(const LiveInstruments& instruments) override { live_.measure(instruments); }
+  std::optional<ProbeReading> probe() const override { return newest_.probe; }
   std::string no_color() const override { return newest_.no_color; }
   const std::deque<LiveSample>& samples() const override { return samples_; }
 
@@ -150,6 +152,7 @@ class RunSide : public ViewSide {
   int num_frames() override { return frames_->num_frames(); }
   int frame() const override { return number_; }
   void measure(const LiveInstruments& instruments) override;
+  std::optional<ProbeReading> probe() const override;
   std::string no_color() const override;
 
  private:
@@ -159,6 +162,7 @@ class RunSide : public ViewSide {
 
   std::unique_ptr<FrameSource> frames_;
   std::optional<ParticleValue> color_;
+  std::optional<ClothPoint> probe_;
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;

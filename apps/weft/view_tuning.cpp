@@ -153,6 +153,8 @@ void draw_tuning(Viewer& viewer) {
     for (const std::string& key : waiting) keys += (keys.empty() ? "" : ", ") + key;
     show_alarm("Applied at the next restart (R): " + keys);
   }
+  if (viewer.compares_fabrics())
+    show_alarm("Fabrics are compared: each side keeps its own, without changes here.");
   draw_bodies(viewer);
   SceneDesc scene = viewer.edits()->now();
   int number = 0;  // names of colliders may be equal

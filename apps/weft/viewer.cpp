@@ -43,7 +43,7 @@ void Viewer::run() {
   drawn_at_ = second_began_ = Clock::now();
   while (!interrupted()) {
     if (window_.is_closing()) {
-      if (!edits_ || !edits_->is_changed() || options_.frames > 0) break;
+      if (may_close_ || !edits_ || !edits_->is_changed() || options_.frames > 0) break;
       refuse_close();
     }
     wait();
@@ -181,7 +181,7 @@ void Viewer::leave(std::function<void()> then) {
 void Viewer::refuse_close() {
   window_.keep_open();
   leave([this] {
-    edits_.reset();
+    may_close_ = true;
     window_.close();
   });
 }
@@ -208,12 +208,14 @@ void Viewer::settle_edits() {
 
 void Viewer::undo() {
   if (!edits_) return;
+  hands_.stop();
   edits_->undo();
   apply_edits();
 }
 
 void Viewer::redo() {
   if (!edits_) return;
+  hands_.stop();
   edits_->redo();
   apply_edits();
 }
@@ -277,6 +279,7 @@ void Viewer::step_frame(bool backwards) {
 
 void Viewer::reset() {
   if (refuse_while_recording()) return;
+  hands_.stop();
   for (const auto& side : sides_) side->reset();
 }
 
@@ -351,6 +354,12 @@ void Viewer::set_probe(const std::optional<ClothPoint>& point) {
 
 double Viewer::frames_per_second() const {
   return is_simulation() ? edits_->now().fps : sides_[0]->head()->frames_per_second;
+}
+
+bool Viewer::compares_fabrics() const {
+  const std::vector<std::string_view>& names = integrator_names();
+  return std::ranges::any_of(
+      compared_, [&](const std::string& name) { return std::ranges::find(names, name) == names.end(); });
 }
 
 // ---- Recording ------------------------------------------------------------------------------------------
@@ -534,10 +543,13 @@ void Viewer::draw() {
     hands_.mark(s, picture);
     renderer_.show(picture, quality_.scaled(where.size, is_still), where);
   }
+  const Clock::time_point drawn = Clock::now();
   controls.clear();
   if (!shows_gallery()) draw_overlays(*this);
   shows_gallery() ? draw_gallery(*this, gallery_) : draw_panel(*this);
   if (is_asking()) draw_question(*this);
+  const double ms = 1000 * seconds(Clock::now() - drawn);
+  panel_ms_ += kNewShare * (ms - panel_ms_);
 }
 
 void Viewer::finish_frame() {

@@ -115,6 +115,7 @@ class Viewer {
   int quality_level() const { return quality_.level(); }
   std::int64_t drawn_frames() const { return drawn_frames_; }
   double drawn_per_second() const { return drawn_per_second_; }
+  double panel_ms() const { return panel_ms_; }      // to lay the panels out [ms]
   double picture_ms() const { return picture_ms_; }  // to draw and show one during motion [ms]
   const std::vector<std::string>& pictures() const { return pictures_; }
   const std::string& message() const { return message_; }
@@ -122,6 +123,7 @@ class Viewer {
   int side_at(double x) const;      // of a position in the window [pixels]
   Ray ray_at(int side, double x, double y) const;
   const std::vector<std::string>& compared() const { return compared_; }  // (num_sides) or empty
+  bool compares_fabrics() const;
 
   ViewLook look;  // changed by keys and panel
   RecordRequest record_request;
@@ -162,7 +164,7 @@ class Viewer {
   Camera camera_;
   bool is_playing_ = true, shows_help_ = false, wants_picture_ = false;
   bool shows_numbers_ = false, shows_plots_ = false, shows_record_ = false;
-  bool wants_focus_ = false;
+  bool wants_focus_ = false, may_close_ = false;  // although changes are not saved
   double speed_ = 1;
 
   Hands hands_{*this};
@@ -179,7 +181,7 @@ class Viewer {
   int pictures_at_rest_ = 0;  // since the last change
   Clock::time_point drawn_at_, second_began_;
   std::int64_t drawn_frames_ = 0, drawn_in_second_ = 0;
-  double drawn_per_second_ = 0, picture_ms_ = 0;
+  double drawn_per_second_ = 0, picture_ms_ = 0, panel_ms_ = 0;
   std::vector<std::string> pictures_;
   std::string message_;
 };
