@@ -22,6 +22,7 @@ import sys
 import tempfile
 import time
 import uuid
+import warnings
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -48,6 +49,7 @@ _MAX_BATCH = 1000  # cases
 _RESULT_WAIT = 30.0  # for a report that the worker could not write into the folder [s]
 _STOP_WAIT = 30.0  # for workers to end their steps after Ctrl-C [s]
 _MAX_LOSSES = 20  # workers that end with a case, before the farm gives up
+_UNSERVED = 60.0  # without any worker, before the farm says so [s]
 _ROUNDS = 5  # over cases whose rows are missing at the end
 
 
@@ -238,6 +240,7 @@ class _Farm:
     avoided: set[str] = field(default_factory=set)  # workers that cannot write the folder
     start: float = field(default_factory=time.monotonic)
     threads: int = 0  # of all workers
+    served: float = field(default_factory=time.monotonic)  # when there was a worker last, or that there is none was said
     asked: float = -math.inf  # when
     num_computed: int = 0
     time_per_case: float = 0.0  # of the cases so far, read ones included [s]
@@ -287,12 +290,25 @@ class _Farm:
             self.asked = now
             with contextlib.suppress(OSError, TimeoutError):  # while the scheduler is away
                 self.threads = sum(self.client.nthreads().values())
+            self._warn_without_workers(now)
         most = 2 * max(1, self.threads)
         while (self.waiting or self.suspects) and len(self.flights) < most:
             if self.waiting:
                 self._submit([self.waiting.popleft() for _ in range(self._batch_size(most))], careful=False)
             else:
                 self._submit([self.suspects.popleft()], careful=True)
+
+    def _warn_without_workers(self, now: float) -> None:
+        """Every minute: a queue of Slurm may give some later, and workers that die at their start never come."""
+        if self.threads == 0 and now - self.served > _UNSERVED:
+            warnings.warn(
+                f"the farm has had no worker for {_UNSERVED:g} s, and waits; look at the queue, or at the workers' logs",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+            self.served = now
+        elif self.threads > 0:
+            self.served = now
 
     def _batch_size(self, most: int) -> int:
         left = len(self.waiting)

@@ -172,6 +172,19 @@ def test_a_culprit_gets_its_sentence_and_its_victims_their_rows(tmp_path: Path) 
     assert [each for n, each in enumerate(hashes(table)) if n != 7] == [h for n, h in enumerate(HASHES[:16]) if n != 7]
 
 
+def test_a_farm_without_workers_says_so_and_goes_on_with_the_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(farm, "_UNSERVED", 0.2)
+    with workers(0) as client:
+        later = threading.Timer(3, lambda: client.cluster.scale(1))
+        later.start()
+        with pytest.warns(RuntimeWarning, match="no worker for 0.2 s, and waits"):
+            table = run(CASES[:2], tmp_path, client=client)
+        later.join()
+    assert hashes(table) == HASHES[:2]
+
+
 def test_a_deadly_make_world_gets_its_sentence_and_is_not_called_again(tmp_path: Path) -> None:
     log = Log(tmp_path / "log")
 
