@@ -361,6 +361,7 @@ constexpr KeyHelp kHelp[] = {
     {"ctrl+S", "save the scene", KeyOf::simulation},
     {"ctrl+R", "read the file again"},
     {"ctrl+O", "other scenes"},
+    {"ctrl+plus, ctrl+minus", "larger, smaller text"},
     {"F6", "the keyboard in the panels: arrows, space, Enter; Esc: out"},
     {"ctrl+Tab", "meanwhile: the next panel"},
     {"C", "reset the view"},
@@ -400,8 +401,9 @@ void draw_divider(const Viewer& viewer) {
 
 void set_panel_style(double window_scale) {
   const float s = static_cast<float>(window_scale);
-  ImGui::StyleColorsLight();
   ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
+  ImGui::StyleColorsLight();
   style.WindowRounding = 8;
   style.FrameRounding = style.GrabRounding = style.PopupRounding = 5;
   style.WindowPadding = {12, 10};

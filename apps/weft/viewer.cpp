@@ -14,13 +14,15 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr double kWheelFactor = 0.88;           // of the distance, per click
-constexpr double kRoom = 1.1;                   // extra camera distance, for grabs and swings [1]
-constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures with software OpenGL [s]
-constexpr double kIdle = 0.25;                  // poll interval of an unchanged window [s]
-constexpr int kRest = 4;                        // unchanged pictures before the best one is drawn [1]
-constexpr double kWindow = 1;                   // averaging window of pictures per second [s]
-constexpr double kNewShare = 0.1;               // weight of the last picture in the mean of their times [1]
+constexpr double kWheelFactor = 0.88;                  // of the distance, per click
+constexpr double kRoom = 1.1;                          // extra camera distance, for grabs and swings [1]
+constexpr double kSoftwareInterval = 1 / 30.0;         // between pictures with software OpenGL [s]
+constexpr double kIdle = 0.25;                         // poll interval of an unchanged window [s]
+constexpr int kRest = 4;                               // unchanged pictures before the best one is drawn [1]
+constexpr double kWindow = 1;                          // averaging window of pictures per second [s]
+constexpr double kTextStep = 1.25, kMaxTextScale = 3;  // of the text's size [1]
+constexpr double kTallScreen = 1080;                   // height that the panels are made for [pixels]
+constexpr double kNewShare = 0.1;  // weight of the last picture in the mean of their times [1]
 
 const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
 
@@ -34,7 +36,7 @@ Viewer::Viewer(Opened opened, const ViewRequest& request, const ViewOptions& opt
       window_({.title = "Weft", .size = options.size}),
       renderer_(window_.make_device()),
       quality_(window_.is_software()) {
-  set_panel_style(window_.scale());
+  scale_text(1);
   opened.sides.empty() ? open_gallery() : show(std::move(opened));
 }
 
@@ -435,6 +437,8 @@ void Viewer::on_key(int key, Modifiers held) {
     if (key == 'S') save_scene();
     if (key == 'R') reload();
     if (key == 'O') open_gallery();
+    if (key == '=') scale_text(kTextStep);
+    if (key == '-') scale_text(1 / kTextStep);
     return;
   }
   if (shows_gallery() || on_look_key(key)) return;
@@ -492,6 +496,13 @@ bool Viewer::on_look_key(int key) {
     if (key == letter) return *shown = !*shown, true;
   }
   return false;
+}
+
+void Viewer::scale_text(double factor) {
+  text_scale_ = std::clamp(factor * text_scale_, 1 / kMaxTextScale, kMaxTextScale);
+  const double tall =
+      std::round(window_.size().height / kTallScreen);  // whose scale the system does not tell
+  set_panel_style(text_scale_ * std::max(window_.scale(), tall));
 }
 
 void Viewer::toggle_navigation() {

@@ -88,6 +88,7 @@ class Viewer {
   void toggle_record() { shows_record_ = !shows_record_; }
   void record();  // by record_request
   void stop_recording(bool keeps);
+  void scale_text(double factor);
   void toggle_navigation();                                          // of the controls by the keyboard
   bool wants_focus() { return std::exchange(wants_focus_, false); }  // of the first panel, once
   void toggle_help() { shows_help_ = !shows_help_; }
@@ -165,7 +166,7 @@ class Viewer {
   bool is_playing_ = true, shows_help_ = false, wants_picture_ = false;
   bool shows_numbers_ = false, shows_plots_ = false, shows_record_ = false;
   bool wants_focus_ = false, may_close_ = false;  // although changes are not saved
-  double speed_ = 1;
+  double speed_ = 1, text_scale_ = 1;
 
   Hands hands_{*this};
   std::unique_ptr<Recording> recording_;

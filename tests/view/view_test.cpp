@@ -760,6 +760,14 @@ TEST_F(View, IsUsedByTheKeyboardAlone) {
   paused();
   xdotool("key r");
   until("it is at the start", [](const Json& j) { return j["sides"][0]["steps"] == 0; });
+  const auto height = [](const Json& j) {
+    return j["controls"]["play"][3].get<double>() - j["controls"]["play"][1].get<double>();
+  };
+  const double usual = height(state());
+  xdotool("key ctrl+equal");
+  until("the text is larger", [&](const Json& j) { return height(j) > 1.1 * usual; });
+  xdotool("key ctrl+minus");
+  until("the text is as before", [&](const Json& j) { return height(j) == usual; });
   xdotool("key F6");
   until("the keyboard is in the panel", [](const Json& j) { return j["navigating"] == true; });
   state();
