@@ -38,13 +38,14 @@ using Codes = std::vector<WarningCode>;
 TEST(Problems, NoneOfClothAtRest) {
   const World world = make_sheet();
   ProblemFinder finder(world);
-  for (int frame = 0; frame < 20; ++frame) finder.add_frame(1.0 - 0.01 * frame);
+  for (int frame = 0; frame < 20; ++frame) finder.add_frame(0, 1.0 - 0.01 * frame);
   EXPECT_EQ(codes_of(finder), Codes());
 }
 
 /// Impacts of shipped scenes; with a longest step for the energy check of 1/200 s they gained 37 and 9 mJ.
 TEST(Problems, NoneOfImpactsInShippedScenes) {
-  for (const auto& [name, frames] : {std::pair("two_layers", 22), std::pair("fabrics/drape", 16)}) {
+  for (const auto& [name, frames] : {std::pair("two_layers", 22), std::pair("fabrics/drape", 16),
+                                     std::pair("paper/fig3_horizontal_real", 60)}) {
     const RunReport report = run_scene(shipped(name), {.frames = frames, .check_passages = false});
     EXPECT_TRUE(report.problems.empty()) << name << ": " << report.problems[0].message;
   }
@@ -54,9 +55,9 @@ TEST(Problems, YarnsThatStayTooLong) {
   World world = make_sheet();
   scale(world, {1.2, 1, 1});
   ProblemFinder finder(world);
-  for (int frame = 0; frame < 5; ++frame) finder.add_frame(0);
+  for (int frame = 0; frame < 5; ++frame) finder.add_frame(0, 0);
   EXPECT_EQ(codes_of(finder), Codes()) << "five frames are a jerk";
-  finder.add_frame(0);
+  finder.add_frame(0, 0);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::yarn_strain});
   const RunProblem problem = finder.problems()[0];
   EXPECT_NEAR(problem.value, 0.2, 1e-5);
@@ -69,7 +70,7 @@ TEST(Problems, TrianglesThatStayFlat) {
   World world = make_sheet();
   scale(world, {1, 1, 0.05});
   ProblemFinder finder(world);
-  for (int frame = 0; frame < 6; ++frame) finder.add_frame(0);
+  for (int frame = 0; frame < 6; ++frame) finder.add_frame(0, 0);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::flat_triangle});
   EXPECT_NEAR(finder.problems()[0].value, 0.05, 1e-5);
 }
@@ -77,29 +78,38 @@ TEST(Problems, TrianglesThatStayFlat) {
 TEST(Problems, EnergyFromNothing) {
   const World world = make_sheet();
   ProblemFinder finder(world);
-  for (const double energy : {5.0, 4.0, 4.01, 4.0}) finder.add_frame(energy);
+  for (const double energy : {5.0, 4.0, 4.01, 4.0}) finder.add_frame(0, energy);
   EXPECT_EQ(codes_of(finder), Codes()) << "a hundredth of what has fallen";
-  finder.add_frame(4.1);
+  finder.add_frame(0, 4.1);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::energy_rise});
   EXPECT_NEAR(finder.problems()[0].value, 0.1, 1e-12);
+}
+
+TEST(Problems, ASwingThatLosesNothingMayVaryByAHundredth) {
+  const World world = make_sheet();
+  ProblemFinder finder(world);
+  for (const double kinetic : {0.0, 0.5, 1.0, 0.5, 0.0}) finder.add_frame(kinetic, 1.01 - 0.99 * kinetic);
+  EXPECT_EQ(codes_of(finder), Codes());
+  finder.add_frame(0.5, 0.54);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::energy_rise});
 }
 
 TEST(Problems, EnergyOfWhatIsDrivenIsNone) {
   World world = make_sheet();
   world.set_wind({.velocity = {3, 0, 0}, .drag = 0.25});
   ProblemFinder finder(world);
-  for (const double energy : {5.0, 4.0, 6.0}) finder.add_frame(energy);
+  for (const double energy : {5.0, 4.0, 6.0}) finder.add_frame(0, energy);
   EXPECT_EQ(codes_of(finder), Codes());
 }
 
 TEST(Problems, CrossingsThatAreLeft) {
   const World world = make_sheet();
   ProblemFinder finder(world);
-  finder.add_frame(0);
+  finder.add_frame(0, 0);
   finder.set_crossings(12);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::crossings});
   EXPECT_NE(finder.problems()[0].message.find("solver.untangle"), std::string::npos);
-  finder.add_frame(0);
+  finder.add_frame(0, 0);
   finder.set_crossings(0);
   EXPECT_EQ(codes_of(finder), Codes()) << "what has come apart is no problem any more";
 }
@@ -107,7 +117,7 @@ TEST(Problems, CrossingsThatAreLeft) {
 TEST(Problems, WhatWentThroughBetweenFrames) {
   const World world = make_sheet();
   ProblemFinder finder(world);
-  finder.add_frame(0);
+  finder.add_frame(0, 0);
   finder.add_passages(3);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::passages});
   EXPECT_EQ(finder.problems()[0].value, 3);

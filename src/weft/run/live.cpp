@@ -353,7 +353,8 @@ void LiveSimulation::measure_frame() {
     const ClothId cloth = world().cloth(c);
     last.strain = std::max(last.strain, compute_yarn_strain(world().model(cloth), world().state(cloth)).max);
   }
-  if (is_between_frames()) problems_->add_frame(last.energies.total());
+  if (is_between_frames())
+    problems_->add_frame(last.energies.kinetic, last.energies.total() - last.energies.kinetic);
 }
 
 void LiveSimulation::report_step(const StepReport& report) {

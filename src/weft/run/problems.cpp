@@ -12,7 +12,8 @@ namespace {
 constexpr int kMaxConsecutive = 5;     // frames: allowed duration of strain and flatness
 constexpr double kUsualStrain = 0.15;  // of fabrics without a limit [1]
 constexpr double kMinArea = 0.1;       // share of the rest area [1]
-constexpr double kEnergyShare = 0.02;  // of the range of the total energy so far [1]
+constexpr double kEnergyShare =
+    0.02;  // of the largest kinetic energy, and range of the total one, so far [1]
 
 double strain_limit(const ClothModel& model) {
   if (!model.elements) return kUsualStrain;
@@ -40,11 +41,11 @@ void ProblemFinder::add_step(const StepReport& step) {
   for (const InfeasiblePair& pair : step.infeasible) add_once(pair, found_.infeasible);
 }
 
-void ProblemFinder::add_frame(double energy) {
+void ProblemFinder::add_frame(double kinetic, double potential) {
   found_.strained.resize(world_.num_cloths());
   found_.flat.resize(world_.num_cloths());
   for (int c = 0; c < world_.num_cloths(); ++c) check_cloth(c);
-  check_energy(energy);
+  check_energy(kinetic, potential);
   ++found_.num_frames;
 }
 
@@ -69,7 +70,8 @@ void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_w
   record.is_reported |= ++record.consecutive > kMaxConsecutive;
 }
 
-void ProblemFinder::check_energy(double energy) {
+void ProblemFinder::check_energy(double kinetic, double potential) {
+  const double energy = kinetic + potential;
   if (found_.num_frames == 0) found_.max_energy = found_.min_energy = energy;
   const double rise = found_.num_frames == 0 ? 0 : energy - found_.energy;
   double lift = 0;  // energy to lift all cloth by its thickness [J]
@@ -78,7 +80,9 @@ void ProblemFinder::check_energy(double energy) {
     lift += std::accumulate(model.mass.begin(), model.mass.end(), 0.0) * world_.gravity().norm() *
             model.material.thickness;
   }
-  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * (found_.max_energy - found_.min_energy))
+  found_.max_kinetic = std::max(found_.max_kinetic, kinetic);
+  const double range = std::max(found_.max_energy - found_.min_energy, found_.max_kinetic);
+  if (!world_.is_driven() && rise > lift && rise > kEnergyShare * range)
     record_warning({.code = WarningCode::energy_rise, .value = rise});
   found_.max_energy = std::max(found_.max_energy, energy);
   found_.min_energy = std::min(found_.min_energy, energy);

@@ -20,8 +20,8 @@ struct RunProblem {
 ///
 ///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
 ///     flat_triangle  below a tenth of its area, for more than five frames in a row
-///     energy_rise    in a frame, without external drive, by more than 2 % of the energy range so far, and by
-///                    more than the energy that lifts all cloth by its thickness
+///     energy_rise    in a frame, without external drive, by more than 2 % of the energy that has been in motion
+///                    or lost so far, and by more than the energy that lifts all cloth by its thickness
 ///     cap_reached, contact_skipped, not_converged   by steps
 ///     infeasible     pairs, each once
 ///     crossings      in the last frame
@@ -41,6 +41,7 @@ class ProblemFinder {
     std::vector<InfeasiblePair> infeasible;
     int num_frames = 0, crossings = 0, passages = 0;
     double energy = 0, max_energy = 0, min_energy = 0;  // in the last frame, and in all [J]
+    double max_kinetic = 0;                             // in all [J]
   };
 
   explicit ProblemFinder(const World& world) : world_(world) {}
@@ -52,8 +53,8 @@ class ProblemFinder {
 
   void add_step(const StepReport& step);
 
-  /// `energy`: kinetic and potential, of all cloths [J].
-  void add_frame(double energy);
+  /// Energies of all cloths [J].
+  void add_frame(double kinetic, double potential);
 
   /// Pairs of triangles that cross in the last frame.
   void set_crossings(int count) { found_.crossings = count; }
@@ -67,7 +68,7 @@ class ProblemFinder {
  private:
   void record_warning(const StepWarning& warning);
   void check_cloth(int cloth);
-  void check_energy(double energy);
+  void check_energy(double kinetic, double potential);
   static void update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse);
 
   const World& world_;

@@ -74,7 +74,7 @@ void Recorder::add_frame(const SceneRun& run, RunReport& report) {
   add_strains(run.world(), report);
   add_energy(compute_energy(run.world()), report);
   add_stretches(run.world(), report);
-  problems_->add_frame(report.kinetic_energy.back() + report.potential_energy.back());
+  problems_->add_frame(report.kinetic_energy.back(), report.potential_energy.back());
   if (has_audit_) add_audit(frame_, report.energy);
   frame_ = {};
 }

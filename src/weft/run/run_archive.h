@@ -48,7 +48,7 @@ void describe(Archive& archive, ProblemFinder::Record& r) {
 template <class Archive>
 void describe(Archive& archive, ProblemFinder::Found& f) {
   members(archive, f.strained, f.flat, f.others, f.infeasible, f.num_frames, f.crossings, f.passages,
-          f.energy, f.max_energy, f.min_energy);
+          f.energy, f.max_energy, f.min_energy, f.max_kinetic);
 }
 
 namespace verify {
