@@ -287,6 +287,21 @@ TEST_F(View, TurnsMovesAndZooms) {
   close_by("q");
 }
 
+TEST_F(View, FitsAnySizeOfItsWindow) {
+  open();
+  paused();
+  xdotool("search --sync --onlyvisible --name Weft windowsize 900 600");
+  const Json large = until("the window is larger", [](const Json& j) { return j["size"] == Json{900, 600}; });
+  EXPECT_EQ(large["controls"]["play"], state()["controls"]["play"]);
+  xdotool("key p");
+  const Json saved = until("the picture is saved", [](const Json& j) { return !j["pictures"].empty(); });
+  EXPECT_EQ(read_png(saved["pictures"][0].get<std::string>()).width, 900);
+  xdotool("search --onlyvisible --name Weft windowsize 320 240");
+  until("it is smaller", [](const Json& j) { return j["size"] == Json{320, 240}; });
+  xdotool("mousemove 200 200");
+  close_by("q");
+}
+
 TEST_F(View, PausesStepsResetsAndSwitches) {
   open();
   until("it plays", [](const Json& j) { return j["sides"][0]["steps"] > 12; });
@@ -860,6 +875,13 @@ TEST_F(View, OpensWhatIsDroppedOnIt) {
   EXPECT_EQ(broken["scene"], "flag") << "what was there stays";
   ASSERT_TRUE(drop("triangle.obj"));
   until("the mesh is cloth", [](const Json& j) { return j["scene"] == "triangle"; });
+  ASSERT_EQ(std::system("'" WEFT_PROGRAM "' fabrics denim > denim.toml"), 0);
+  ASSERT_TRUE(drop("denim.toml"));
+  until("it is denim", [](const Json& j) {
+    return j["message"] == "fabric denim" && j["changed"] == true && j["scene"] == "triangle";
+  });
+  xdotool("key ctrl+z");
+  until("it is as it came", [](const Json& j) { return j["changed"] == false; });
   ASSERT_TRUE(drop("run/animation.glb"));
   until("the run is shown", [](const Json& j) { return j["sides"][0].contains("loops"); });
   close_by("q");
