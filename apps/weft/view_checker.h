@@ -16,7 +16,6 @@ class ViewChecker {
   bool update(const Animation& meshes, const AnimationFrame& frame, std::int64_t number);
 
   const std::optional<FrameFindings>& findings() const { return findings_; }  // the newest; empty: none yet
-  void clear() { findings_.reset(), checked_ = -1; }
 
  private:
   std::future<FrameFindings> running_;

@@ -1,8 +1,12 @@
 #include "view_hands.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "viewer.h"
+#include "weft/scene/scene_changes.h"
 
 namespace weft::engine::app {
 namespace {
@@ -12,10 +16,8 @@ constexpr double kTurnDegrees = 0.5;    // likewise, of a body
 constexpr double kClick = 4;            // longest way of a click [pixels]
 constexpr double kTip = 16;             // of the wind's arrow: what the mouse takes hold of [pixels]
 constexpr double kWindLength = 0.02;    // of the arrow, per m/s, as a share of the camera's distance
-constexpr double kStrongestWind = 15;   // [m/s]
 constexpr double kMemory = 0.1;         // over which the speed of a throw is measured [s]
 constexpr double kSlowest = 0.3;        // of throws [m/s]
-constexpr double kFastest = 4;          // likewise, as colliders glide [m/s]
 constexpr double kFlight = 3;           // longest, without a floor [s]
 constexpr double kNewSize = 0.06, kNewAside = 0.25;  // of new bodies, as shares of the camera's distance [1]
 constexpr Color kHand = {0.95, 0.35, 0.02};
@@ -127,10 +129,8 @@ void Hands::click(MouseButton button) {
   const std::optional<ClothPoint> point = hit ? hit->cloth : std::nullopt;
   if (button == MouseButton::right) return viewer_.set_probe(point);
   if (button != MouseButton::left || !held_.control || !point || !viewer_.is_simulation()) return;
-  Eigen::Index nearest = 0;
-  point->weights.maxCoeff(&nearest);
   const ViewSide& side = viewer_.side(side_);
-  const int particle = side.meshes().cloths[point->cloth].triangles[point->triangle][nearest];
+  const int particle = side.meshes().cloths[point->cloth].triangles[point->triangle][point->nearest_corner()];
   const std::vector<int>& pinned = (*side.live_frame()->pins)[point->cloth].particles;
   pin(point->cloth, {particle}, held_.shift || std::ranges::find(pinned, particle) != pinned.end());
 }
@@ -206,7 +206,7 @@ void Hands::let_go_of_body() {
     const double time = std::max(seconds(path.back().first - path.front().first), 1e-3);
     const Vec3 velocity = (path.back().second - path.front().second) / time;
     if (velocity.norm() > kSlowest) {
-      thrown_ = Throw{body_->by.translation, std::min(1.0, kFastest / velocity.norm()) * velocity,
+      thrown_ = Throw{body_->by.translation, std::min(1.0, kMaxGlideSpeed / velocity.norm()) * velocity,
                       viewer_.side(side_).status()->time};
       return;
     }
@@ -270,17 +270,21 @@ void Hands::remove_body() {
 
 // ---- Pins -----------------------------------------------------------------------------------------------
 
-std::optional<std::array<double, 4>> Hands::box() const {
+/// Between the start of the drag and the mouse.
+Eigen::AlignedBox2d Hands::selection() const {
+  Eigen::AlignedBox2d box(Eigen::Vector2d(start_x_, start_y_));
+  return box.extend(Eigen::Vector2d(x_, y_));
+}
+
+std::optional<Eigen::AlignedBox2d> Hands::box() const {
   if (drag_ != Drag::box) return std::nullopt;
-  return std::array{std::min(start_x_, x_), std::min(start_y_, y_), std::max(start_x_, x_),
-                    std::max(start_y_, y_)};
+  return selection();
 }
 
 /// All particles in the box, in front and behind.
 void Hands::pin_box() {
   const WindowPart part = viewer_.part(side_);
-  const Eigen::AlignedBox2d box(Eigen::Vector2d(std::min(start_x_, x_) - part.x, std::min(start_y_, y_)),
-                                Eigen::Vector2d(std::max(start_x_, x_) - part.x, std::max(start_y_, y_)));
+  const Eigen::AlignedBox2d box = selection().translated(Eigen::Vector2d(-part.x, 0));
   const ViewSide& side = viewer_.side(side_);
   for (std::size_t c = 0; c < side.meshes().cloths.size(); ++c) {
     std::vector<int> inside;

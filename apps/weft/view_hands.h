@@ -13,6 +13,8 @@ namespace weft::engine::app {
 
 class Viewer;
 
+inline constexpr double kStrongestWind = 15;  // that the window's controls set [m/s]
+
 class Hands {
  public:
   explicit Hands(Viewer& viewer) : viewer_(viewer) {}
@@ -37,12 +39,11 @@ class Hands {
   Vec3 wind_tip() const;   // likewise [m]
 
   bool is_grabbing() const { return drag_ == Drag::cloth; }
-  bool holds_body() const { return drag_ == Drag::body || drag_ == Drag::turn; }
   bool is_throwing() const { return thrown_.has_value(); }
   int side() const;  // under the mouse
 
-  /// The corners of the selection that is drawn: left, top, right, bottom; empty: none [pixels].
-  std::optional<std::array<double, 4>> box() const;
+  /// The selection that is drawn; empty: none [pixels].
+  std::optional<Eigen::AlignedBox2d> box() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -73,6 +74,7 @@ class Hands {
   void let_go_of_body();
   void fly();
   double floor_height() const;
+  Eigen::AlignedBox2d selection() const;
   void pin_box();
   void pin(int cloth, const std::vector<int>& particles, bool removes);
 

@@ -80,9 +80,12 @@ Opened open_toml(const ViewRequest& request) {
 
 }  // namespace
 
+bool is_integrator(const std::string& name) {
+  return std::ranges::find(integrator_names(), name) != integrator_names().end();
+}
+
 void take_variant(const std::string& name, SceneDesc& scene) {
-  const std::vector<std::string_view>& integrators = integrator_names();
-  if (std::ranges::find(integrators, name) != integrators.end()) {
+  if (is_integrator(name)) {
     scene.solver.integrator = name;
     return;
   }

@@ -24,6 +24,8 @@ struct Opened {
 /// Throws InputError with the mistakes of the file.
 Opened open_view(const ViewRequest& request);
 
+bool is_integrator(const std::string& name);
+
 /// Gives a scene what is compared: the integrator of this name, or the fabric on all cloths. Throws InputError for
 /// other names.
 void take_variant(const std::string& name, SceneDesc& scene);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kMargin = 14, kLegendWidth = 260, kLegendHeight = 14;  // [pixels]
 constexpr int kColors = 64;                                            // of the legend
-constexpr double kShownSize = 1e-3;  // of a force's direction: below, it is not shown [1]
+constexpr double kLeastForce = 1e-6;                                   // with a direction that is shown [N]
 constexpr ImU32 kWind = IM_COL32(20, 90, 160, 255), kBoxLine = IM_COL32(20, 20, 20, 255),
                 kBoxFill = IM_COL32(20, 90, 160, 40), kPaper = IM_COL32(248, 249, 250, 220);
 
@@ -67,7 +67,7 @@ std::string describe(const ProbeReading& reading) {
                          reading.yarns->weft_strain(), reading.yarns->shear());
   const double force = reading.contact.norm();
   words += fmt::format("contact {:.4g} N", force);
-  if (force > 0 && force * 1e3 > kShownSize)
+  if (force > kLeastForce)
     words += fmt::format(" along {:.2f} {:.2f} {:.2f}", reading.contact.x() / force,
                          reading.contact.y() / force, reading.contact.z() / force);
   return words;
@@ -115,8 +115,8 @@ void draw_overlays(Viewer& viewer) {
   }
   if (viewer.look.color && viewer.side(0).no_color().empty()) draw_color_legend(viewer);
   if (const auto box = viewer.hands().box()) {
-    const ImVec2 a(static_cast<float>((*box)[0]), static_cast<float>((*box)[1])),
-        b(static_cast<float>((*box)[2]), static_cast<float>((*box)[3]));
+    const Eigen::Vector2f low = box->min().cast<float>(), high = box->max().cast<float>();
+    const ImVec2 a(low.x(), low.y()), b(high.x(), high.y());
     ImGui::GetForegroundDrawList()->AddRectFilled(a, b, kBoxFill);
     ImGui::GetForegroundDrawList()->AddRect(a, b, kBoxLine, 0, 0, scale());
   }

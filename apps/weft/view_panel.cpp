@@ -14,7 +14,6 @@ namespace weft::engine::app {
 namespace {
 
 constexpr float kMargin = 14, kWidth = 292, kQuestionWidth = 400;  // [pixels]
-constexpr float kStrongestWind = 15;                               // [m/s]
 const ImVec4 kInk(0.10f, 0.12f, 0.16f, 1), kPale(0.36f, 0.40f, 0.46f, 1), kAlarm(0.72f, 0.14f, 0.05f, 1);
 
 const SpringModel kModels[] = {SpringModel::simplified, SpringModel::alternating, SpringModel::basic};
@@ -132,9 +131,10 @@ void draw_wind(Viewer& viewer) {
   Eigen::Vector3f wind = viewer.side(0).status()->wind.velocity.cast<float>();
   bool has_changed = false;
   const char* names[] = {"wind x", "wind y", "wind z"};
+  constexpr float kStrongest = kStrongestWind;
   for (int axis = 0; axis < 3; ++axis) {
     ImGui::SetNextItemWidth(kWidth * 0.58f * scale());
-    has_changed |= ImGui::SliderFloat(names[axis], &wind[axis], -kStrongestWind, kStrongestWind, "%.1f m/s");
+    has_changed |= ImGui::SliderFloat(names[axis], &wind[axis], -kStrongest, kStrongest, "%.1f m/s");
     if (ImGui::IsItemDeactivated()) viewer.settle_edits();
     explain("wind.velocity");
     note_control(viewer, names[axis]);

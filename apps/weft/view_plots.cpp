@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "view_panel.h"
+#include "view_scale.h"
 #include "view_tuning.h"
 #include "viewer.h"
 
@@ -66,16 +67,6 @@ const std::vector<Plot>& plots() {
        {{"linear (CG)", kBlue, [](S s) { return static_cast<double>(s.linear_iterations); }},
         {"nonlinear", kOrange, [](S s) { return static_cast<double>(s.iterations); }}}}};
   return kPlots;
-}
-
-/// 1, 2 or 5 times a power of ten, at least `value`.
-double round_up(double value) {
-  if (!(value > 0)) return 1;
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double digit : {1.0, 2.0, 5.0}) {
-    if (digit * power >= value) return digit * power;
-  }
-  return 10 * power;
 }
 
 /// Values of each series at each sample; of stacked ones the sums with those below.

@@ -38,7 +38,7 @@ Recording::Recording(Viewer& viewer, const RecordRequest& request)
   } else if (is_video(file)) {
     require_ffmpeg(file);
     video_ = std::make_unique<VideoWriter>(file, size_.width, size_.height, rate);
-  } else if (!is_sequence(file) || !is_picture(file)) {
+  } else if (!is_sequence(file)) {
     throw InputError(
         "record to a .mp4, .webp, .gif or .glb file, or to numbered pictures as in frame_####.png; not " +
         file.string());
@@ -59,7 +59,6 @@ Recording::Recording(Viewer& viewer, const RecordRequest& request)
 Recording::~Recording() = default;
 
 void Recording::advance(Renderer& renderer) {
-  if (is_done_) return;
   if (has_failed()) return finish();
   if (!is_there()) return;
   if (frame_ % request_.every == 0) add(renderer);

@@ -11,6 +11,7 @@ constexpr double kFarSmaller = 0.15;  // than the end, as a share [1]
 }  // namespace
 
 double round_up(double value) {
+  if (!(value > 0)) return 1;
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double digit : {1, 2, 5}) {
     if (digit * power >= value) return digit * power;

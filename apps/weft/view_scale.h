@@ -3,7 +3,7 @@
 
 namespace weft::engine::app {
 
-/// 1, 2 or 5 times a power of ten, at least `value` > 0.
+/// 1, 2 or 5 times a power of ten, at least `value`; 1 for values up to 0.
 double round_up(double value);
 
 /// A round number that the values do not exceed. It grows at once, and shrinks only when they are far smaller, so

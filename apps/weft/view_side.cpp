@@ -248,11 +248,9 @@ void RunSide::measure(const LiveInstruments& instruments) {
 std::optional<ProbeReading> RunSide::probe() const {
   if (!probe_) return std::nullopt;
   const Triangle& corners = meshes_.cloths[probe_->cloth].triangles[probe_->triangle];
-  Eigen::Index nearest = 0;
-  probe_->weights.maxCoeff(&nearest);
   ProbeReading reading{.cloth = meshes_.cloths[probe_->cloth].name,
                        .triangle = probe_->triangle,
-                       .particle = corners[nearest]};
+                       .particle = corners[probe_->nearest_corner()]};
   for (int k = 0; k < 3; ++k) reading.point += probe_->weights[k] * position(probe_->cloth, corners[k]);
   return reading;
 }

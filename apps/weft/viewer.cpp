@@ -358,11 +358,7 @@ double Viewer::frames_per_second() const {
   return is_simulation() ? edits_->now().fps : sides_[0]->head()->frames_per_second;
 }
 
-bool Viewer::compares_fabrics() const {
-  const std::vector<std::string_view>& names = integrator_names();
-  return std::ranges::any_of(
-      compared_, [&](const std::string& name) { return std::ranges::find(names, name) == names.end(); });
-}
+bool Viewer::compares_fabrics() const { return !std::ranges::all_of(compared_, is_integrator); }
 
 // ---- Recording ------------------------------------------------------------------------------------------
 
@@ -382,7 +378,7 @@ void Viewer::stop_recording(bool keeps) {
   if (!keeps) return say("the recording is cancelled");
   try {
     if (!ended->is_done()) ended->finish();
-    say("written " + ended->file());
+    say(ended->drawn() > 0 ? "written " + ended->file() : "nothing is recorded: there was no frame to draw");
   } catch (const InputError& error) {
     say(error.what());
   }

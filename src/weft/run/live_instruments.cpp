@@ -38,9 +38,8 @@ ProbeReading read_probe(const World& world, const ClothPoint& at, const std::vec
   const ClothModel& model = world.model(cloth);
   const ClothState& state = world.state(cloth);
   const Triangle& corners = model.topology->mesh.triangles[at.triangle];
-  Eigen::Index nearest = 0;
-  at.weights.maxCoeff(&nearest);
-  ProbeReading reading{.cloth = world.name(cloth), .triangle = at.triangle, .particle = corners[nearest]};
+  ProbeReading reading{
+      .cloth = world.name(cloth), .triangle = at.triangle, .particle = corners[at.nearest_corner()]};
   for (int k = 0; k < 3; ++k) reading.point += at.weights[k] * state.position(corners[k]);
   reading.velocity = state.v.get(reading.particle);
   reading.yarns = find_yarns(model, state, at.triangle);

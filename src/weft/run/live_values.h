@@ -27,6 +27,13 @@ struct LiveSettings {
 struct ClothPoint {
   int cloth = 0, triangle = 0;
   Vec3 weights = Vec3::Constant(1.0 / 3);  // [1]
+
+  /// The nearest of the triangle's corners: 0, 1 or 2.
+  int nearest_corner() const {
+    Eigen::Index corner = 0;
+    weights.maxCoeff(&corner);
+    return static_cast<int>(corner);
+  }
   bool operator==(const ClothPoint&) const = default;
 };
 

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kSameSize = 1e-9;  // difference of two lengths by rounding [m]
 constexpr double kLag = 0.07;       // of a gliding collider [s]
-constexpr double kMaxSpeed = 4;     // of a gliding collider [m/s]
 constexpr double kMaxTurn = 6.3;    // of a gliding collider [rad/s]
 constexpr double kArrival = 1e-4;   // distance to the place, and angle, that a glide ends within [m], [rad]
 
@@ -153,7 +152,7 @@ std::optional<Pose> glide(const Pose& from, const Pose& to, const Vec3& center, 
   const double way = (end - start).norm(), angle = std::abs(turn.angle());
   if (way < kSameSize && angle < kSameSize) return {};
   if (way < kArrival && angle < kArrival) return to;
-  const Vec3 place = start + share_of(way, kMaxSpeed, dt) * (end - start);
+  const Vec3 place = start + share_of(way, kMaxGlideSpeed, dt) * (end - start);
   const Eigen::AngleAxisd part(share_of(angle, kMaxTurn, dt) * turn.angle(), turn.axis());
   const Mat3 rotation = part.toRotationMatrix() * from.rotation;
   return Pose{place - rotation * center, rotation};

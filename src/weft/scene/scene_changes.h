@@ -24,8 +24,10 @@ bool changes_bodies(const SceneDesc& now, const SceneDesc& wanted);
 /// invalid numbers; the world is then as before.
 void apply_changes(const SceneDesc& now, const SceneDesc& wanted, weft::World& world);
 
+inline constexpr double kMaxGlideSpeed = 4;  // of glide_colliders() [m/s]
+
 /// Moves displaced colliders towards the places of the scene in the next step, as a hand does: by a lag of 70 ms,
-/// with at most 4 m/s and a turn per second. It replaces the single step of apply_changes(). Call it before
+/// with at most kMaxGlideSpeed and a turn per second. It replaces the single step of apply_changes(). Call it before
 /// every step of length `dt` [s].
 void glide_colliders(const SceneDesc& scene, double dt, weft::World& world);
 
