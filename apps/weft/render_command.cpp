@@ -63,16 +63,19 @@ class Source {
     if (scene_) return;
     if (!request.overrides.empty())
       throw InputError("--set does not apply to " + file_.string() + ": it is already simulated");
-    if (request.color && *request.color != ParticleValue::speed)
-      throw InputError("--color strain, shear and contact require a scene: " + file_.string() +
-                       " contains positions; speed is computed from them");
-    if (request.springs)
-      throw InputError("--springs requires a scene: " + file_.string() + " does not contain springs");
+    if (request.color == ParticleValue::contact)
+      throw InputError("--color contact requires a scene: " + file_.string() + " has no forces of contacts");
+    if (!request.springs && (!request.color || *request.color == ParticleValue::speed)) return;
+    run_ = open_frames_and_world(file_);
+    if (!run_.world)
+      throw InputError(
+          std::string(request.springs ? "--springs requires" : "--color strain and shear require") +
+          " the run's scene: " + run_.why_not);
   }
 
   /// At least up to the last requested frame, unless the simulation ends before.
-  Footage get() const {
-    if (!scene_) return {open_frames(file_), RunOutcome::done};
+  Footage get() {
+    if (!scene_) return {frames_of_run(), RunOutcome::done};
     RunOptions options{.threads = choose_threads(request_.threads),
                        .check_passages = false,
                        .keep_going = [] { return !interrupted(); }};
@@ -91,21 +94,31 @@ class Source {
     return {std::move(film), report.outcome};
   }
 
-  bool is_file() const { return !scene_; }
-
   std::vector<SpringsToDraw> springs() const {
-    std::vector<SpringsToDraw> springs;
-    if (!request_.springs) return springs;
-    const SceneWorld built = build_world(*scene_, make_jobs(1));
-    for (int c = 0; c < built.world.num_cloths(); ++c)
-      springs.push_back({c, built.world.model(built.world.cloth(c)).topology});
-    return springs;
+    if (!request_.springs) return {};
+    return run_.world ? springs_of(run_.world->world())
+                      : springs_of(build_world(*scene_, make_jobs(1)).world);
   }
 
  private:
+  static std::vector<SpringsToDraw> springs_of(const World& world) {
+    std::vector<SpringsToDraw> springs;
+    for (int c = 0; c < world.num_cloths(); ++c) springs.push_back({c, world.model(world.cloth(c)).topology});
+    return springs;
+  }
+
+  /// With the values to colour by.
+  std::unique_ptr<FrameSource> frames_of_run() {
+    if (!run_.frames) run_.frames = open_frames(file_);
+    if (request_.color == ParticleValue::speed) return std::make_unique<FramesWithSpeeds>(*run_.frames);
+    if (request_.color) return std::make_unique<FramesWithValues>(*run_.frames, *run_.world, *request_.color);
+    return std::move(run_.frames);
+  }
+
   const RenderRequest& request_;
   std::optional<SceneDesc> scene_;
-  fs::path file_;  // or folder, without a scene
+  fs::path file_;       // or folder, without a scene
+  FramesAndWorld run_;  // its frames, with a world if that is needed
 };
 
 PaintSettings paint_settings(const RenderRequest& request) {
@@ -172,25 +185,23 @@ class DrawingProgress {
 RunOutcome render(const RenderRequest& request) {
   require_picture(request.out);
   PaintSettings settings = paint_settings(request);
-  const Source source(request);
+  Source source(request);
   auto device = make_offscreen_device();  // first: fails before simulating on machines without graphics
   if (request.out.has_parent_path()) make_folder(request.out.parent_path());
   if (!is_sequence(request.out)) require_writable(request.out);
   if (is_video(request.out)) require_ffmpeg(request.out);
   catch_interrupts();
   const auto [film, outcome] = source.get();
-  FramesWithSpeeds with_speeds(*film);
-  FrameSource& shown = request.color && source.is_file() ? with_speeds : *film;
   settings.style.springs = source.springs();
   if (request.color) {
-    const int last = shown.num_frames() - 1;
+    const int last = film->num_frames() - 1;
     const std::vector<int> drawn = drawn_frames(request, outcome, last);
     require_frames(drawn, last);
     settings.legend = label_of(*request.color).text();
     settings.style.range =
-        request.range.empty() ? find_range(shown, drawn) : std::array{request.range[0], request.range[1]};
+        request.range.empty() ? find_range(*film, drawn) : std::array{request.range[0], request.range[1]};
   }
-  Painter painter(shown, settings, std::move(device));
+  Painter painter(*film, settings, std::move(device));
   const bool was_interrupted = interrupted();  // while simulating
   DrawingProgress progress;
   const auto go_on = [&](int drawn, int all) {

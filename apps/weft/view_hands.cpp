@@ -131,7 +131,7 @@ void Hands::click(MouseButton button) {
   if (button != MouseButton::left || !held_.control || !point || !viewer_.is_simulation()) return;
   const ViewSide& side = viewer_.side(side_);
   const int particle = side.meshes().cloths[point->cloth].triangles[point->triangle][point->nearest_corner()];
-  const std::vector<int>& pinned = (*side.live_frame()->pins)[point->cloth].particles;
+  const std::vector<int>& pinned = (*side.measured()->pins)[point->cloth].particles;
   pin(point->cloth, {particle}, held_.shift || std::ranges::find(pinned, particle) != pinned.end());
 }
 
@@ -298,7 +298,7 @@ void Hands::pin_box() {
 }
 
 void Hands::pin(int cloth, const std::vector<int>& particles, bool removes) {
-  const LivePins& pins = (*viewer_.side(side_).live_frame()->pins)[cloth];
+  const LivePins& pins = (*viewer_.side(side_).measured()->pins)[cloth];
   SceneDesc next = viewer_.edits()->now();
   ClothSceneDesc& pinned = next.cloths[cloth];
   if (pins.vertices.size() != pinned.pins.size())

@@ -60,16 +60,17 @@ std::string describe(const ProbeReading& reading) {
                                   reading.particle, reading.is_pinned ? " (pinned)" : "");
   words +=
       fmt::format("at {:.4f} {:.4f} {:.4f} m\n", reading.point.x(), reading.point.y(), reading.point.z());
-  if (reading.mass == 0) return words;  // of a run
+  if (reading.mass == 0) return words;
   words += fmt::format("speed {:.4g} m/s, mass {:.4g} g\n", reading.velocity.norm(), 1000 * reading.mass);
   if (reading.yarns)
     words += fmt::format("warp {:+.3g} %, weft {:+.3g} %, shear {:.3g} deg\n", reading.yarns->warp_strain(),
                          reading.yarns->weft_strain(), reading.yarns->shear());
-  const double force = reading.contact.norm();
+  if (!reading.contact) return words;
+  const double force = reading.contact->norm();
   words += fmt::format("contact {:.4g} N", force);
   if (force > kLeastForce)
-    words += fmt::format(" along {:.2f} {:.2f} {:.2f}", reading.contact.x() / force,
-                         reading.contact.y() / force, reading.contact.z() / force);
+    words += fmt::format(" along {:.2f} {:.2f} {:.2f}", reading.contact->x() / force,
+                         reading.contact->y() / force, reading.contact->z() / force);
   return words;
 }
 

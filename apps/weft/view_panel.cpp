@@ -218,7 +218,7 @@ void draw_look(Viewer& viewer) {
   };
   int column = 0;
   for (const auto& [name, value, meaning] : switches) {
-    if (!viewer.is_simulation() && value != &look.checker) continue;
+    if (!viewer.can_show(*value)) continue;
     if (column++ % 2 == 1) ImGui::SameLine(kWidth * 0.5f * scale());
     ImGui::Checkbox(name, value);
     if (ImGui::IsItemHovered()) show_tooltip(meaning);
@@ -272,6 +272,8 @@ void draw_view(Viewer& viewer) {
     if (ImGui::SmallButton("numbers (N)")) viewer.toggle_numbers();
     note_control(viewer, "numbers");
     ImGui::SameLine();
+  }
+  if (viewer.side(0).measured()) {
     if (ImGui::SmallButton("plots (T)")) viewer.toggle_plots();
     note_control(viewer, "plots");
     ImGui::SameLine();
@@ -350,13 +352,13 @@ constexpr KeyHelp kHelp[] = {
     {"M", "next spring model", KeyOf::simulation},
     {"W", "wind: drag the arrow's tip", KeyOf::simulation},
     {"1, 2, 3, 4, 5", "colour: its own, strain, shear, speed, contact", KeyOf::simulation},
-    {"1, 4", "colour: its own, speed", KeyOf::run},
-    {"G, Y, E", "springs, yarns, seams", KeyOf::simulation},
-    {"X, F", "pins, contact forces", KeyOf::simulation},
+    {"1, 2, 3, 4", "colour: its own, strain, shear, speed", KeyOf::run},
+    {"G, Y, E, X", "springs, yarns, seams, pins"},
+    {"F", "contact forces", KeyOf::simulation},
     {"K", "the exact checker"},
     {"V", "record"},
     {"N", "numbers: fabric, solver, colliders", KeyOf::simulation},
-    {"T", "plots over time", KeyOf::simulation},
+    {"T", "plots over time"},
     {"ctrl+Z, ctrl+Y", "undo, redo a change of numbers", KeyOf::simulation},
     {"ctrl+S", "save the scene", KeyOf::simulation},
     {"ctrl+R", "read the file again"},
@@ -428,7 +430,7 @@ void draw_panel(Viewer& viewer) {
   draw_main_box(viewer);
   for (int s = 0; viewer.num_sides() > 1 && s < viewer.num_sides(); ++s) draw_side_box(viewer, s);
   if (viewer.is_simulation() && viewer.shows_numbers()) draw_tuning(viewer);
-  if (viewer.is_simulation() && viewer.shows_plots()) draw_plots(viewer);
+  if (viewer.side(0).measured() && viewer.shows_plots()) draw_plots(viewer);
   if (viewer.shows_record()) draw_record(viewer);
   if (viewer.shows_help()) draw_help(viewer.is_simulation());
 }

@@ -29,8 +29,10 @@ struct Series {
 struct Plot {
   const char* title;
   const char* unit;
-  bool is_stacked;  // areas on each other, else lines
   std::vector<Series> series;
+  bool is_stacked = false;   // areas on each other, else lines
+  bool is_of_frames = true;  // measured once per frame, else at every step
+  bool is_of_runs = true;    // known of the frames of a run
 };
 
 const std::vector<Plot>& plots() {
@@ -40,32 +42,42 @@ const std::vector<Plot>& plots() {
                   kSky = IM_COL32(86, 180, 233, 255), kPink = IM_COL32(204, 121, 167, 255);
   using S = const LiveSample&;
   static const std::vector<Plot> kPlots = {
-      {"work per step",
-       "ms",
-       true,
-       {{"pair lists", kSky, [](S s) { return kMs * s.work.lists; }},
-        {"distances", kBlue, [](S s) { return kMs * s.work.narrow_phase; }},
-        {"contact in the solve", kPink,
-         [](S s) { return kMs * (s.work.rows + s.work.product + s.work.set_up); }},
-        {"preconditioner", kGreen, [](S s) { return kMs * s.work.v_cycle; }},
-        {"projection, CCD", kRed, [](S s) { return kMs * (s.work.projection + s.work.ccd); }},
-        {"cloth and rest", kOrange, [](S s) { return kMs * std::max(s.work.total - s.work.kinds(), 0.0); }}}},
-      {"largest strain", "%", false, {{"yarn", kRed, [](S s) { return 100 * s.strain; }}}},
-      {"energy",
-       "J",
-       false,
-       {{"kinetic", kBlue, [](S s) { return s.energies.kinetic; }},
-        {"elastic", kRed, [](S s) { return s.energies.elastic; }},
-        {"bending", kGreen, [](S s) { return s.energies.bending; }}}},
-      {"contacts",
-       "1",
-       false,
-       {{"with a force", kBlue, [](S s) { return static_cast<double>(s.contacts); }}}},
-      {"iterations",
-       "1",
-       false,
-       {{"linear (CG)", kBlue, [](S s) { return static_cast<double>(s.linear_iterations); }},
-        {"nonlinear", kOrange, [](S s) { return static_cast<double>(s.iterations); }}}}};
+      {.title = "work per step",
+       .unit = "ms",
+       .series = {{"pair lists", kSky, [](S s) { return kMs * s.work.lists; }},
+                  {"distances", kBlue, [](S s) { return kMs * s.work.narrow_phase; }},
+                  {"contact in the solve", kPink,
+                   [](S s) { return kMs * (s.work.rows + s.work.product + s.work.set_up); }},
+                  {"preconditioner", kGreen, [](S s) { return kMs * s.work.v_cycle; }},
+                  {"projection, CCD", kRed, [](S s) { return kMs * (s.work.projection + s.work.ccd); }},
+                  {"cloth and rest", kOrange,
+                   [](S s) { return kMs * std::max(s.work.total - s.work.kinds(), 0.0); }}},
+       .is_stacked = true,
+       .is_of_frames = false,
+       .is_of_runs = false},
+      {.title = "largest strain",
+       .unit = "%",
+       .series = {{"yarn", kRed, [](S s) { return 100 * s.strain; }}}},
+      {.title = "energy",
+       .unit = "J",
+       .series = {{"kinetic", kBlue, [](S s) { return s.energies.kinetic; }},
+                  {"elastic", kRed, [](S s) { return s.energies.elastic; }},
+                  {"bending", kGreen, [](S s) { return s.energies.bending; }}}},
+      {.title = "contacts",
+       .unit = "1",
+       .series = {{"with a force", kBlue, [](S s) { return static_cast<double>(s.contacts); }}},
+       .is_of_frames = false,
+       .is_of_runs = false},
+      {.title = "iterations",
+       .unit = "1",
+       .series = {{"linear (CG)", kBlue, [](S s) { return static_cast<double>(s.linear_iterations); }},
+                  {"nonlinear", kOrange, [](S s) { return static_cast<double>(s.iterations); }}},
+       .is_of_frames = false},
+      {.title = "residual of CG",
+       .unit = "%",
+       .series = {{"largest of the step", kRed, [](S s) { return 100 * s.residual; }}},
+       .is_of_frames = false,
+       .is_of_runs = false}};
   return kPlots;
 }
 
@@ -91,6 +103,12 @@ std::deque<LiveSample> of_frames(const std::deque<LiveSample>& samples) {
   return measured;
 }
 
+/// The last sample up to a time; -1: none.
+int find_sample(const std::deque<LiveSample>& samples, double time) {
+  const auto after = std::ranges::upper_bound(samples, time, {}, &LiveSample::time);
+  return static_cast<int>(after - samples.begin()) - 1;
+}
+
 void draw_legend(const Plot& plot, const std::deque<LiveSample>& samples, int at) {
   ImGui::TextUnformatted(fmt::format("{} [{}]", plot.title, plot.unit).c_str());
   for (const Series& series : plot.series) {
@@ -103,7 +121,8 @@ void draw_legend(const Plot& plot, const std::deque<LiveSample>& samples, int at
   }
 }
 
-void draw_plot(Viewer& viewer, const Plot& plot, const std::deque<LiveSample>& samples) {
+/// `time`: of what is shown.
+void draw_plot(Viewer& viewer, const Plot& plot, const std::deque<LiveSample>& samples, double time) {
   const float scale = ImGui::GetIO().FontGlobalScale;
   const std::vector<std::vector<double>> curves = evaluate(plot, samples);
   double top = 0;
@@ -147,7 +166,9 @@ void draw_plot(Viewer& viewer, const Plot& plot, const std::deque<LiveSample>& s
         out.AddLine({x0, y0}, {x1, y1}, plot.series[c].color, 1.5f * scale);
     }
   }
-  int at = samples.empty() ? -1 : static_cast<int>(samples.size()) - 1;
+  int at = find_sample(samples, time);
+  if (at >= 0)
+    out.AddLine({x(static_cast<std::size_t>(at)), low.y}, {x(static_cast<std::size_t>(at)), high.y}, kGrid);
   if (ImGui::IsItemHovered() && !samples.empty()) {
     const float mouse = ImGui::GetIO().MousePos.x;
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -173,8 +194,8 @@ void draw_plots(Viewer& viewer) {
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   for (const Plot& plot : plots()) {
-    const std::string title = plot.title;
-    draw_plot(viewer, plot, title == "energy" || title == "largest strain" ? frames : steps);
+    if (viewer.is_simulation() || plot.is_of_runs)
+      draw_plot(viewer, plot, plot.is_of_frames ? frames : steps, viewer.side(0).time());
   }
   ImGui::End();
 }

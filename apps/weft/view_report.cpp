@@ -68,7 +68,7 @@ Json instruments(const ViewSide& side) {
     json["bodies"].push_back(to_json(side.box_of_body(static_cast<int>(b)).center()));
   const std::optional<ProbeReading> probe = side.probe();
   json["probe"] = probe ? Json(probe->particle) : Json();
-  const LiveFrame* frame = side.live_frame();
+  const LiveFrame* frame = side.measured();
   if (!frame) return json;
   json["pinned"] = frame->pins ? (*frame->pins)[0].particles.size() : 0;
   json["contacts"] = frame->contacts.size();

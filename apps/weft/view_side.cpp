@@ -74,9 +74,9 @@ Picture ViewSide::draw(const Camera& camera, const ViewLook& look, const ViewSca
 }
 
 void ViewSide::add_pins(Picture& picture) const {
-  if (!live_frame() || !live_frame()->pins) return;
+  if (!measured() || !measured()->pins) return;
   DrawnDots dots{.color = kPin, .diameter = 7};
-  const std::vector<LivePins>& pins = *live_frame()->pins;
+  const std::vector<LivePins>& pins = *measured()->pins;
   for (std::size_t c = 0; c < pins.size(); ++c) {
     for (const int particle : pins[c].particles)
       dots.positions.push_back(towards_eye(position(static_cast<int>(c), particle), picture.camera));
@@ -85,9 +85,9 @@ void ViewSide::add_pins(Picture& picture) const {
 }
 
 void ViewSide::add_seams(Picture& picture) const {
-  if (!live_frame() || !live_frame()->seams) return;
+  if (!measured() || !measured()->seams) return;
   DrawnLines lines{.color = kSeam, .width = 2};
-  const std::vector<SeamEdges>& seams = *live_frame()->seams;
+  const std::vector<SeamEdges>& seams = *measured()->seams;
   for (std::size_t c = 0; c < seams.size(); ++c) {
     for (const auto& edge : seams[c]) {
       for (const int particle : edge)
@@ -98,9 +98,9 @@ void ViewSide::add_seams(Picture& picture) const {
 }
 
 void ViewSide::add_yarns(Picture& picture) const {
-  if (!live_frame()) return;
+  if (!measured()) return;
   DrawnLines warp{.color = kWarp, .width = 2}, weft{.color = kWeft, .width = 2};
-  const std::vector<YarnCross>& yarns = live_frame()->yarns;
+  const std::vector<YarnCross>& yarns = measured()->yarns;
   const std::size_t step = yarns.size() / kMaxYarns + 1;
   for (std::size_t k = 0; k < yarns.size(); k += step) {
     const Vec3 middle = towards_eye(yarns[k].position, picture.camera);
@@ -114,11 +114,11 @@ void ViewSide::add_yarns(Picture& picture) const {
 }
 
 void ViewSide::add_contacts(const ViewScales& scales, Picture& picture) const {
-  if (!live_frame()) return;
+  if (!measured()) return;
   DrawnLines arrows{.color = kContact, .width = 2};
   DrawnDots feet{.color = kContact, .diameter = 4};
   const double length = kArrow * picture.camera.distance / scales.force;
-  for (const ContactForce& contact : live_frame()->contacts) {
+  for (const ContactForce& contact : measured()->contacts) {
     const Vec3 foot = towards_eye(contact.position, picture.camera);
     feet.positions.push_back(foot);
     arrows.ends.insert(arrows.ends.end(), {foot, foot + length * contact.force});
@@ -169,9 +169,8 @@ double ViewSide::largest_value() const {
 
 double ViewSide::largest_force() const {
   double largest = 0;
-  if (!live_frame()) return largest;
-  for (const ContactForce& contact : live_frame()->contacts)
-    largest = std::max(largest, contact.force.norm());
+  if (!measured()) return largest;
+  for (const ContactForce& contact : measured()->contacts) largest = std::max(largest, contact.force.norm());
   return largest;
 }
 
@@ -210,13 +209,20 @@ bool LiveSide::update() {
 }
 
 RunSide::RunSide(const std::filesystem::path& path)
-    : frames_(open_frames(path)),
-      title_(frames_->meshes().title.empty() ? path.string() : frames_->meshes().title),
-      reach_(find_reach(*frames_)),
-      head_{.frames_per_second = frames_->meshes().frames_per_second, .is_playing = false} {
-  meshes_ = frames_->meshes();
-  frame_ = read(0);
+    : run_(open_frames_and_world(path)),
+      title_(run_.frames->meshes().title.empty() ? path.string() : run_.frames->meshes().title),
+      reach_(find_reach(*run_.frames)),
+      head_{.frames_per_second = run_.frames->meshes().frames_per_second, .is_playing = false} {
+  meshes_ = run_.frames->meshes();
   ground_ = find_ground(reach_);
+  if (run_.world) {
+    const World& world = run_.world->world();
+    measured_.seams = std::make_shared<const std::vector<SeamEdges>>(find_seams(run_.world->public_world()));
+    measured_.pins = std::make_shared<const std::vector<LivePins>>(
+        find_pins(run_.world->scene(), run_.world->public_world()));
+    for (int c = 0; c < world.num_cloths(); ++c) topologies_.push_back(world.model(world.cloth(c)).topology);
+  }
+  show(0);
 }
 
 bool RunSide::update() {
@@ -225,40 +231,67 @@ bool RunSide::update() {
   if (updated_) head_.advance(std::chrono::duration<double>(now - *updated_).count(), num_frames());
   updated_ = now;
   if (head_.frame() == number_) return was_playing != head_.is_playing;
-  number_ = head_.frame();
-  frame_ = read(number_);
-  ++num_updates_;
+  show(head_.frame());
   return true;
 }
 
-/// A run has positions only: speeds are computed from them.
-AnimationFrame RunSide::read(int frame) {
-  if (color_ != ParticleValue::speed) return frames_->read(frame);
-  return FramesWithSpeeds(*frames_).read(frame);
+void RunSide::show(int frame) {
+  number_ = frame;
+  ++num_updates_;
+  if (run_.world) return show_world(frame);
+  frame_ = instruments_.color == ParticleValue::speed ? FramesWithSpeeds(*run_.frames).read(frame)
+                                                      : run_.frames->read(frame);
+}
+
+/// The world in the state of the frame, with instruments and a sample.
+void RunSide::show_world(int frame) {
+  run_.world->show(*run_.frames, frame);
+  const World& world = run_.world->world();
+  measured_.meshes = run_.frames->read(frame);
+  LiveInstruments wanted = instruments_;  // forces of contacts are not in a run
+  wanted.contacts = false;
+  if (wanted.color == ParticleValue::contact) wanted.color.reset();
+  read_instruments(world, wanted, *measured_.pins, measured_);
+  frame_ = measured_.meshes;
+  const auto next = std::ranges::lower_bound(samples_, world.time(), {}, &LiveSample::time);
+  if (next != samples_.end() && next->time == world.time()) return;
+  const auto count = [&](const std::vector<int>& series) {
+    return frame > 0 && std::cmp_less_equal(frame, series.size())
+               ? series[static_cast<std::size_t>(frame) - 1]
+               : 0;
+  };
+  LiveSample sample{.time = world.time(),
+                    .iterations = count(run_.counts.newton_steps),
+                    .linear_iterations = count(run_.counts.cg_iterations),
+                    .divisions = count(run_.counts.divisions)};
+  measure_world(run_.world->public_world(), sample);
+  samples_.insert(next, sample);
 }
 
 void RunSide::measure(const LiveInstruments& instruments) {
-  probe_ = instruments.probe;
-  if (color_ == instruments.color) return;
-  color_ = instruments.color;
-  frame_ = read(number_);
+  if (instruments_ == instruments) return;
+  instruments_ = instruments;
+  show(number_);
 }
 
-/// Where the point is: a run has neither velocities nor forces.
 std::optional<ProbeReading> RunSide::probe() const {
-  if (!probe_) return std::nullopt;
-  const Triangle& corners = meshes_.cloths[probe_->cloth].triangles[probe_->triangle];
-  ProbeReading reading{.cloth = meshes_.cloths[probe_->cloth].name,
-                       .triangle = probe_->triangle,
-                       .particle = corners[probe_->nearest_corner()]};
-  for (int k = 0; k < 3; ++k) reading.point += probe_->weights[k] * position(probe_->cloth, corners[k]);
+  if (!instruments_.probe) return std::nullopt;
+  if (run_.world) return measured_.probe;
+  const ClothPoint& point = *instruments_.probe;
+  const Triangle& corners = meshes_.cloths[point.cloth].triangles[point.triangle];
+  ProbeReading reading{.cloth = meshes_.cloths[point.cloth].name,
+                       .triangle = point.triangle,
+                       .particle = corners[point.nearest_corner()]};
+  for (int k = 0; k < 3; ++k) reading.point += point.weights[k] * position(point.cloth, corners[k]);
   return reading;
 }
 
 std::string RunSide::no_color() const {
-  if (!color_ || *color_ == ParticleValue::speed) return "";
-  return label_of(*color_).name +
-         " requires a simulation: a run contains positions; speed is computed from them";
+  const std::optional<ParticleValue>& color = instruments_.color;
+  if (color == ParticleValue::contact) return "a run has no forces of contacts: they require a simulation";
+  if (run_.world) return measured_.no_color;
+  if (!color || *color == ParticleValue::speed) return "";
+  return label_of(*color).name + " requires the run's scene: " + run_.why_not;
 }
 
 }  // namespace weft::engine::app

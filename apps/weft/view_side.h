@@ -53,16 +53,14 @@ class ViewSide {
   /// Whether it goes on by itself: false after a failed step, and at the end of a run that does not loop.
   virtual bool is_going() const = 0;
 
-  virtual LiveSimulation* live() { return nullptr; }               // null: frames of a run
-  virtual const LiveFrame* live_frame() const { return nullptr; }  // the newest of live()
-  const LiveStatus* status() const { return live_frame() ? &live_frame()->status : nullptr; }
-  virtual const std::deque<LiveSample>& samples() const {  // of the last steps of live()
-    static const std::deque<LiveSample> kNone;
-    return kNone;
-  }
-  virtual PlayHead* head() { return nullptr; }  // null: a simulation
-  virtual int num_frames() { return 0; }        // of a run, with the start
-  virtual int frame() const { return 0; }       // of a run: the current one
+  virtual LiveSimulation* live() { return nullptr; }                  // null: frames of a run
+  virtual const LiveStatus* status() const { return nullptr; }        // of live()
+  virtual const LiveFrame* measured() const { return nullptr; }       // null: only positions are known
+  const std::deque<LiveSample>& samples() const { return samples_; }  // by ascending time
+  virtual double time() const = 0;                                    // of what is shown [s]
+  virtual PlayHead* head() { return nullptr; }                        // null: a simulation
+  virtual int num_frames() { return 0; }                              // of a run, with the start
+  virtual int frame() const { return 0; }                             // of a run: the current one
 
   virtual void measure(const LiveInstruments& instruments) = 0;  // from the next frame on
   virtual std::optional<ProbeReading> probe() const = 0;         // of the measured point
@@ -91,9 +89,10 @@ class ViewSide {
 
   Animation meshes_;                                              // without frames
   AnimationFrame frame_;                                          // the current one
-  std::vector<std::shared_ptr<const ClothTopology>> topologies_;  // (num_cloths) of live()
+  std::vector<std::shared_ptr<const ClothTopology>> topologies_;  // (num_cloths) of measured()
   double ground_ = 0;             // height of the ground in scenes without a floor [m]
   std::int64_t num_updates_ = 0;  // of frame_
+  std::deque<LiveSample> samples_;
 
  private:
   void add_pins(Picture& picture) const;
@@ -120,23 +119,23 @@ class LiveSide : public ViewSide {
   bool update() override;
   bool is_going() const override { return newest_.status.failure.empty(); }
   LiveSimulation* live() override { return &live_; }
-  const LiveFrame* live_frame() const override { return &newest_; }
+  const LiveStatus* status() const override { return &newest_.status; }
+  const LiveFrame* measured() const override { return &newest_; }
+  double time() const override { return newest_.status.time; }
   void measure(const LiveInstruments& instruments) override { live_.measure(instruments); }
   std::optional<ProbeReading> probe() const override { return newest_.probe; }
   std::string no_color() const override { return newest_.no_color; }
-  const std::deque<LiveSample>& samples() const override { return samples_; }
 
  private:
   LiveSimulation live_;
   LiveFrame newest_;
   std::shared_ptr<const Animation> start_;  // of meshes_
-  std::deque<LiveSample> samples_;
 };
 
 /// The frames of a run, in their time.
 class RunSide : public ViewSide {
  public:
-  /// Throws InputError like open_frames().
+  /// Throws InputError like open_frames_and_world().
   explicit RunSide(const std::filesystem::path& path);
 
   const std::string& title() const override { return title_; }
@@ -149,8 +148,10 @@ class RunSide : public ViewSide {
   bool update() override;
   bool is_going() const override { return head_.is_playing; }
   PlayHead* head() override { return &head_; }
-  int num_frames() override { return frames_->num_frames(); }
+  int num_frames() override { return run_.frames->num_frames(); }
   int frame() const override { return number_; }
+  const LiveFrame* measured() const override { return run_.world ? &measured_ : nullptr; }
+  double time() const override { return number_ / head_.frames_per_second; }
   void measure(const LiveInstruments& instruments) override;
   std::optional<ProbeReading> probe() const override;
   std::string no_color() const override;
@@ -158,11 +159,12 @@ class RunSide : public ViewSide {
  private:
   using Clock = std::chrono::steady_clock;
 
-  AnimationFrame read(int frame);
+  void show(int frame);
+  void show_world(int frame);
 
-  std::unique_ptr<FrameSource> frames_;
-  std::optional<ParticleValue> color_;
-  std::optional<ClothPoint> probe_;
+  FramesAndWorld run_;
+  LiveInstruments instruments_;
+  LiveFrame measured_;
   std::string title_;
   std::vector<Vec3> reach_;
   PlayHead head_;

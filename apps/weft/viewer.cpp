@@ -14,12 +14,13 @@
 namespace weft::engine::app {
 namespace {
 
-constexpr double kWheelFactor = 0.88;                  // of the distance, per click
-constexpr double kRoom = 1.1;                          // extra camera distance, for grabs and swings [1]
-constexpr double kSoftwareInterval = 1 / 30.0;         // between pictures with software OpenGL [s]
-constexpr double kIdle = 0.25;                         // poll interval of an unchanged window [s]
-constexpr int kRest = 4;                               // unchanged pictures before the best one is drawn [1]
-constexpr double kWindow = 1;                          // averaging window of pictures per second [s]
+constexpr double kWheelFactor = 0.88;           // of the distance, per click
+constexpr double kRoom = 1.1;                   // extra camera distance, for grabs and swings [1]
+constexpr double kSoftwareInterval = 1 / 30.0;  // between pictures with software OpenGL [s]
+constexpr double kIdle = 0.05;                  // poll interval of an unchanged window [s]
+constexpr int kUnchanged = 4;                   // pictures before drawing waits for a change [1]
+constexpr double kRest = 0.3;                   // without a change before the best picture is drawn [s]
+constexpr double kWindow = 1;                   // averaging window of pictures per second [s]
 constexpr double kTextStep = 1.25, kMaxTextScale = 3;  // of the text's size [1]
 constexpr double kTallScreen = 1080;                   // height that the panels are made for [pixels]
 constexpr double kNewShare = 0.1;  // weight of the last picture in the mean of their times [1]
@@ -42,13 +43,13 @@ Viewer::Viewer(Opened opened, const ViewRequest& request, const ViewOptions& opt
 
 void Viewer::run() {
   const WindowEvents events = make_events();
-  drawn_at_ = second_began_ = Clock::now();
+  drawn_at_ = changed_at_ = second_began_ = Clock::now();
   while (!interrupted()) {
     if (window_.is_closing()) {
       if (may_close_ || !edits_ || !edits_->is_changed() || options_.frames > 0) break;
       refuse_close();
     }
-    wait();
+    if (wait()) continue;
     window_.begin_frame(events);
     update();
     draw();
@@ -484,14 +485,18 @@ bool Viewer::on_look_key(int key) {
   if (key >= '2' && key < '2' + static_cast<int>(kParticleValues.size()))
     return set_color(kParticleValues[key - '2']), true;
   if (key == 'K') return look.checker = !look.checker, true;
-  if (!is_simulation()) return false;
-  if (key == 'W') return hands_.toggle_wind(), true;
+  if (key == 'W' && is_simulation()) return hands_.toggle_wind(), true;
   for (const auto& [letter, shown] :
        {std::pair('G', &look.springs), std::pair('Y', &look.yarns), std::pair('E', &look.seams),
         std::pair('X', &look.pins), std::pair('F', &look.contacts)}) {
-    if (key == letter) return *shown = !*shown, true;
+    if (key == letter && can_show(*shown)) return *shown = !*shown, true;
   }
   return false;
+}
+
+bool Viewer::can_show(const bool& shown) const {
+  if (&shown == &look.checker) return true;
+  return &shown == &look.contacts ? is_simulation() : sides_[0]->measured() != nullptr;
 }
 
 void Viewer::scale_text(double factor) {
@@ -527,22 +532,30 @@ Ray Viewer::ray_at(int side, double x, double y) const {
 
 // ---- Drawing ---------------------------------------------------------------------------------------------
 
-/// Pictures follow each other at the screen's rate, slower with software OpenGL, and rarely while nothing
-/// changes.
-void Viewer::wait() {
+/// Pictures follow each other at the screen's rate, and slower with software OpenGL. True: nothing has changed,
+/// and the last picture stays.
+bool Viewer::wait() {
   if (window_.is_software()) {
     const double rest = kSoftwareInterval - seconds(Clock::now() - drawn_at_);
     if (rest > 0) std::this_thread::sleep_for(std::chrono::duration<double>(rest));
   }
-  const bool counts = options_.frames > 0;
-  if (pictures_at_rest_ > kRest && !counts) window_.wait_for_event(is_playing_ ? kSoftwareInterval : kIdle);
+  const bool is_at_rest = is_playing_ ? unchanged_ >= kUnchanged : is_best_;
+  if (!is_at_rest || options_.frames > 0 || window_.is_typing()) return false;
+  if (window_.wait_for_event(is_playing_ ? kSoftwareInterval : kIdle)) {
+    has_news_ = true;
+    return false;
+  }
+  update();
+  return !has_news_;
 }
 
 void Viewer::draw() {
   drawn_at_ = Clock::now();
-  pictures_at_rest_ = has_news_ ? 0 : pictures_at_rest_ + 1;
+  unchanged_ = has_news_ ? 0 : unchanged_ + 1;
+  if (has_news_) changed_at_ = drawn_at_;
   has_news_ = false;
-  const bool is_still = (pictures_at_rest_ >= kRest && !is_playing_) || wants_picture_;
+  is_best_ = !is_playing_ && seconds(drawn_at_ - changed_at_) > kRest;
+  const bool is_still = is_best_ || wants_picture_;
   renderer_.set_settings(quality_.settings(is_still));
   for (int s = 0; s < num_sides(); ++s) {
     const WindowPart where = part(s);
@@ -560,7 +573,7 @@ void Viewer::draw() {
 }
 
 void Viewer::finish_frame() {
-  const bool is_moving = pictures_at_rest_ == 0 && !wants_picture_;
+  const bool is_moving = unchanged_ == 0 && !wants_picture_;
   if (wants_picture_) {
     wants_picture_ = false;
     const Image image = window_.end_frame_and_read();

@@ -106,6 +106,8 @@ class Viewer {
     return !sides_.empty() && sides_[0]->live() != nullptr;
   }  // else frames of a run
   bool is_playing() const { return is_playing_; }
+  /// Whether this switch of `look` has an effect: a run has no forces of contacts, and may have positions only.
+  bool can_show(const bool& shown) const;
   bool shows_record() const { return shows_record_; }
   const Recording* recording() const { return recording_.get(); }
   const ViewScales& scales() const { return scales_; }
@@ -144,7 +146,7 @@ class Viewer {
   bool refuse_while_recording();
   void draw();
   void finish_frame();
-  void wait();
+  bool wait();
   void show(Opened opened);
   void leave(std::function<void()> then);
   void apply_edits();
@@ -178,9 +180,10 @@ class Viewer {
   ViewScales scales_;
 
   // Drawing.
-  bool has_news_ = true;      // changes since the last picture
-  int pictures_at_rest_ = 0;  // since the last change
-  Clock::time_point drawn_at_, second_began_;
+  bool has_news_ = true;  // changes since the last picture
+  bool is_best_ = false;  // the last picture was the best of what is at rest
+  int unchanged_ = 0;     // pictures since the last change
+  Clock::time_point drawn_at_, changed_at_, second_began_;
   std::int64_t drawn_frames_ = 0, drawn_in_second_ = 0;
   double drawn_per_second_ = 0, picture_ms_ = 0, panel_ms_ = 0;
   std::vector<std::string> pictures_;

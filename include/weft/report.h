@@ -85,7 +85,10 @@ struct StepReport {
   std::optional<StepFault> fault = {};        // of the worst repeated part
   int iterations = 0;                         // of nonlinear solvers, over all cloths [1]
   std::optional<int> linear_iterations = {};  // of linear solvers inside them; empty without any [1]
-  std::optional<int> guard_events = {};       // of newton's guard; empty for integrators without one [1]
+  /// Of newton's linear solves, before the last iteration of each: the largest √(rᵀP⁻¹r) as a share of that at
+  /// its start, with the residual r and the preconditioner P. Empty for other integrators [1].
+  std::optional<double> residual = {};
+  std::optional<int> guard_events = {};  // of newton's guard; empty for integrators without one [1]
   int hits = 0;   // pairs that reached the fail-safe, continuous collision detection [1]
   int zones = 0;  // its rigid impact zones [1]
   std::vector<InfeasiblePair> infeasible = {};  // pushed through each other by prescribed motions, once each

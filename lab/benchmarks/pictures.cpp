@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "lab/benchmarks/machine.h"
+#include "weft/fabric.h"
 #include "weft/mesh/grid.h"
 #include "weft/render/renderer.h"
 
@@ -20,7 +21,7 @@ DrawnMesh make_draped_sheet(int num_triangles) {
   DrawnMesh sheet;
   const TriangleMesh flat = build_grid_mesh(grid, GridDiagonals::alternating);
   sheet.triangles = flat.triangles;
-  sheet.look = {Look::Kind::fabric, {0.58, 0.06, 0.05}, 0.025};
+  sheet.look = {Look::Kind::fabric, {0.10, 0.16, 0.30}, 0, find_fabric_preset("denim").look};
   for (const Vec3& p : flat.positions) {
     const double x = p.x() - 0.5, z = p.z() - 0.5, r = std::hypot(x, z), angle = std::atan2(z, x);
     const double over = std::min(r, 0.3), beyond = std::max(0.0, r - 0.3);

@@ -82,6 +82,10 @@ void bind_reports(nb::module_& m) {
       .def_ro("iterations", &StepReport::iterations, "Of nonlinear solvers, over all cloths")
       .def_ro("linear_iterations", &StepReport::linear_iterations,
               "Of linear solvers inside them; None without any")
+      .def_ro(
+          "residual", &StepReport::residual,
+          "Of newton's linear solves, before the last iteration of each: the largest √(rᵀP⁻¹r) as a share of "
+          "that at its start; None for other integrators")
       .def_ro("guard_events", &StepReport::guard_events, "Of newton's guard; None for other integrators")
       .def_ro("hits", &StepReport::hits, "Pairs that reached continuous collision detection")
       .def_ro("zones", &StepReport::zones, "Its rigid impact zones")

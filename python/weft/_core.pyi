@@ -1429,6 +1429,12 @@ class StepReport:
         """Of linear solvers inside them; None without any"""
 
     @property
+    def residual(self) -> float | None:
+        """
+        Of newton's linear solves, before the last iteration of each: the largest √(rᵀP⁻¹r) as a share of that at its start; None for other integrators
+        """
+
+    @property
     def guard_events(self) -> int | None:
         """Of newton's guard; None for other integrators"""
 

@@ -28,7 +28,7 @@ TEST_F(App, RunWritesAnimationAndReport) {
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.err, "") << "no bar where there is no terminal";
   for (const char* file : {"results/animation.glb", "results/cloth.pc2", "results/cloth.mesh.obj",
-                           "results/report.json", "results/run.json"})
+                           "results/as_run", "results/report.json", "results/run.json"})
     EXPECT_TRUE(contains(done.out, file)) << done.out;
   EXPECT_EQ(read_text("results/animation.glb").substr(0, 4), "glTF");
   const nlohmann::json report = read_json("results/report.json");

@@ -97,6 +97,14 @@ TEST_F(Render, WritesNumberedFilesPerFrame) {
   EXPECT_FALSE(fs::exists("f_###.png"));
 }
 
+/// The same but for rounding.
+void expect_like(const Image& image, const Image& expected) {
+  ASSERT_EQ(image.rgba.size(), expected.rgba.size());
+  double sum = 0;
+  for (std::size_t k = 0; k < image.rgba.size(); ++k) sum += std::abs(image.rgba[k] - expected.rgba[k]);
+  EXPECT_LT(sum / static_cast<double>(image.rgba.size()), 0.5);
+}
+
 TEST_F(Render, ColoursClothByValues) {
   const std::string base = "weft render paper/fig6_ball --frame 4 --size 320x240 --fit cloth" + kQuick;
   EXPECT_EQ(shell(base + " --out plain.png").exit_code, 0);
@@ -107,8 +115,16 @@ TEST_F(Render, ColoursClothByValues) {
   }
   ASSERT_EQ(shell("weft run paper/fig6_ball --frames 4 --out done" + kQuick).exit_code, 0);
   EXPECT_EQ(shell("weft render done --color speed --range 0,2 --out speeds.png").exit_code, 0);
-  expect_bad_input("weft render done --color strain --out a.png",
-                   "--color strain, shear and contact require a scene");
+  for (const std::string value : {"strain", "shear"}) {  // speeds are means over a frame
+    const std::string words =
+        "weft render done --size 320x240 --fit cloth --color " + value + " --out run.png";
+    EXPECT_EQ(shell(words).exit_code, 0);
+    expect_like(read_png("run.png"), read_png(value + ".png"));
+  }
+  expect_bad_input("weft render done --color contact --out a.png", "done has no forces of contacts");
+  expect_bad_input(
+      "weft render done/animation.glb --color strain --out a.png",
+      "--color strain and shear require the run's scene: done/animation.glb contains positions only");
   expect_bad_input("weft render done --color speed --range 2,1 --out a.png", "--range: expected two values");
 }
 
@@ -146,7 +162,9 @@ TEST_F(Render, BadInputIsNamedBeforeAnythingIsSimulated) {
 TEST_F(Render, AFrameThatIsNotThereIsNamed) {
   ASSERT_EQ(shell("weft run paper/fig3_horizontal --frames 2 --out done" + kQuick).exit_code, 0);
   expect_bad_input("weft render done --frame 7 --out a.png", "there is no frame 7; the last one is 2");
-  expect_bad_input("weft render done --springs --out a.png", "--springs requires a scene");
+  EXPECT_EQ(shell("weft render done --springs --out springs.png").exit_code, 0);
+  expect_bad_input("weft render done/animation.glb --springs --out a.png",
+                   "--springs requires the run's scene: done/animation.glb contains positions only");
   expect_bad_input("weft render done --set scene.fps=3 --out a.png", "--set does not apply");
 }
 

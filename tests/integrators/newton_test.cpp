@@ -216,6 +216,20 @@ TEST(Newton, TellsWhatItDid) {
   EXPECT_EQ(report.guard_events, 0);
 }
 
+TEST(Newton, TellsItsResidual) {
+  const auto jobs = make_serial_jobs();
+  const auto residual = [&](int iterations) {
+    Hung sheet(build_grid_topology(square(8), SpringModel::simplified), 8);
+    return *newton(iterations)
+                ->advance(*sheet.model, sheet.environment, 1.0 / 60, *jobs, sheet.state)
+                .residual;
+  };
+  EXPECT_DOUBLE_EQ(residual(1), 1) << "before the first iteration it is the right side";
+  EXPECT_LT(residual(4), 0.3);
+  EXPECT_LT(residual(20), 0.01);
+  EXPECT_GT(residual(20), 0);
+}
+
 TEST(Newton, WorksHarderTheStifferTheClothIsAndTheLongerTheStep) {
   const auto jobs = make_serial_jobs();
   const auto iterations = [&](double stiffness, double step, NewtonQuality quality) {

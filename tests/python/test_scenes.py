@@ -130,10 +130,11 @@ def test_run_json_names_the_files(ball: weft.Run) -> None:
     contents = json.loads((ball.folder / "run.json").read_text())
     cloth = {"name": "cloth", "positions": "cloth.pc2", "mesh": "cloth.mesh.obj", "color": [0.58, 0.06, 0.05],
              "vertices": 1089, "particles": 1089}  # fmt: skip
+    assert len(contents.pop("scene_hash")) == 16
     assert contents == {"format": 1, "weft": weft.__version__, "scene": "paper/fig6_ball", "fps": 60, "frames": 12,
                         "cloths": [cloth], "animation": "animation.glb", "report": "report.json"}  # fmt: skip
     assert sorted(file.name for file in ball.folder.iterdir()) == [
-        "animation.glb", "cloth.mesh.obj", "cloth.pc2", "report.json", "run.json"
+        "animation.glb", "as_run", "cloth.mesh.obj", "cloth.pc2", "report.json", "run.json"
     ]  # fmt: skip
 
 

@@ -311,6 +311,7 @@ TEST(Live, AGrabLeavesSoftPinsWhereTheyAre) {
   const LiveFrame frame = wait_for_steps(live, 3 + 6 * 60);
   const std::vector<float>& start = live.start().cloths[0].frames[0];
   EXPECT_NEAR(frame.meshes.cloths[0][1], start[1], 0.05) << "a corner still hangs by its spring";
+  EXPECT_EQ((*frame.pins)[0].particles, (std::vector{0, 12, 156, 168})) << "they are shown as pinned";
 }
 
 TEST(Live, InstrumentsChangeNoBits) {

@@ -12,8 +12,11 @@
 #include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/io/glb_reader.h"
+#include "weft/io/obj_reader.h"
+#include "weft/mesh/grid.h"
 #include "weft/run/film.h"
 #include "weft/run/run_folder.h"
+#include "weft/run/scene_run.h"
 
 namespace weft::engine {
 namespace {
@@ -96,7 +99,78 @@ TEST_F(PlaybackOfARun, ThatIsUnfinishedHasTheFramesSoFarAndFollowsIt) {
   for (const int k : {6, 3, 0}) expect_frame(playback->read(k), film.animation(), k);
 }
 
-TEST_F(PlaybackOfARun, WithoutAnimationIsRefused) {
+TEST_F(PlaybackOfARun, HasItsWorldAtEveryFrame) {
+  FilmSink film;
+  RunOptions without = options(5);
+  without.pc2 = true;
+  without.glb = false;
+  run_to_folder(scene(), without, {&film});
+  const FramesAndWorld run = open_frames_and_world(folder_);
+  ASSERT_TRUE(run.world) << run.why_not;
+  EXPECT_EQ(run.counts.newton_steps.size(), 5u);
+  EXPECT_EQ(run.frames->num_frames(), 6);
+  EXPECT_EQ(open_frames(folder_)->num_frames(), 6);
+  EXPECT_EQ(run.frames->meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));
+  for (const int k : {3, 0, 5, 1}) expect_frame(run.frames->read(k), film.animation(), k);
+
+  SceneRun live(scene(), make_serial_jobs());
+  for (int k = 0; k < 4; ++k) live.next_frame();
+  run.world->show(*run.frames, 4);
+  const World &past = run.world->world(), &now = live.world();
+  EXPECT_EQ(past.time(), 4 / scene().fps);
+  for (const ParticleValue value : {ParticleValue::strain, ParticleValue::shear}) {
+    const std::vector<float> found = compute_values(value, past, past.cloth(0)),
+                             expected = compute_values(value, now, now.cloth(0));
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-3) << i;
+  }
+  const double fall = 4 / scene().fps * 9.81;
+  EXPECT_NEAR(past.state(past.cloth(0)).v.get(0).y(), -fall, 0.2 * fall) << "a mean over the last frame";
+}
+
+TEST_F(PlaybackOfARun, ThatIsUnfinishedHasItsWorld) {
+  FilmSink film;
+  RunOptions some = options(6);
+  some.checkpoint_every = 2;
+  run_to_folder(scene(), some, {&film}, [](const Progress& progress) { return progress.frame < 4; });
+  ASSERT_TRUE(fs::exists(folder_ / kUnfinishedName));
+  fs::remove(folder_ / kRunName);  // of the interrupted run
+  const FramesAndWorld run = open_frames_and_world(folder_);
+  ASSERT_TRUE(run.world) << run.why_not;
+  EXPECT_EQ(run.frames->num_frames(), 5);
+  run.world->show(*run.frames, 2);
+  EXPECT_NEAR(run.world->world().state(run.world->world().cloth(0)).position(7).y(),
+              film.animation().cloths[0].frames[2][22], 1e-6);
+}
+
+TEST_F(PlaybackOfARun, HasNoWorldWithoutTheFilesOfItsScene) {
+  const fs::path mesh = folder_.string() + ".obj";
+  write_obj(mesh, build_grid_mesh({.size_x = 1, .size_z = 1, .cells_x = 3, .cells_z = 3},
+                                  GridDiagonals::alternating));
+  SceneDesc sheet = scene();
+  sheet.cloths[0].shape = MeshSource{.file = mesh};
+  RunOptions both = options(1);
+  both.pc2 = true;
+  run_to_folder(sheet, both);
+  EXPECT_TRUE(open_frames_and_world(folder_).world);
+  const auto expect_positions_only = [&](const std::string& why) {
+    const FramesAndWorld run = open_frames_and_world(folder_);
+    EXPECT_FALSE(run.world);
+    EXPECT_EQ(run.why_not, why);
+    EXPECT_EQ(run.frames->num_frames(), 2);
+  };
+  std::ofstream(mesh, std::ios::app) << "v 7 7 7\n";
+  expect_positions_only((folder_ / "as_run/scene.toml").string() +
+                        ": scene or meshes have changed since the run");
+  fs::remove(mesh);
+  EXPECT_FALSE(open_frames_and_world(folder_).world);
+  fs::remove_all(folder_ / "as_run");
+  EXPECT_FALSE(open_frames_and_world(folder_).world);
+  EXPECT_EQ(open_frames_and_world(folder_ / "animation.glb").why_not,
+            (folder_ / "animation.glb").string() + " contains positions only");
+}
+
+TEST_F(PlaybackOfARun, WithoutFramesIsRefused) {
   RunOptions without = options(1);
   without.glb = false;
   const auto message = [&](const fs::path& path) -> std::string {
@@ -109,7 +183,8 @@ TEST_F(PlaybackOfARun, WithoutAnimationIsRefused) {
   };
   EXPECT_EQ(message(folder_), folder_.string() + ": cannot be read: No such file or directory");
   run_to_folder(scene(), without);
-  EXPECT_EQ(message(folder_), folder_.string() + " has no frames to show: it was run with --no-glb");
+  EXPECT_EQ(message(folder_),
+            folder_.string() + " has no frames to show: it was run with --no-glb and --no-pc2");
   fs::create_directories(folder_ / "empty");
   EXPECT_EQ(message(folder_ / "empty"), (folder_ / "empty").string() + " holds no run: there is no run.json");
 }

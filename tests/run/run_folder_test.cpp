@@ -17,7 +17,9 @@
 #include "weft/io/obj_reader.h"
 #include "weft/io/pc2.h"
 #include "weft/run/film.h"
+#include "weft/run/past_run.h"
 #include "weft/scene/scene_access.h"
+#include "weft/scene/scene_reader.h"
 
 namespace weft::engine {
 namespace {
@@ -59,14 +61,15 @@ class RunFolder : public testing::Test {
 
 TEST_F(RunFolder, HasTheListedFiles) {
   const FinishedRun run = run_to_folder(sheets(), options(3));
-  EXPECT_EQ(names(),
-            (std::set<std::string>{"animation.glb", "lower_sheet.mesh.obj", "lower_sheet.pc2", "report.json",
-                                   "run.json", "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
-  EXPECT_EQ(run.files.size(), 7u);
+  EXPECT_EQ(names(), (std::set<std::string>{"animation.glb", "as_run", "as_run/scene.toml",
+                                            "lower_sheet.mesh.obj", "lower_sheet.pc2", "report.json",
+                                            "run.json", "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
+  EXPECT_EQ(run.files.size(), 8u);
   EXPECT_EQ(run.files.back(), folder_ / "run.json");
   const nlohmann::json expected = {{"format", 1},
                                    {"weft", run.report.version},
                                    {"scene", "two_layers"},
+                                   {"scene_hash", hash_of_scene(sheets())},
                                    {"fps", 60.0},
                                    {"frames", 3},
                                    {"cloths",
@@ -244,6 +247,29 @@ TEST_F(PanelsFolder, MistakesOfAConversionNameTheirFiles) {
             folder_.string() + " has no meshes of its point caches: it is of an earlier version of Weft");
 }
 
+TEST_F(RunFolder, HasTheSceneThatMadeIt) {
+  SceneDesc scene = sheets();
+  scene.settle = 0.1;
+  scene.solver.newton.iterations = 7;
+  const FinishedRun run = run_to_folder(scene, options(2));
+  const SceneDesc again = read_scene(folder_ / "as_run/scene.toml");
+  EXPECT_EQ(again.settle, 0.1);
+  EXPECT_EQ(hash_of_scene(again), hash_of_scene(scene));
+  EXPECT_EQ(run_scene(again, {.frames = 2}).state_hash, run.report.state_hash);
+}
+
+TEST_F(RunFolder, HasTheMeshesThatAreInNoFile) {
+  SceneDesc scene = sheets();
+  scene.cloths.resize(1);
+  scene.cloths[0].name = "sail";
+  scene.cloths[0].shape =
+      MeshSource{.mesh = std::make_shared<const weft::TriangleMesh>(weft::TriangleMesh{
+                     .positions = {{0, 2, 0}, {1, 2, 0}, {0, 2, 1}}, .triangles = {{0, 1, 2}}})};
+  const FinishedRun run = run_to_folder(scene, options(2));
+  EXPECT_EQ(run_scene(read_scene(folder_ / "as_run/scene.toml"), {.frames = 2}).state_hash,
+            run.report.state_hash);
+}
+
 TEST_F(RunFolder, EarlierResultsStayWhenARunThrows) {
   run_to_folder(sheets(), options(2));
   const auto before = contents();
@@ -271,13 +297,14 @@ TEST_F(RunFolder, FilesOfTheEarlierRunAreRemoved) {
   SceneDesc renamed = sheets();
   renamed.cloths[0].name = "sail";
   run_to_folder(renamed, options(1));
-  EXPECT_EQ(names(),
-            (std::set<std::string>{"animation.glb", "mine.pc2", "report.json", "run.json", "sail.mesh.obj",
-                                   "sail.pc2", "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
+  EXPECT_EQ(names(), (std::set<std::string>{"animation.glb", "as_run", "as_run/scene.toml", "mine.pc2",
+                                            "report.json", "run.json", "sail.mesh.obj", "sail.pc2",
+                                            "upper_sheet.mesh.obj", "upper_sheet.pc2"}));
   RunOptions none = options(1);
   none.pc2 = none.glb = false;
-  EXPECT_EQ(run_to_folder(renamed, none).files.size(), 2u);
-  EXPECT_EQ(names(), (std::set<std::string>{"mine.pc2", "report.json", "run.json"}));
+  EXPECT_EQ(run_to_folder(renamed, none).files.size(), 3u);
+  EXPECT_EQ(names(),
+            (std::set<std::string>{"as_run", "as_run/scene.toml", "mine.pc2", "report.json", "run.json"}));
   EXPECT_TRUE(list()["cloths"][0]["positions"].is_null());
   EXPECT_TRUE(list()["cloths"][0]["mesh"].is_null());
   EXPECT_TRUE(list()["animation"].is_null());
@@ -340,7 +367,7 @@ TEST_F(RunFolder, PublicRunIsTheSameRun) {
   EXPECT_EQ(result.state_hash, report.state_hash);
   EXPECT_EQ(result.problems.size(), report.problems.size());
   EXPECT_EQ(result.report, read_text(folder_ / "report.json"));
-  EXPECT_EQ(result.files.size(), 7u);
+  EXPECT_EQ(result.files.size(), 8u);
   for (const std::string& written : result.files) EXPECT_TRUE(fs::exists(written)) << written;
 }
 

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "tests/view/drop_source.h"
+#include "tests/view/input_delay.h"
 #include "weft/render/camera.h"
 #include "weft/render/image.h"
 
@@ -287,6 +288,22 @@ TEST_F(View, TurnsMovesAndZooms) {
   close_by("q");
 }
 
+TEST_F(View, ShowsEveryTurnOfTheView) {
+  open({}, {1280, 720});
+  paused();
+  move(640, 400);
+  xdotool("mousedown 3");
+  std::vector<double> ms = measure_input_delays(20, 640, 400);
+  xdotool("mouseup 3");
+  ASSERT_EQ(ms.size(), 20u);
+  std::ranges::sort(ms);
+  const Json now = state();
+  std::printf(
+      "input to picture: median %.0f ms, longest %.0f ms; a picture takes %.0f ms at quality level %d\n",
+      ms[10], ms[19], now["ms_per_picture"].get<double>(), now["quality_level"].get<int>());
+  close_by("q");
+}
+
 TEST_F(View, FitsAnySizeOfItsWindow) {
   open();
   paused();
@@ -462,9 +479,31 @@ TEST_F(View, PlaysARunBack) {
   xdotool("key 1");
   drag("1", 380, 300, 420, 300);  // on cloth or beside it: there is nothing to grab
   EXPECT_NE(state()["camera"]["azimuth"], turned["camera"]["azimuth"]);
+  xdotool("key 2");
+  until("strain is shown", [](const Json& j) {
+    return j["look"]["color"] == "strain" && j["sides"][0]["instruments"]["no_color"] == "" &&
+           j["sides"][0]["instruments"]["largest_value"] > 0;
+  });
+  xdotool("key 5");
+  until("contact is refused", [](const Json& j) {
+    return j["sides"][0]["instruments"]["no_color"].get<std::string>().starts_with("a run has no forces");
+  });
+  xdotool("key 1");
   xdotool("key i");
+  xdotool("key f");
+  xdotool("key w");
+  xdotool("key x");
+  xdotool("key t");
+  const Json plots =
+      until("plots are shown", [](const Json& j) { return j["controls"].contains("plot energy"); });
+  EXPECT_TRUE(plots["controls"].contains("plot largest strain"));
+  EXPECT_TRUE(plots["controls"].contains("plot iterations"));
+  EXPECT_FALSE(plots["controls"].contains("plot work per step"));
+  EXPECT_EQ(plots["look"]["pins"], true);
+  EXPECT_EQ(plots["look"]["contacts"], false);
+  xdotool("key t");
   xdotool("key g");
-  EXPECT_EQ(state()["view"], "cloth");
+  until("springs are shown", [](const Json& j) { return j["view"] == "springs"; });
   close_by("q");
 }
 

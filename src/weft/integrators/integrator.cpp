@@ -1,5 +1,7 @@
 #include "weft/integrators/integrator.h"
 
+#include <algorithm>
+
 #include "weft/error.h"
 
 namespace weft {
@@ -18,11 +20,16 @@ void add_count(const std::optional<int>& count, std::optional<int>& sum) {
   if (count) sum = sum.value_or(0) + *count;
 }
 
+void take_larger(const std::optional<double>& value, std::optional<double>& largest) {
+  if (value) largest = std::max(largest.value_or(0), *value);
+}
+
 void IntegratorReport::include(const IntegratorReport& other, int cloth) {
   if (converged && !other.converged) unconverged = cloth;
   converged &= other.converged;
   iterations += other.iterations;
   add_count(other.linear_iterations, linear_iterations);
+  take_larger(other.residual, residual);
   add_count(other.guard_events, guard_events);
 }
 

@@ -61,12 +61,16 @@ struct SystemStep {
 /// Adds a count to a sum; both may be empty.
 void add_count(const std::optional<int>& count, std::optional<int>& sum);
 
+/// Takes the larger of two values; both may be empty.
+void take_larger(const std::optional<double>& value, std::optional<double>& largest);
+
 /// Result of one call of advance().
 struct IntegratorReport {
   bool converged = true;                 // false: the result is finite, but misses the tolerance
   int unconverged = -1;                  // the first cloth that did not converge
   int iterations = 0;                    // of the nonlinear solver, summed [1]
   std::optional<int> linear_iterations;  // of the linear solver inside it, summed [1]
+  std::optional<double> residual;        // of the linear solver, CgReport::residual, the largest [1]
   std::optional<int> guard_events;       // number of guard interventions: see newton [1]
 
   /// Adds the report of other cloths, of which `cloth` is the first.

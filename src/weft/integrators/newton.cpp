@@ -150,13 +150,14 @@ class NewtonGroup {
 
   /// Newton steps from the start.
   IntegratorReport minimise(const NewtonSettings& settings, const SolverBudget& budget) {
-    IntegratorReport report{.linear_iterations = 0, .guard_events = 0};
+    IntegratorReport report{.linear_iterations = 0, .residual = 0, .guard_events = 0};
     int more = 1;  // factor on iterations, where the guard requests another Newton step
     for (int asked = budget.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(report.iterations == 0);
       if (contacts_.is_active()) asked = std::max(asked, kMinStepsInContact);
       const CgReport linear = solve_linear(settings, budget, more);
       *report.linear_iterations += linear.iterations;
+      take_larger(linear.residual, report.residual);
       double share = 1, after = try_step(share);
       for (int h = 0; !(after <= before + noise_) && h < kMaxHalvings; ++h) {
         ++*report.guard_events;

@@ -339,7 +339,8 @@ void LiveSimulation::sample(const StepReport& report) {
                            .iterations = report.iterations,
                            .linear_iterations = report.linear_iterations.value_or(0),
                            .divisions = report.divisions,
-                           .contacts = static_cast<int>(report.work.active)});
+                           .contacts = static_cast<int>(report.work.active),
+                           .residual = report.residual.value_or(0)});
   if (next_.samples.size() > kMaxSamples) next_.samples.erase(next_.samples.begin());
 }
 
@@ -347,12 +348,7 @@ void LiveSimulation::sample(const StepReport& report) {
 void LiveSimulation::measure_frame() {
   if (next_.samples.empty()) return;
   LiveSample& last = next_.samples.back();
-  last.is_measured = true;
-  last.energies = run_->public_world().energies();
-  for (int c = 0; c < world().num_cloths(); ++c) {
-    const ClothId cloth = world().cloth(c);
-    last.strain = std::max(last.strain, compute_yarn_strain(world().model(cloth), world().state(cloth)).max);
-  }
+  measure_world(run_->public_world(), last);
   if (is_between_frames())
     problems_->add_frame(last.energies.kinetic, last.energies.total() - last.energies.kinetic);
 }

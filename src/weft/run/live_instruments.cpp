@@ -5,7 +5,9 @@
 #include <map>
 
 #include "weft/error.h"
+#include "weft/face/world_impl.h"
 #include "weft/scene/scene_world.h"
+#include "weft/world/measures.h"
 
 namespace weft::engine {
 namespace {
@@ -46,10 +48,11 @@ ProbeReading read_probe(const World& world, const ClothPoint& at, const std::vec
   reading.mass = model.mass[reading.particle];
   reading.is_pinned =
       std::ranges::find(pins[at.cloth].particles, reading.particle) != pins[at.cloth].particles.end();
+  if (!world.tracks_contacts()) return reading;
+  Vec3& sum = reading.contact.emplace(Vec3::Zero());
   for (const ContactPoint& contact : world.contact_points()) {
-    if (contact.cloth == at.cloth && contact.particle == reading.particle) reading.contact += contact.force;
-    if (contact.other_cloth == at.cloth && contact.other_vertex == reading.particle)
-      reading.contact -= contact.force;
+    if (contact.cloth == at.cloth && contact.particle == reading.particle) sum += contact.force;
+    if (contact.other_cloth == at.cloth && contact.other_vertex == reading.particle) sum -= contact.force;
   }
   return reading;
 }
@@ -81,6 +84,17 @@ void read_instruments(const World& world, const LiveInstruments& wanted, const s
     frame.contacts.push_back({contact.position, contact.force});
 }
 
+void measure_world(const weft::World& world, LiveSample& sample) {
+  sample.is_measured = true;
+  sample.energies = world.energies();
+  const World& engine = WorldAccess::engine(world);
+  for (int c = 0; c < engine.num_cloths(); ++c) {
+    const ClothId cloth = engine.cloth(c);
+    sample.strain =
+        std::max(sample.strain, compute_yarn_strain(engine.model(cloth), engine.state(cloth)).max);
+  }
+}
+
 std::vector<LivePins> find_pins(const SceneDesc& scene, const weft::World& world) {
   std::vector<LivePins> all;
   for (int c = 0; c < world.num_cloths(); ++c) {
@@ -94,8 +108,10 @@ std::vector<LivePins> find_pins(const SceneDesc& scene, const weft::World& world
     for (const weft::Pin& pin : describe_pins(scene.cloths[c], id, world)) {
       std::vector<int>& vertices = pins.vertices.emplace_back();
       for (const int particle : pin.particles) vertices.push_back(pins.vertex_of_particle[particle]);
+      pins.particles.insert(pins.particles.end(), pin.particles.begin(), pin.particles.end());
     }
-    pins.particles = world.pinned_particles(id);
+    std::ranges::sort(pins.particles);
+    pins.particles.erase(std::unique(pins.particles.begin(), pins.particles.end()), pins.particles.end());
     all.push_back(std::move(pins));
   }
   return all;

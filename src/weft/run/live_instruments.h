@@ -12,6 +12,9 @@ namespace weft::engine {
 void read_instruments(const World& world, const LiveInstruments& wanted, const std::vector<LivePins>& pins,
                       LiveFrame& frame);
 
+/// Energies and largest strain of the present state.
+void measure_world(const weft::World& world, LiveSample& sample);
+
 /// The pins of a scene's cloths (num_cloths), in its world.
 std::vector<LivePins> find_pins(const SceneDesc& scene, const weft::World& world);
 

@@ -68,16 +68,16 @@ struct ProbeReading {
   Vec3 point = Vec3::Zero();     // [m]
   Vec3 velocity = Vec3::Zero();  // of the particle [m/s]
   std::optional<Yarns> yarns;    // of the triangle; empty: cloth of springs
-  Vec3 contact = Vec3::Zero();   // force of contacts on the particle, in the last step [N]
-  double mass = 0;               // of the particle [kg]
+  double mass = 0;               // of the particle; 0: only its position is known [kg]
   bool is_pinned = false;        // the particle
+  std::optional<Vec3> contact;   // force of contacts on the particle in the last step; empty: of a run [N]
 };
 
 /// Pins of a cloth.
 struct LivePins {
   std::vector<int> vertex_of_particle;  // numbered as ParticleIndices does
   PinnedVertices vertices;              // by the pins of the scene that is simulated
-  std::vector<int> particles;           // of all pins
+  std::vector<int> particles;           // of all pins, soft ones too, ascending
 };
 
 /// Edges of a cloth's seams: the triangles at them have different texture coordinates there.
@@ -115,6 +115,7 @@ struct LiveSample {
   double time = 0;  // at its end [s]
   WorkTimes work;
   int iterations = 0, linear_iterations = 0, divisions = 1, contacts = 0;  // [1]
+  double residual = 0;                                                     // StepReport::residual [1]
   bool is_measured = false;  // energies and strain, once per frame
   Energies energies;         // at the end of its frame [J]
   double strain = 0;         // largest of all yarns and springs, likewise [1]

@@ -4,10 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "weft/core/file_name.h"
+#include "weft/core/hash.h"
 #include "weft/error.h"
 #include "weft/io/pc2.h"
 #include "weft/run/file_sinks.h"
 #include "weft/run/run_folder.h"
+#include "weft/scene/scene_writer.h"
 
 namespace weft::engine {
 namespace {
@@ -30,7 +32,7 @@ PastRun read_results(const fs::path& folder) {
   };
   if (!json.is_object() || !json.contains("cloths") || !json["cloths"].is_array() || json["cloths"].empty())
     fail();
-  PastRun run{.folder = folder, .cloths = {}, .animation = {}, .frames = {}};
+  PastRun run{.folder = folder};
   if (const auto fps = json.find("fps"); fps != json.end()) {
     if (!fps->is_number() || !(fps->get<double>() > 0)) fail();
     run.fps = fps->get<double>();
@@ -40,17 +42,20 @@ PastRun read_results(const fs::path& folder) {
     run.cloths.push_back({text(cloth, "name"), file(cloth, "positions"), file(cloth, "mesh")});
   }
   run.animation = file(json, "animation");
+  run.report = file(json, "report");
+  if (!text(json, "scene_hash").empty()) run.scene = folder / kAsRunName / kSceneName;
+  run.scene_hash = text(json, "scene_hash");
   return run;
 }
 
 PastRun read_results_so_far(const fs::path& folder) {
   const UnfinishedRun unfinished = read_unfinished_run(folder);
-  PastRun run{.folder = folder, .fps = unfinished.scene.fps, .cloths = {}, .animation = {}, .frames = {}};
+  PastRun run{.folder = folder, .fps = unfinished.scene.fps};
   if (unfinished.options.glb) run.frames = folder / kUnfinishedName / kFramesName;
   FileNames names;
   for (const ClothSceneDesc& cloth : unfinished.scene.cloths) {
     const std::string name = names.add(cloth.name);
-    PastCloth& past = run.cloths.emplace_back(PastCloth{cloth.name, {}, {}});
+    PastCloth& past = run.cloths.emplace_back(PastCloth{.name = cloth.name});
     if (!unfinished.options.pc2) continue;
     past.cache = folder / kUnfinishedName / (name + kCacheEnding);
     past.mesh = folder / kUnfinishedName / (name + kMeshEnding);
@@ -64,6 +69,26 @@ PastRun read_past_run(const fs::path& folder) {
   if (fs::exists(folder / kRunName)) return read_results(folder);
   if (fs::exists(folder / kUnfinishedName / kCheckpointName)) return read_results_so_far(folder);
   throw InputError(folder.string() + " holds no run: there is no " + kRunName);
+}
+
+PastCounts read_counts(const PastRun& run) {
+  PastCounts counts;
+  std::ifstream stream(run.report);
+  const Json json = Json::parse(stream, nullptr, false);
+  const auto read = [&](const char* key, std::vector<int>& series) {
+    if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return;
+    for (const Json& count : json[key]) series.push_back(count.is_number_integer() ? count.get<int>() : 0);
+  };
+  read("divisions", counts.divisions);
+  read("newton_steps", counts.newton_steps);
+  read("cg_iterations", counts.cg_iterations);
+  return counts;
+}
+
+std::string hash_of_scene(const SceneDesc& scene) {
+  Hash hash;
+  hash.add(std::span<const char>(scene_text_with_hashes(scene)));
+  return to_hex(hash.value());
 }
 
 std::unique_ptr<PointCacheReader> open_cache(const PastRun& run, const PastCloth& cloth) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "weft/error.h"
 #include "weft/face/world_impl.h"
@@ -11,6 +12,8 @@
 #include "weft/run/frame_log.h"
 #include "weft/run/run_folder.h"
 #include "weft/run/scene_run.h"
+#include "weft/scene/scene_reader.h"
+#include "weft/scene/scene_world.h"
 
 namespace weft::engine {
 
@@ -39,12 +42,74 @@ class FramesSoFar final : public FrameSource {
   FrameLogReader log_;
 };
 
-std::unique_ptr<FrameSource> open_unfinished(const PastRun& run) {
-  const SceneDesc scene = read_unfinished_run(run.folder).scene;
+/// The frames of a finished run: cloth from point caches, colliders from their motions.
+class CachedFrames final : public FrameSource {
+ public:
+  CachedFrames(const PastRun& run, PastWorld& world)
+      : meshes_(make_animation(world.scene(), world.world())), world_(world) {
+    for (const PastCloth& cloth : run.cloths) {
+      caches_.push_back(open_cache(run, cloth));
+      num_frames_ = std::min(num_frames_, caches_.back()->num_frames());
+    }
+    if (num_frames_ == 0) throw InputError(run.folder.string() + " has no frame yet");
+  }
+
+  const Animation& meshes() const override { return meshes_; }
+  int num_frames() override { return num_frames_; }
+
+  AnimationFrame read(int frame) override {
+    world_.set_time(frame / meshes_.frames_per_second);
+    AnimationFrame result = capture_frame(world_.world());
+    for (std::size_t c = 0; c < caches_.size(); ++c)
+      result.cloths[c] = world_.to_particles(static_cast<int>(c), caches_[c]->frame(frame));
+    return result;
+  }
+
+ private:
+  Animation meshes_;
+  PastWorld& world_;
+  std::vector<std::unique_ptr<PointCacheReader>> caches_;
+  int num_frames_ = std::numeric_limits<int>::max();
+};
+
+/// Frames that own their world.
+class FramesOfScene final : public FrameSource {
+ public:
+  explicit FramesOfScene(FramesAndWorld all) : all_(std::move(all)) {}
+
+  const Animation& meshes() const override { return all_.frames->meshes(); }
+  int num_frames() override { return all_.frames->num_frames(); }
+  AnimationFrame read(int frame) override { return all_.frames->read(frame); }
+
+ private:
+  FramesAndWorld all_;
+};
+
+FramesAndWorld open_unfinished(const PastRun& run) {
+  FramesAndWorld result;
   const Checkpoint checkpoint = read_checkpoint(run.folder / kUnfinishedName / kCheckpointName);
-  const weft::World world = load_world(checkpoint.run);
-  return std::make_unique<FramesSoFar>(make_animation(scene, WorldAccess::engine(world)), run.frames,
-                                       capture_frame(WorldAccess::engine(world)));
+  result.world =
+      std::make_unique<PastWorld>(read_unfinished_run(run.folder).scene, load_world(checkpoint.run));
+  const World& world = result.world->world();
+  result.frames = std::make_unique<FramesSoFar>(make_animation(result.world->scene(), world), run.frames,
+                                                capture_frame(world));
+  return result;
+}
+
+/// Of a finished run with its scene. Throws InputError if that or a point cache is missing, or has changed.
+FramesAndWorld open_scene(const PastRun& run) {
+  if (run.animation.empty() && run.cloths[0].cache.empty())
+    throw InputError(run.folder.string() + " has no frames to show: it was run with --no-glb and --no-pc2");
+  if (run.scene.empty())
+    throw InputError(run.folder.string() + " has no scene: it is of an earlier version of Weft");
+  const SceneDesc scene = read_scene(run.scene);
+  if (hash_of_scene(scene) != run.scene_hash)
+    throw InputError(run.scene.string() + ": scene or meshes have changed since the run");
+  FramesAndWorld result;
+  result.world = std::make_unique<PastWorld>(scene, place_scene(scene, make_serial_jobs()).world);
+  result.frames = std::make_unique<CachedFrames>(run, *result.world);
+  result.counts = read_counts(run);
+  return result;
 }
 
 }  // namespace
@@ -52,9 +117,22 @@ std::unique_ptr<FrameSource> open_unfinished(const PastRun& run) {
 std::unique_ptr<FrameSource> open_frames(const fs::path& path) {
   if (!fs::is_directory(path)) return open_glb(path);
   const PastRun run = read_past_run(path);
-  if (!run.frames.empty()) return open_unfinished(run);
+  if (!run.frames.empty()) return open_unfinished(run).frames;
   if (!run.animation.empty()) return open_glb(run.animation);
-  throw InputError(path.string() + " has no frames to show: it was run with --no-glb");
+  return std::make_unique<FramesOfScene>(open_scene(run));
+}
+
+FramesAndWorld open_frames_and_world(const fs::path& path) {
+  if (!fs::is_directory(path))
+    return {.why_not = path.string() + " contains positions only", .frames = open_glb(path)};
+  const PastRun run = read_past_run(path);
+  if (!run.frames.empty()) return open_unfinished(run);
+  try {
+    return open_scene(run);
+  } catch (const InputError& error) {
+    if (run.animation.empty()) throw;
+    return {.why_not = error.what(), .frames = open_glb(run.animation)};
+  }
 }
 
 void PlayHead::advance(double seconds, int num_frames) {

@@ -4,14 +4,29 @@
 #include <filesystem>
 #include <memory>
 
+#include <string>
+
 #include "weft/io/animation.h"
 #include "weft/run/past_run.h"
+#include "weft/run/past_world.h"
 
 namespace weft::engine {
 
-/// The frames of a run, from its animation; of an unfinished run those so far. They stay on disk. `path`: the
-/// folder of a run, or a .glb file of one. Throws InputError if it has no animation, or that has no cloth.
+/// The frames of a run, from its animation, or from its scene and point caches; of an unfinished run those so
+/// far. They stay on disk. `path`: the folder of a run, or a .glb file of one. Throws InputError if it has
+/// neither, or no cloth.
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path);
+
+/// Frames of particles, with the world that they are of.
+struct FramesAndWorld {
+  std::unique_ptr<PastWorld> world;     // null: `frames` are those of open_frames()
+  std::string why_not;                  // there is no world, as a sentence
+  std::unique_ptr<FrameSource> frames;  // refers to `world`
+  PastCounts counts;
+};
+
+/// The frames with the world of the run's scene, if there is a scene with its files. Throws like open_frames().
+FramesAndWorld open_frames_and_world(const std::filesystem::path& path);
 
 /// The frame that is shown.
 struct PlayHead {

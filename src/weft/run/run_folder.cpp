@@ -15,6 +15,7 @@
 #include "weft/run/checkpoint.h"
 #include "weft/run/file_sinks.h"
 #include "weft/run/frame_checker.h"
+#include "weft/run/past_run.h"
 #include "weft/run/recorder.h"
 #include "weft/run/start_from.h"
 #include "weft/scene/scene_reader.h"
@@ -54,7 +55,6 @@ std::vector<std::string> find_cloth_files(const fs::path& folder) {
 }
 
 constexpr const char* kLockName = "lock";
-constexpr const char* kSceneName = "scene.toml";
 
 /// The folder of a run while it goes on: its lock, its scene, its checkpoint, its files so far.
 class WorkFolder {
@@ -208,12 +208,15 @@ class RunFiles : public FrameSink {
     StagedFile report_file(folder_ / kReportName), run_file(folder_ / kRunName);
     report_file.out() << to_json(report);
     report_file.finish();
+    const fs::path scene = copy_scene();
     run_file.out() << list_of(report).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     run_file.finish();
     std::error_code ignored;
     glb_ ? glb_->replace() : void(fs::remove(folder_ / kAnimationName, ignored));
     replace_cloth_files();
     if (obj_) replace_obj_frames();
+    fs::remove_all(folder_ / kAsRunName, ignored);
+    fs::rename(scene, folder_ / kAsRunName);
     report_file.replace();
     run_file.replace();
   }
@@ -223,7 +226,7 @@ class RunFiles : public FrameSink {
     if (glb_) files.push_back(folder_ / kAnimationName);
     for (const std::string& name : cloth_files()) files.push_back(folder_ / name);
     if (obj_) files.push_back(folder_ / "obj");
-    files.insert(files.end(), {folder_ / kReportName, folder_ / kRunName});
+    files.insert(files.end(), {folder_ / kAsRunName, folder_ / kReportName, folder_ / kRunName});
     return files;
   }
 
@@ -240,6 +243,22 @@ class RunFiles : public FrameSink {
                          {"particles", world.num_particles(cloth)}});
     }
     fps_ = run.scene().fps;
+    scene_hash_ = hash_of_scene(run.scene());
+  }
+
+  /// The scene and its meshes that are in no file, from the work folder: names in it are relative to a folder
+  /// as deep.
+  fs::path copy_scene() const {
+    const fs::path copy = folder_ / (std::string(kAsRunName) + ".part");
+    fs::remove_all(copy);
+    make_folder(copy);
+    for (const auto& entry : fs::directory_iterator(part_)) {
+      const std::string name = entry.path().filename().string();
+      if (name == kSceneName ||
+          (name.ends_with(".obj") && !name.ends_with(kMeshEnding) && entry.is_regular_file()))
+        fs::copy_file(entry.path(), copy / name);
+    }
+    return copy;
   }
 
   /// Those that the run has already moved to its results.
@@ -253,13 +272,10 @@ class RunFiles : public FrameSink {
   }
 
   Json list_of(const RunReport& report) const {
-    return {{"format", 1},
-            {"weft", report.version},
-            {"scene", report.scene},
-            {"fps", fps_},
-            {"frames", report.frames},
-            {"cloths", cloths_},
-            {"animation", glb_ ? Json(kAnimationName) : Json(nullptr)},
+    return {{"format", 1},           {"weft", report.version},
+            {"scene", report.scene}, {"scene_hash", scene_hash_},
+            {"fps", fps_},           {"frames", report.frames},
+            {"cloths", cloths_},     {"animation", glb_ ? Json(kAnimationName) : Json(nullptr)},
             {"report", kReportName}};
   }
 
@@ -299,6 +315,7 @@ class RunFiles : public FrameSink {
   std::vector<FrameSink*> sinks_;  // of these
   Json cloths_ = Json::array();
   double fps_ = 0;
+  std::string scene_hash_;
 };
 
 /// What `options.start_from` names; for a run to be resumed nothing, if it is not there any more.

@@ -7,6 +7,7 @@
 ///     animation.glb   cloths and colliders                                   io/glb_writer.h
 ///     obj/            an OBJ file per cloth and frame
 ///     report.json     the report                                             report.h
+///     as_run/         scene.toml: the scene with all changes, and its meshes that are in no file
 ///     unfinished/     during a run: its files so far, its scene, its checkpoint (checkpoint.h), its lock;
 ///                     what an interrupted run needs to be resumed
 
@@ -23,8 +24,10 @@ inline constexpr const char* kAnimationName = "animation.glb";
 inline constexpr const char* kReportName = "report.json";
 inline constexpr const char* kRunName = "run.json";
 inline constexpr const char* kCheckpointName = "checkpoint";
+inline constexpr const char* kAsRunName = "as_run";
 inline constexpr const char* kUnfinishedName = "unfinished";
 inline constexpr const char* kFramesName = "animation.frames";  // in it
+inline constexpr const char* kSceneName = "scene.toml";         // in both
 
 struct FinishedRun {
   RunReport report;

@@ -182,7 +182,7 @@ void append(const std::vector<std::string>& messages, std::vector<std::string>& 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
 double SceneDesc::step_length() const { return 1 / (fps * steps_per_frame); }
 
-PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs, const SceneStart* start) {
+PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
   PublicScene result;
   World& world = WorldAccess::engine(result.world);
   world.set_jobs(std::move(jobs));
@@ -207,8 +207,14 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
     if (rule.friction) world.set_friction(a, b, *rule.friction, rule.static_friction);
     world.set_collision(a, b, rule.collide);
   }
+  return result;
+}
+
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs, const SceneStart* start) {
+  PublicScene result = place_scene(scene, std::move(jobs));
   if (start) set_start(*start, result);
   const bool is_repaired = scene.untangle && scene.contact;
+  World& world = WorldAccess::engine(result.world);
   is_repaired ? untangle(world, result) : warn_about_start(world, result.warnings);
   if (scene.settle > 0) settle(scene, result);
   return result;

@@ -35,6 +35,9 @@ struct SceneStart;  // scene_start.h
 /// cannot be used, if a pin selects nothing, and like set_start().
 PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
                         const SceneStart* start = nullptr);
+
+/// The same before intersections are removed and the scene settles: at the time -SceneDesc::settle.
+PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
 
 /// The pins of a cloth as input for the world that has it, with particles selected by their initial positions.

@@ -1,6 +1,8 @@
 #pragma once
 /// Preconditioned conjugate gradients in floats, matrix-free.
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "weft/core/job_system.h"
@@ -19,6 +21,7 @@ struct CgSettings {
 struct CgReport {
   int iterations = 0;   // number made [1]
   double decrease = 0;  // of ½ xᵀAx − bᵀx, from x = 0 [J]
+  double residual = 0;  // √(r·P⁻¹r) before the last iteration, as a share of that of b [1]
 };
 
 /// One block of the vectors, with the work space of a solve.
@@ -42,7 +45,8 @@ CgReport solve_conjugate_gradients(const Multiply& multiply, const Precondition&
                                    JobSystem& jobs) {
   for (CgBlock* block : blocks) block->begin();
   CgReport report;
-  double rz = precondition(), beta = 0;
+  const double at_start = precondition();
+  double rz = at_start, beta = 0;
   while (report.iterations < settings.iterations && rz > 0) {
     for (CgBlock* block : blocks) block->turn(beta, jobs);
     const double curvature = multiply();
@@ -58,6 +62,7 @@ CgReport solve_conjugate_gradients(const Multiply& multiply, const Precondition&
     beta = next / rz;
     rz = next;
   }
+  if (at_start > 0) report.residual = std::sqrt(std::max(rz, 0.0) / at_start);
   return report;
 }
 

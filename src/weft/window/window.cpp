@@ -290,7 +290,11 @@ std::uint64_t Window::make_texture(const Image& image) {
   return texture;
 }
 
-void Window::wait_for_event(double seconds) { glfwWaitEventsTimeout(seconds); }
+bool Window::wait_for_event(double seconds) {
+  const double start = glfwGetTime();
+  glfwWaitEventsTimeout(seconds);
+  return glfwGetTime() - start < seconds;
+}
 
 void Window::begin_frame(const WindowEvents& events) {
   glfwPollEvents();

@@ -85,8 +85,8 @@ class Window {
   /// A picture for Dear ImGui, kept until the window closes.
   std::uint64_t make_texture(const Image& image);
 
-  /// Sleeps until the next input, or for this long [s].
-  void wait_for_event(double seconds);
+  /// Sleeps until the next input, or for this long. False: there was none [s].
+  bool wait_for_event(double seconds);
 
   void begin_frame(const WindowEvents& events);
   void end_frame();

@@ -664,6 +664,7 @@ void World::solve(double dt, StepReport& report) {
     cloth.attachment_impulse += cloth.attachments.impulse(cloth.is_pinned, dt, cloth.state);
   report.iterations += done.iterations;
   add_count(done.linear_iterations, report.linear_iterations);
+  take_larger(done.residual, report.residual);
   add_count(done.guard_events, report.guard_events);
   if (!done.converged) report.warnings.push_back({WarningCode::not_converged, done.unconverged});
 }
@@ -805,6 +806,7 @@ void World::accept(const StepReport& part, StepReport& report) {
   report.substeps = std::max(report.substeps, part.substeps);
   report.iterations += part.iterations;
   add_count(part.linear_iterations, report.linear_iterations);
+  take_larger(part.residual, report.residual);
   add_count(part.guard_events, report.guard_events);
   report.hits += part.hits;
   report.zones += part.zones;
