@@ -23,10 +23,12 @@ ImVec2 at(const Eigen::Vector2d& pixel, const WindowPart& part) {
   return {static_cast<float>(pixel.x()) + static_cast<float>(part.x), static_cast<float>(pixel.y())};
 }
 
-/// Colours with round numbers and the unit, in the lower right corner.
+/// Colours with round numbers and the unit, in the lower right corner; beside plots and numbers in the middle.
 void draw_color_legend(Viewer& viewer) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x - kMargin, screen.y - kMargin}, ImGuiCond_Always, {1, 1});
+  const bool is_beside = viewer.shows_plots() || viewer.shows_numbers();
+  ImGui::SetNextWindowPos({is_beside ? 0.5f * screen.x : screen.x - kMargin, screen.y - kMargin},
+                          ImGuiCond_Always, {is_beside ? 0.5f : 1, 1});
   ImGui::Begin("legend", nullptr, kBoxFlags | ImGuiWindowFlags_NoInputs);
   ImGui::TextUnformatted(label_of(*viewer.look.color).text().c_str());
   const float width = kLegendWidth * scale(), height = kLegendHeight * scale();

@@ -108,6 +108,7 @@ TEST_F(PlaybackOfARun, HasItsWorldAtEveryFrame) {
   const FramesAndWorld run = open_frames_and_world(folder_);
   ASSERT_TRUE(run.world) << run.why_not;
   EXPECT_EQ(run.counts.newton_steps.size(), 5u);
+  EXPECT_EQ(run.frames->meshes().title, "contact/rotating_ball");
   EXPECT_EQ(run.frames->num_frames(), 6);
   EXPECT_EQ(open_frames(folder_)->num_frames(), 6);
   EXPECT_EQ(run.frames->meshes().cloths[0].color, (std::array{0.0, 0.5, 1.0}));

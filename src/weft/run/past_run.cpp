@@ -41,6 +41,7 @@ PastRun read_results(const fs::path& folder) {
     if (!cloth.is_object() || text(cloth, "name").empty()) fail();
     run.cloths.push_back({text(cloth, "name"), file(cloth, "positions"), file(cloth, "mesh")});
   }
+  run.name = text(json, "scene");
   run.animation = file(json, "animation");
   run.report = file(json, "report");
   if (!text(json, "scene_hash").empty()) run.scene = folder / kAsRunName / kSceneName;
@@ -50,7 +51,7 @@ PastRun read_results(const fs::path& folder) {
 
 PastRun read_results_so_far(const fs::path& folder) {
   const UnfinishedRun unfinished = read_unfinished_run(folder);
-  PastRun run{.folder = folder, .fps = unfinished.scene.fps};
+  PastRun run{.folder = folder, .name = unfinished.scene.name, .fps = unfinished.scene.fps};
   if (unfinished.options.glb) run.frames = folder / kUnfinishedName / kFramesName;
   FileNames names;
   for (const ClothSceneDesc& cloth : unfinished.scene.cloths) {

@@ -19,6 +19,7 @@ struct PastCloth {
 
 struct PastRun {
   std::filesystem::path folder;
+  std::string name;                 // of the scene
   double fps = 60;                  // frames per second, > 0
   std::vector<PastCloth> cloths;    // at least one
   std::filesystem::path animation;  // empty: none

@@ -102,7 +102,8 @@ FramesAndWorld open_scene(const PastRun& run) {
     throw InputError(run.folder.string() + " has no frames to show: it was run with --no-glb and --no-pc2");
   if (run.scene.empty())
     throw InputError(run.folder.string() + " has no scene: it is of an earlier version of Weft");
-  const SceneDesc scene = read_scene(run.scene);
+  SceneDesc scene = read_scene(run.scene);
+  scene.name = run.name;
   if (hash_of_scene(scene) != run.scene_hash)
     throw InputError(run.scene.string() + ": scene or meshes have changed since the run");
   FramesAndWorld result;
