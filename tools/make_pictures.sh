@@ -22,6 +22,9 @@ done
 "$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
+# Gas in closed cloth.
+"$weft" render pressure/cushion --frame 25 --camera 25,8 --look-at 0,0.2,0 --distance 1.2 --size 960x540 --out "$images/pressure.jpg"
+
 # Values of cloth in colours.
 "$weft" render paper/fig6_ball --frame 60 --color strain --size 960x540 --out "$images/strain.jpg"
 

@@ -1,13 +1,14 @@
-// Makes the meshes of the contact scenes: make_surfaces FOLDER writes folded_sheet.obj, tube.obj, funnel.obj
-// and legs_0.obj to legs_6.obj, frames of one mesh.
+// Makes meshes of scenes: make_surfaces SCENES writes, into SCENES/contact, folded_sheet.obj, tube.obj, funnel.obj
+// and legs_0.obj to legs_6.obj, frames of one mesh; into SCENES/pressure cushion.obj and ball.obj.
 //
-// Each is a swept polyline: along z (a sheet), or around an axis (a tube, a funnel).
+// Those of contact are swept polylines: along z (a sheet), or around an axis (a tube, a funnel).
 
 #include <cstdio>
 #include <exception>
 
 #include "weft/core/angle.h"
 #include "weft/io/obj_reader.h"
+#include "weft/mesh/sample_meshes.h"
 
 namespace weft::engine {
 namespace {
@@ -124,21 +125,31 @@ TriangleMesh make_legs(int k) {
   return legs;
 }
 
+TriangleMesh round(TriangleMesh mesh) {
+  for (Vec3& p : mesh.positions) p = rounded(p);
+  return mesh;
+}
+
+TriangleMesh make_cushion() { return round(build_cushion_mesh(0.5, 32, 0.004)); }
+TriangleMesh make_ball() { return round(build_geodesic_mesh(0.15, 3)); }
+
 }  // namespace
 }  // namespace weft::engine
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: make_surfaces FOLDER\n");
+    std::fprintf(stderr, "usage: make_surfaces SCENES\n");
     return 2;
   }
-  const std::filesystem::path folder = argv[1];
+  const std::filesystem::path scenes = argv[1], folder = scenes / "contact";
   try {
     weft::engine::write_obj(folder / "folded_sheet.obj", weft::engine::make_folded_sheet());
     weft::engine::write_obj(folder / "tube.obj", weft::engine::make_tube());
     weft::engine::write_obj(folder / "funnel.obj", weft::engine::make_funnel());
     for (int k = 0; k < static_cast<int>(std::size(weft::engine::kApart)); ++k)
       weft::engine::write_obj(folder / ("legs_" + std::to_string(k) + ".obj"), weft::engine::make_legs(k));
+    weft::engine::write_obj(scenes / "pressure/cushion.obj", weft::engine::make_cushion());
+    weft::engine::write_obj(scenes / "pressure/ball.obj", weft::engine::make_ball());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_surfaces: %s\n", error.what());
     return 1;

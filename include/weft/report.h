@@ -117,7 +117,7 @@ struct TriangleStrain {
 /// Energies of all cloths [J].
 struct Energies {
   double kinetic = 0;
-  double elastic = 0;  // of stretching and shearing
+  double elastic = 0;  // of stretching and shearing, and of gas in closed cloth
   double bending = 0;
   double gravitational = 0;  // zero at the world's origin
 

@@ -32,7 +32,7 @@ using BodyId = std::variant<ClothId, ColliderId>;
 /// Kind of force on particles.
 enum class ForceKind {
   gravity,
-  elastic,   // of springs, membranes, strain limits and bending
+  elastic,   // of springs, membranes, strain limits, bending, and gas in closed cloth
   damping,   // internal damping of the cloth
   wind,      // the wind's drag, and aerodynamic drag and lift
   external,  // set by set_forces()
@@ -134,6 +134,15 @@ class WEFT_API World {
 
   /// External forces, one for each particle; constant until the next call. Empty: none [N].
   void set_forces(ClothId cloth, const std::vector<Vec3>& forces);
+
+  /// Gas inside closed cloth, in excess of the air outside; 0: none, unless it is sealed [Pa]. The excess is kept,
+  /// or a sealed amount of gas keeps the product of absolute pressure and volume (Boyle), from `pressure` at the
+  /// present volume. Throws InputError for cloth with a border or with edges whose triangles face opposite ways, for
+  /// integrators besides newton and implicit_euler, for a number that is not finite, and for sealed gas without a
+  /// volume, or at an excess of -101325 Pa or less.
+  void set_pressure(ClothId cloth, double pressure, bool sealed = false);
+  double pressure(ClothId cloth) const;  // present excess [Pa]
+  double volume(ClothId cloth) const;    // inside closed cloth; throws InputError for cloth that is not [m³]
 
   // State from outside: a jump, without a swept motion. Pins then hold at the new positions.
 

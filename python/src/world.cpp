@@ -298,6 +298,15 @@ void bind_motion(nb::class_<LockedWorld>& c) {
     const std::vector<Vec3> given = to_vectors(forces);
     with(own, [&](World& w) { w.set_forces(id, given); });
   });
+  c.def("set_pressure", [](LockedWorld& own, const ClothId& id, double pressure, bool sealed) {
+    with(own, [&](World& w) { w.set_pressure(id, pressure, sealed); });
+  });
+  c.def("pressure", [](LockedWorld& own, const ClothId& id) {
+    return with(own, [&](const World& w) { return w.pressure(id); });
+  });
+  c.def("volume", [](LockedWorld& own, const ClothId& id) {
+    return with(own, [&](const World& w) { return w.volume(id); });
+  });
   c.def("set_positions", [](LockedWorld& own, const ClothId& id, const Vectors& positions) {
     const std::vector<Vec3> given = to_vectors(positions);
     with(own, [&](World& w) { w.set_positions(id, given); });

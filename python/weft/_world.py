@@ -272,6 +272,24 @@ class Cloth:
         else:
             self._core.set_forces(self._id, vectors(forces, "forces", self._count))
 
+    def set_pressure(self, pressure: float, *, sealed: bool = False) -> None:
+        """Gas inside closed cloth, in excess of the air outside [Pa]; 0: none, unless it is sealed.
+
+        A sealed amount of gas keeps the product of absolute pressure and volume, from `pressure` at the present volume.
+        """
+        choose(sealed, "sealed", bool, "True or False")
+        self._core.set_pressure(self._id, real(pressure, "pressure"), sealed)
+
+    @property
+    def pressure(self) -> float:
+        """Present excess of the gas inside over the air outside [Pa]."""
+        return self._core.pressure(self._id)
+
+    @property
+    def volume(self) -> float:
+        """Inside closed cloth [m³]. Raises InputError for cloth that is not closed."""
+        return self._core.volume(self._id)
+
     @property
     def pin_forces(self) -> NDArray[np.float64]:
         """Reaction force of each pin: (k, 3) [N], in the order of `pins`. A new array.

@@ -40,6 +40,13 @@ def woven(**values: object) -> weft.Cloth:
     return cloth(fabric=weft.Fabric(**values))  # type: ignore[arg-type]
 
 
+def bag(**settings: str) -> weft.Cloth:
+    """A tetrahedron."""
+    vertices = [(0, 0, 0), (1, 0, 0), (0, 0, 1), (0.3, 0.1, 0.3)]
+    mesh = weft.Mesh(vertices, [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)])
+    return empty(**settings).add_cloth(mesh, fabric="denim", warp=(1, 0, 0))
+
+
 def put(thing: object, name: str, value: object) -> None:
     setattr(thing, name, value)
 
@@ -223,6 +230,14 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: cloth(SQUARE, sew=-1), 'cloth "cloth": sew must be 0 m or more'),
     (lambda: cloth(warp=(0, 0, 0)), 'cloth "cloth": warp must be a direction, finite and not zero'),
     (lambda: cloth().set_forces((1e300, 0, 0)), 'cloth "cloth": external forces must be finite, and at most 1e38'),
+    (lambda: cloth().set_pressure(100),
+     'cloth "cloth" is not closed: pressure requires a surface without a border, but 8 of its edges have one triangle, '
+     "and 0 others join triangles that face opposite ways; join pieces with sew or weld"),
+    (lambda: bag().set_pressure(np.inf), "pressure: expected a finite number, found inf"),
+    (lambda: bag().set_pressure(-101325, sealed=True),
+     'cloth "cloth": sealed gas requires a volume, and a pressure above -101325 Pa'),
+    (lambda: bag(integrator="xpbd").set_pressure(5),
+     'cloth "cloth" has a pressure, but xpbd does not support it; use newton or implicit_euler'),
     (lambda: put(cloth(), "velocities", (0, 0, -1e39)), 'cloth "cloth": velocities must be finite, and at most 1e38'),
     (lambda: put(cloth(), "positions", (0, 1e39, 0)), 'cloth "cloth": positions must be finite, and at most 1e38'),
     (lambda: cloth_of(hanging(2)).set_targets([0], (1e39, 0, 0)),
@@ -316,7 +331,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: weft.World.load(hanging(2).save()[:-1]), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(damaged()), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(of_version(99)),
-     "the saved world has format version 99; this library reads version 2"),
+     "the saved world has format version 99; this library reads version 3"),
     # Pictures.
     (lambda: weft.Camera(position=(0, 0, 0)).render(empty(), color=False),
      "a camera's position and target: expected two different points"),
@@ -526,6 +541,7 @@ UNREACHABLE = {
     "gravity must be finite": CHECKED,
     " has a non-finite coordinate": CHECKED,
     ", but the mesh has ": CHECKED,
+    '": its pressure must be finite': CHECKED,
     "the height of the ground is not finite": CHECKED,
     ": expected 1 or more, found ": CHECKED,
     "; all must have the same number": "each frame is compared with the mesh first",

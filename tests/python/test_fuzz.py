@@ -75,6 +75,7 @@ RIGHT: dict[str, tuple[list[Any], dict[str, Any]]] = {
     "Cloth.unpin": ([[0]], {}),
     "Cloth.set_targets": ([[0], (0, 0, 0)], {}),
     "Cloth.set_forces": ([(0, 0, 0)], {}),
+    "Cloth.set_pressure": ([0], dict(sealed=False)),
     "Cloth.copy_positions": ([np.zeros((25, 3))], {}),
     "Cloth.copy_velocities": ([np.zeros((25, 3), np.float32)], {}),
     "Cloth.teleport": ([], dict(translation=(0, 1, 0), rotation=(0, 0, 5), keeps_velocity=False)),

@@ -80,6 +80,8 @@ model = "alternating"
 position = [1, 2, 3]
 rotation = [90, 0, -45]
 velocity = [0, 0, 1]
+pressure = -20
+sealed = true
 color = [0, 0.5, 1]
 )")
                                    .cloths.at(0);
@@ -93,6 +95,8 @@ color = [0, 0.5, 1]
   EXPECT_EQ(cloth.position, Vec3(1, 2, 3));
   EXPECT_EQ(cloth.rotation_deg, Vec3(90, 0, -45));
   EXPECT_EQ(cloth.velocity, Vec3(0, 0, 1));
+  EXPECT_EQ(cloth.pressure, -20);
+  EXPECT_TRUE(cloth.is_sealed);
   EXPECT_EQ(cloth.color, (std::array<double, 3>{0, 0.5, 1}));
 }
 

@@ -15,6 +15,9 @@ namespace {
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
+/// The pressure of gas presses a particle this share of its gap into a contact.
+constexpr double kPressedByGas = 0.1;
+
 /// Penetration that the solve leaves at a collider, below this share of the gap, is kept: a contact's depth
 /// is its force, and the next step's friction starts from it.
 constexpr double kPressedIn = 0.2;
@@ -71,6 +74,8 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   is_placed_ = is_surveyed_ = is_clear_ = false;
   thickest_ = 0;
   thinnest_ = std::numeric_limits<double>::infinity();
+  has_pressure_ =
+      std::any_of(cloths.begin(), cloths.end(), [](const ContactCloth& c) { return c.pressure > 0; });
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     starts_[c] = cloths_[c].state->x;
     const double half_thickness = cloths_[c].model->material.thickness / 2;
@@ -379,6 +384,21 @@ double ContactSystem::kept_gap(const Constraint& c) const {
   return motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
 }
 
+/// For contacts that carry the pressure of gas on the particles around them [N/m].
+double ContactSystem::pressure_stiffness(const Constraint& c) const {
+  double force = 0;
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    if (v >= first_vertex_.back()) continue;
+    const int cloth = mesh_of(first_vertex_, v);
+    const double pressure = cloths_[cloth].pressure;
+    if (pressure > 0)
+      force +=
+          std::abs(c.weight[k]) * pressure * cloths_[cloth].model->topology->area[v - first_vertex_[cloth]];
+  }
+  return force / (kPressedByGas * kept_gap(c));
+}
+
 void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   const WorkScope scope(step_.clock, &WorkTimes::rows);
   contacts.clear();
@@ -396,7 +416,8 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
     contact.depth_before = depth_at_start(c);
     contact.stick_point = h * c.surface_velocity;
     contact.friction = c.friction;
-    contact.stiffness = (c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h);
+    contact.stiffness = std::max((c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h),
+                                 has_pressure_ ? pressure_stiffness(c) : 0.0);
     for (int k = 0; k < c.num_vertices; ++k) {
       const int v = c.vertex[k];
       const double w = c.weight[k];

@@ -30,6 +30,7 @@ struct ContactCloth {
   const ClothModel* model = nullptr;
   ClothState* state = nullptr;
   const std::vector<char>* is_pinned = nullptr;  // (num_particles)
+  double pressure = 0;                           // on its surface, from inside, >= 0 [Pa]
 };
 
 /// Contact settings for one pair: a cloth with a collider, another cloth or itself.
@@ -202,6 +203,7 @@ class ContactSystem {
   void update_plane(const Nearest& at_end, Constraint& c) const;
   double clearance_of(const Constraint& c) const;
   double kept_gap(const Constraint& c) const;
+  double pressure_stiffness(const Constraint& c) const;
   double depth_at_start(const Constraint& c) const;
   bool is_within_ccd_range() const;
   void read_ends();
@@ -220,6 +222,7 @@ class ContactSystem {
   // Constant between renumberings.
   std::vector<std::shared_ptr<const ClothTopology>> numbered_cloths_;
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
+  bool has_pressure_ = false;      // some cloth has
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<ClosedMesh> closed_meshes_;

@@ -214,8 +214,13 @@ void describe(Archive& archive, PointGuide& g) {
   members(archive, g.from, g.to, g.start, g.end, g.is_new);
 }
 template <class Archive>
+void describe(Archive& archive, Gas& g) {
+  members(archive, g.pressure, g.sealed_volume, g.orientation);
+}
+template <class Archive>
 void describe(Archive& archive, World::Held& h) {
-  members(archive, h.pins, h.anchors, h.on_surface, h.attachments, h.pin_guide, h.attachment_guide, h.forces);
+  members(archive, h.pins, h.anchors, h.on_surface, h.attachments, h.pin_guide, h.attachment_guide, h.forces,
+          h.gas);
 }
 template <class Archive>
 void describe(Archive& archive, World::Guide& g) {
@@ -239,7 +244,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 2;         // of the format
+constexpr std::uint32_t kVersion = 3;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -352,6 +357,8 @@ void check(const engine::World::Held& held, std::size_t num_particles, const std
   check(held.pin_guide, pinned);
   check(held.attachment_guide, held.attachments.size());
   check(held.forces, held.forces.empty() ? 0 : num_particles);
+  require(std::isfinite(held.gas.pressure) && std::isfinite(held.gas.sealed_volume) &&
+          std::abs(held.gas.orientation) == 1);
 }
 
 void check(const engine::Pose& pose) {

@@ -134,6 +134,13 @@ void World::set_forces(ClothId cloth, const std::vector<Vec3>& forces) {
   impl_->world.set_forces(cloth, to_engine(forces));
 }
 
+void World::set_pressure(ClothId cloth, double pressure, bool sealed) {
+  impl_->world.set_pressure(cloth, pressure, sealed);
+}
+
+double World::pressure(ClothId cloth) const { return impl_->world.pressure(cloth); }
+double World::volume(ClothId cloth) const { return impl_->world.volume(cloth); }
+
 void World::set_positions(ClothId cloth, const std::vector<Vec3>& positions) {
   impl_->world.set_positions(cloth, to_engine(positions));
   engine::hold_soft_pins(impl_->world, cloth);

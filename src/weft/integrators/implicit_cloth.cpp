@@ -135,7 +135,21 @@ double ImplicitCloth::energy(const std::vector<Vec3>& x) const {
   }
   for (const MembraneElement& t : triangles_)
     energy += collapse_energy(t.rest, collapse_law_, corners_of(t, x));
-  return energy;
+  return model_->gas.is_active() ? energy + gas_energy(model_->gas, volume(x)) : energy;
+}
+
+double ImplicitCloth::volume(const std::vector<Vec3>& x) const {
+  return model_->gas.orientation *
+         enclosed_volume(model_->topology->mesh.triangles, [&](int v) { return x[v]; });
+}
+
+std::optional<ImplicitCloth::GasHessian> ImplicitCloth::gas_hessian(const std::vector<Vec3>& x) const {
+  if (!model_->gas.is_sealed()) return std::nullopt;
+  GasHessian hessian{gas_stiffness(model_->gas, volume(x)), std::vector<Vec3>(x.size(), Vec3::Zero())};
+  add_volume_gradient(
+      model_->topology->mesh.triangles, [&](int v) { return x[v]; },
+      [&](int v, const Vec3& part) { hessian.gradient[v] += part; });
+  return hessian;
 }
 
 Vec3 ImplicitCloth::relative_velocity(const Spring& s, const std::vector<Vec3>& x) const {
@@ -205,6 +219,11 @@ void ImplicitCloth::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& 
     const TriangleCorners force = collapse_force(t.rest, collapse_law_, corners_of(t, x));
     for (int c = 0; c < 3; ++c) gradient[t.vertices[c]] -= force[c];
   }
+  if (!model_->gas.is_active()) return;
+  const double excess = model_->gas.orientation * gas_excess(model_->gas, volume(x));
+  add_volume_gradient(
+      model_->topology->mesh.triangles, [&](int v) { return x[v]; },
+      [&](int v, const Vec3& part) { gradient[v] -= excess * part; });
 }
 
 void ImplicitCloth::add_hessian(const std::vector<Vec3>& x, bool is_true, const AddBlock& add,

@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "weft/forces/collapse.h"
+#include "weft/forces/pressure.h"
 #include "weft/integrators/air_terms.h"
 #include "weft/integrators/element_terms.h"
 #include "weft/integrators/integrator.h"
@@ -44,6 +46,14 @@ class ImplicitCloth {
   void add_hessian(const std::vector<Vec3>& x, bool is_true, const AddBlock& add,
                    const SetSpring& set_spring) const;
 
+  /// The part stiffness ∂V ∂Vᵀ of the Hessian, of sealed gas: it couples all particles; pins are not set to
+  /// zero.
+  struct GasHessian {
+    double stiffness;            // [Pa/m³]
+    std::vector<Vec3> gradient;  // ∂V (num_particles) [m²]
+  };
+  std::optional<GasHessian> gas_hessian(const std::vector<Vec3>& x) const;
+
   /// Particle pairs besides springs that the Hessian couples.
   std::vector<std::pair<int, int>> find_element_pairs() const;
 
@@ -74,6 +84,7 @@ class ImplicitCloth {
   bool is_limited(const Spring& s) const;
   LimitResponse limit_of(const Spring& s, const std::vector<Vec3>& x) const;
   Mat3 limit_jacobian(const Spring& s, const std::vector<Vec3>& x) const;
+  double volume(const std::vector<Vec3>& x) const;
   void add_spring_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;
 
   Order order_ = Order::first;

@@ -360,8 +360,42 @@ class ImplicitGroup {
     }
     direction_.resize(x_.size());
     for (std::size_t i = 0; i < x_.size(); ++i) direction_[i] = -gradient_[i];
-    cholesky_.solve(direction_);
+    solve(direction_);
     return true;
+  }
+
+  /// Solves with the factorised matrix and the parts of rank one that sealed gas adds (Sherman and Morrison).
+  void solve(std::vector<Vec3>& values) {
+    gas_.clear();
+    for (std::size_t c = 0; c < cloths_.size(); ++c) {
+      const auto hessian = cloths_[c]->gas_hessian(part_of(x_, static_cast<int>(c)));
+      if (!hessian) continue;
+      GasPart part{hessian->stiffness, std::vector<Vec3>(x_.size(), Vec3::Zero()), {}};
+      std::copy(hessian->gradient.begin(), hessian->gradient.end(), part.gradient.begin() + first_[c]);
+      for (std::size_t i = 0; i < x_.size(); ++i) {
+        if (is_pinned_[i]) part.gradient[i].setZero();
+      }
+      part.solution = part.gradient;
+      solve_with_gas(part.solution);
+      gas_.push_back(std::move(part));
+    }
+    solve_with_gas(values);
+  }
+
+  /// With the gas so far.
+  void solve_with_gas(std::vector<Vec3>& values) {
+    cholesky_.solve(values);
+    for (const GasPart& part : gas_) {
+      const double share = part.stiffness * dot(part.gradient, values) /
+                           (1 + part.stiffness * dot(part.gradient, part.solution));
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= share * part.solution[i];
+    }
+  }
+
+  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+    return sum;
   }
 
   /// Backtracking line search along direction_; returns the accepted share, 0 if the energy does not
@@ -388,7 +422,14 @@ class ImplicitGroup {
     return result;
   }
 
+  /// stiffness · gradient gradientᵀ, and the solution of gradient without it.
+  struct GasPart {
+    double stiffness;
+    std::vector<Vec3> gradient, solution;
+  };
+
   ImplicitEulerSettings settings_;
+  std::vector<GasPart> gas_;
 
   // The pattern.
   Layout layout_;

@@ -107,6 +107,9 @@ class Integrator {
 /// springs only.
 bool supports_elements(std::string_view integrator);
 
+/// Whether it supports gas inside closed cloth (ClothModel::gas).
+bool supports_pressure(std::string_view integrator);
+
 /// Whether it supports aerodynamic drag and lift (Wind::air); the others support the paper's wind only.
 bool supports_aerodynamics(std::string_view integrator);
 

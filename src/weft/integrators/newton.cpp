@@ -167,8 +167,9 @@ class NewtonGroup {
       if (!std::isfinite(after)) break;
       accept_trial();
       const double predicted = share * (2 - share) * linear.decrease;
-      const bool missed = std::abs(after - (before - predicted)) > kMissedShare * after + noise_;
-      const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * after + noise_;
+      const double size = std::abs(after);  // below 0 while gas expands
+      const bool missed = std::abs(after - (before - predicted)) > kMissedShare * size + noise_;
+      const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * size + noise_;
       const bool is_last = report.iterations + 1 == asked;
       if (!contacts_.empty()) {
         if (is_last &&
@@ -178,7 +179,7 @@ class NewtonGroup {
       }
       // The first step's decrease carries no information: most of it is forces that the prediction ignored.
       const bool is_falling =
-          budget.newton_steps > 1 && report.iterations > 0 && before - after > kFallingShare * after + noise_;
+          budget.newton_steps > 1 && report.iterations > 0 && before - after > kFallingShare * size + noise_;
       const int most = is_beyond ? kMaxStepsBeyondLimit : budget.max_newton_steps;
       if ((missed || is_falling || is_beyond) && asked < most && is_last) {
         ++asked;

@@ -106,6 +106,7 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   prepare_matrices(jobs);
   air_.begin(*model_, *environment_, *state_);
   collapse_.begin(*model_, rows_);
+  pressure_.begin(*model_, rows_, *state_);
   noise_ = energy_noise();
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
@@ -172,7 +173,8 @@ void NewtonCloth::start_inertial(bool accelerates) {
 
 double NewtonCloth::energy_at(const Vec3Array& offset, JobSystem& jobs) {
   const double energy = potential_.energy(offset, jobs);
-  return energy + air_.energy(rows_, offset) + collapse_.energy(potential_.positions());
+  const Vec3Array& x = potential_.positions();
+  return energy + air_.energy(rows_, offset) + collapse_.energy(x) + pressure_.energy(x);
 }
 
 /// Rounding error of the energy of springs at rest: their ends are accurate to half a unit in the last place
@@ -196,6 +198,7 @@ double NewtonCloth::linearise(JobSystem& jobs) {
   double energy = potential_.linearise(correction_, jobs, force_);
   energy += air_.linearise(rows_, correction_, force_);
   energy += collapse_.linearise(potential_.positions(), jobs, force_);
+  energy += pressure_.linearise(potential_.positions(), force_);
   return energy;
 }
 
@@ -231,6 +234,14 @@ void NewtonCloth::begin_preconditioner(bool is_first, bool is_active, JobSystem&
 }
 
 void NewtonCloth::finish_preconditioner(JobSystem& jobs) {
+  update_diagonals(jobs);
+  if (!pressure_.has_hessian()) return;
+  hold_pins(pressure_.gradient());
+  pressure_.begin_preconditioner(
+      [&](const Vec3Array& r, Vec3Array& z) { precondition_without_gas(r, jobs, z); });
+}
+
+void NewtonCloth::update_diagonals(JobSystem& jobs) {
   const bool was_in_contact = is_in_contact_;
   is_in_contact_ = !contact_preconditioner_.empty();
   if (!is_in_contact_ && !was_in_contact) return;
@@ -250,17 +261,23 @@ double NewtonCloth::multiply(JobSystem& jobs) {
   double dot = potential_.multiply(p, jobs, q);
   dot += air_.add_product(rows_, p, q);
   dot += collapse_.add_product(p, q);
+  dot += pressure_.add_product(p, q);
   return dot;
 }
 
 double NewtonCloth::precondition(JobSystem& jobs) {
-  const auto free = [&](const Vec3Array& r, JobSystem& its_jobs, Vec3Array& z) {
-    return preconditioner_.apply(r, its_jobs, z);
+  const double dot = precondition_without_gas(block_.residual, jobs, block_.preconditioned);
+  return pressure_.precondition(dot, block_.preconditioned);
+}
+
+double NewtonCloth::precondition_without_gas(const Vec3Array& r, JobSystem& jobs, Vec3Array& z) {
+  const auto free = [&](const Vec3Array& of, JobSystem& its_jobs, Vec3Array& result) {
+    return preconditioner_.apply(of, its_jobs, result);
   };
-  const auto stiff = [&](const Vec3Array& r, JobSystem& its_jobs, Vec3Array& z) {
-    return stiff_preconditioner_.apply(r, its_jobs, z);
+  const auto stiff = [&](const Vec3Array& of, JobSystem& its_jobs, Vec3Array& result) {
+    return stiff_preconditioner_.apply(of, its_jobs, result);
   };
-  return contact_preconditioner_.apply(stiff, free, block_.residual, jobs, block_.preconditioned);
+  return contact_preconditioner_.apply(stiff, free, r, jobs, z);
 }
 
 void NewtonCloth::try_step(double share, JobSystem& jobs) {

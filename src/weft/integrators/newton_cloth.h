@@ -11,6 +11,7 @@
 #include "weft/integrators/contact_terms.h"
 #include "weft/integrators/floating_components.h"
 #include "weft/integrators/newton_kernels.h"
+#include "weft/integrators/pressure_terms.h"
 #include "weft/integrators/scalar_preconditioner.h"
 #include "weft/solvers/conjugate_gradients.h"
 
@@ -110,6 +111,8 @@ class NewtonCloth {
   double energy_noise() const;
   void copy_velocity_offset();
   double energy_at(const Vec3Array& offset, JobSystem& jobs);
+  void update_diagonals(JobSystem& jobs);
+  double precondition_without_gas(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
   void update_stiffer_couplings(bool is_first, JobSystem& jobs);
   bool has_changed_much() const;
   static void clear(Vec3Array& field);
@@ -127,6 +130,7 @@ class NewtonCloth {
   bool is_in_contact_ = false;                                  // the preconditioners include contacts
   AirTerms air_;
   CollapseTerms collapse_;
+  PressureTerms pressure_;
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
   std::vector<float> least_weight_;               // D for the largest memory [N/m]
   std::vector<double> stiffer_couplings_,

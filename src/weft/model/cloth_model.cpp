@@ -103,6 +103,12 @@ std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothT
   return model;
 }
 
+std::shared_ptr<const ClothModel> with_gas(const ClothModel& model, const Gas& gas) {
+  auto filled = std::make_shared<ClothModel>(model);
+  filled->gas = gas;
+  return filled;
+}
+
 std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,
                                                       const std::vector<double>& added) {
   auto heavier = std::make_shared<ClothModel>(model);

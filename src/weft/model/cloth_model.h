@@ -12,6 +12,7 @@
 #include "weft/mesh/grid.h"
 #include "weft/mesh/triangle_mesh.h"
 #include "weft/model/cloth_elements.h"
+#include "weft/model/gas.h"
 #include "weft/model/neighbour_table.h"
 #include "weft/model/springs.h"
 
@@ -58,12 +59,13 @@ std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, Sprin
 std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh);
 
 struct ClothModel {
-  std::uint64_t id = 0;  // unique in the process: a cache key for data computed from a model
+  std::uint64_t id = 0;  // unique in the process: a cache key for data computed from a model without `gas`
   std::shared_ptr<const ClothTopology> topology;
   ClothMaterial material;
   /// A fabric's membranes and bending, or only bending where springs replace membranes; null: none. Supported
   /// by `newton`, `implicit_euler` and `xpbd`.
   std::shared_ptr<const ClothElements> elements;
+  Gas gas;                             // inside closed cloth
   std::vector<double> mass;            // (num_particles) [kg]
   std::vector<double> stiffness_sum;   // Σ_j k_ij of springs and couplings, (num_particles) [N/m]
   NeighbourTable own_table;            // of a grid whose springs have factors; else empty
@@ -103,6 +105,9 @@ struct ClothModel {
 std::shared_ptr<const ClothModel> build_cloth_model(std::shared_ptr<const ClothTopology> topology,
                                                     const ClothMaterial& material,
                                                     std::shared_ptr<const ClothElements> elements = nullptr);
+
+/// The same cloth with another gas.
+std::shared_ptr<const ClothModel> with_gas(const ClothModel& model, const Gas& gas);
 
 /// The same cloth with masses increased by `added` (num_particles) [kg].
 std::shared_ptr<const ClothModel> build_heavier_model(const ClothModel& model,

@@ -202,6 +202,8 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   table.read("position", cloth.position, any_number("m"));
   table.read("rotation", cloth.rotation_deg, any_number("degrees"), "[0, 90, 0]");
   table.read("velocity", cloth.velocity, any_number("m/s"));
+  table.read("pressure", cloth.pressure, any_number("Pa"));
+  table.read("sealed", cloth.is_sealed);
   const NumberRule share = {.low = NumberRule::Low::zero, .most = 1};
   table.read("color", std::span<double>(cloth.color), share, "[0.7, 0.2, 0.1]");
   cloth.pins = read_pins(table, shape ? &*shape : nullptr);

@@ -40,6 +40,13 @@ constexpr ParameterText kTexts[] = {
     {"cloth.position", "", "Displacement of the cloth at the start, after its rotation."},
     {"cloth.rotation", "", "Rotation of the cloth at the start: angles about fixed x, then y, then z."},
     {"cloth.velocity", "", "Velocity of all particles at the start."},
+    {"cloth.pressure", "",
+     "What the gas inside presses more than the air outside. Requires cloth without a border, and newton or "
+     "implicit_euler. Higher: rounder and stiffer. A cushion has 100 to 1000 Pa, a toy balloon 2000."},
+    {"cloth.sealed", "",
+     "Whether the gas keeps its amount: `pressure` is then that at the start, and falls as the volume grows. "
+     "Not "
+     "given: the pressure is kept."},
     {"cloth.color", "", "Linear red, green and blue of the cloth in pictures and files."},
     {"cloth.pins", "",
      "Particles that are held still, as in [\"corner:0,0\", \"index:12\", \"group:waist\"]. Only grids have "

@@ -184,6 +184,8 @@ void change_cloths(const SceneDesc& now, const SceneDesc& wanted, weft::World& w
     const ClothId id = world.cloth(static_cast<int>(c));
     if (!has_same_fabric(now.cloths[c], cloth)) world.set_fabric(id, describe_fabric(cloth));
     if (!(now.cloths[c].pins == cloth.pins)) change_pins(now.cloths[c], cloth, id, world);
+    if (now.cloths[c].pressure != cloth.pressure || now.cloths[c].is_sealed != cloth.is_sealed)
+      world.set_pressure(id, cloth.pressure, cloth.is_sealed);
   }
 }
 
@@ -247,6 +249,8 @@ SceneDesc changeable_part(const SceneDesc& now, const SceneDesc& wanted) {
   if (!loses_followed(now, wanted)) next.colliders = wanted.colliders;
   for (std::size_t c = 0; c < std::min(now.cloths.size(), wanted.cloths.size()); ++c) {
     if (has_same_motions(now.cloths[c], wanted.cloths[c])) next.cloths[c].pins = wanted.cloths[c].pins;
+    next.cloths[c].pressure = wanted.cloths[c].pressure;
+    next.cloths[c].is_sealed = wanted.cloths[c].is_sealed;
     if (!has_same_kind(now.cloths[c], wanted.cloths[c])) continue;
     next.cloths[c].fabric = wanted.cloths[c].fabric;
     next.cloths[c].material = wanted.cloths[c].material;

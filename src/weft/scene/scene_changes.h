@@ -10,7 +10,7 @@
 namespace weft::engine {
 
 /// The part of `wanted` that a world of `now` can take between two steps: gravity, wind, solver, contact,
-/// fabrics, colliders, friction, and pins that hold particles still. The rest is that of `now`.
+/// fabrics, pressures, colliders, friction, and pins that hold particles still. The rest is that of `now`.
 SceneDesc changeable_part(const SceneDesc& now, const SceneDesc& wanted);
 
 /// Keys that differ, whose values need a new world: "cloth[0].grid". Empty: changeable_part() is `wanted`.

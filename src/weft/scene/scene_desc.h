@@ -122,6 +122,8 @@ struct ClothSceneDesc {
   Vec3 position = Vec3::Zero();                 // added after the rotation [m]
   Vec3 rotation_deg = Vec3::Zero();  // about fixed x, then y, then z, around the cloth's own origin [degrees]
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
+  double pressure = 0;               // of gas inside closed cloth, in excess of the air outside [Pa]
+  bool is_sealed = false;            // the gas keeps its amount, which has `pressure` at the start
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
   std::vector<PinDesc> pins;
   std::vector<StiffenDesc> stiffened;  // springs only; factors multiply where selections overlap

@@ -146,6 +146,12 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
   if (scene.wind.air.density > 0 && !supports_aerodynamics(scene.solver.integrator))
     solver.get("integrator")
         .mistake("does not support wind.air; use \"newton\" or \"implicit_euler\", or only wind.drag");
+  for (const ClothSceneDesc& cloth : scene.cloths) {
+    if ((cloth.pressure != 0 || cloth.is_sealed) && !supports_pressure(scene.solver.integrator))
+      solver.get("integrator")
+          .mistake("does not support the pressure of cloth \"" + cloth.name +
+                   "\"; use \"newton\" or \"implicit_euler\"");
+  }
   if (supports_elements(scene.solver.integrator)) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;

@@ -115,13 +115,14 @@ std::vector<Vec3> initial_positions(const ClothSceneDesc& desc, ClothId id, cons
   return place(WorldAccess::engine(world).model(id).topology->mesh.positions, desc);
 }
 
-/// Pins and stiffened regions.
+/// Pins, stiffened regions and gas.
 void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   const std::vector<Vec3> positions = initial_positions(desc, id, built);
   const Selector selector{desc, built.notes(id).particle_of_vertex, positions};
   for (const StiffenDesc& part : desc.stiffened)
     built.stiffen(id, select(selector, part.select, "a stiffened region"), part.factor);
   built.set_pins(id, describe_pins(desc, id, built));
+  if (desc.pressure != 0 || desc.is_sealed) built.set_pressure(id, desc.pressure, desc.is_sealed);
 }
 
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {

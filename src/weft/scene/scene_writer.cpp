@@ -306,6 +306,8 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
   table.add("position", cloth.position, ClothSceneDesc().position)
       .add("rotation", cloth.rotation_deg, ClothSceneDesc().rotation_deg)
       .add("velocity", cloth.velocity, ClothSceneDesc().velocity)
+      .add("pressure", cloth.pressure, ClothSceneDesc().pressure)
+      .add("sealed", cloth.is_sealed, false)
       .add_text("color", toml_array(cloth.color));
   std::string text =
       "\n[[cloth]]\n" + Table().add("name", cloth.name).lines() + shape_lines(cloth, files) + table.lines();

@@ -61,6 +61,8 @@ class Lister {
   void add_cloth(int c) {
     ClothSceneDesc& cloth = scene_.cloths[c];
     begin("cloth " + cloth.name, c);
+    if (cloth.pressure != 0 || cloth.is_sealed)
+      add("cloth[" + std::to_string(c) + "]", "pressure", &cloth.pressure);
     const std::string path = "cloth[" + std::to_string(c) + "].fabric";
     if (cloth.fabric) {
       Fabric& f = cloth.fabric->numbers;

@@ -7,7 +7,9 @@
 #include "weft/forces/damping.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane_patch.h"
+#include "weft/forces/pressure.h"
 #include "weft/forces/spring.h"
+#include "weft/world/measures.h"
 
 namespace weft::engine {
 namespace {
@@ -123,6 +125,11 @@ std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothSta
   for (int t = 0; t < mesh.num_triangles(); ++t)
     scatter(mesh.triangles[t],
             collapse_force(make_rest_triangle(mesh, t), collapse, gather(mesh.triangles[t], x)), force);
+  if (!model.gas.is_active()) return force;
+  const double excess = model.gas.orientation * gas_excess(model.gas, compute_volume(model, state));
+  add_volume_gradient(
+      mesh.triangles, [&](int v) { return x[v]; },
+      [&](int v, const Vec3& part) { force[v] += excess * part; });
   return force;
 }
 

@@ -10,7 +10,7 @@
 
 namespace weft::engine {
 
-/// Forces of springs with their strain limit, membranes, collapse, curvature stencils and hinges: minus the
+/// Forces of springs with their strain limit, membranes, collapse, curvature stencils, hinges and gas: minus the
 /// gradient of compute_elastic_energy(). They sum to zero.
 std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state);
 

@@ -9,6 +9,7 @@
 #include "weft/forces/gravity.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane_patch.h"
+#include "weft/forces/pressure.h"
 #include "weft/forces/spring.h"
 
 namespace weft::engine {
@@ -67,16 +68,25 @@ void visit_energies(const ClothModel& model, const ClothState& state, const Add&
   }
 }
 
+double compute_gas_energy(const ClothModel& model, const ClothState& state) {
+  return model.gas.is_active() ? gas_energy(model.gas, compute_volume(model, state)) : 0;
+}
+
 }  // namespace
+
+double compute_volume(const ClothModel& model, const ClothState& state) {
+  return model.gas.orientation *
+         enclosed_volume(model.topology->mesh.triangles, [&](int v) { return state.x.get(v); });
+}
 
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
   double energy = 0;
   visit_energies(model, state, [&](ElasticKind, double part) { energy += part; });
-  return energy + compute_collapse_energy(model, state);
+  return energy + compute_collapse_energy(model, state) + compute_gas_energy(model, state);
 }
 
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state) {
-  ElasticParts parts{.stretch = compute_collapse_energy(model, state)};
+  ElasticParts parts{.stretch = compute_collapse_energy(model, state) + compute_gas_energy(model, state)};
   visit_energies(model, state, [&](ElasticKind kind, double part) {
     (kind == ElasticKind::bending ? parts.bending : parts.stretch) += part;
   });

@@ -11,15 +11,18 @@ namespace weft::engine {
 
 double compute_kinetic_energy(const ClothModel& model, const ClothState& state);  // [J]
 
-/// Energy of all springs and elements [J].
+/// Energy of all springs and elements, and of gas [J].
 double compute_elastic_energy(const ClothModel& model, const ClothState& state);
 
 /// The same energy in its two parts.
 struct ElasticParts {
-  double stretch = 0;  // of structural and shear springs, membranes, strain limits [J]
+  double stretch = 0;  // of structural and shear springs, membranes, strain limits, gas [J]
   double bending = 0;  // of bending springs, curvature stencils and hinges [J]
 };
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state);
+
+/// Volume inside closed cloth, as its gas has it: positive unless the cloth is inside out [m³].
+double compute_volume(const ClothModel& model, const ClothState& state);
 
 /// −Σ m g·x, zero with all mass at the world's origin [J].
 double compute_gravity_energy(const ClothModel& model, const ClothState& state, const Vec3& gravity);

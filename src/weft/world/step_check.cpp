@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/forces/pressure.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -60,6 +61,15 @@ StepCheck check_area(const CheckedCloth& cloth, int index) {
   return worst;
 }
 
+/// Sum of the sizes of the gas's forces [N].
+double compute_push(const ClothModel& model, const ClothState& state) {
+  if (!model.gas.is_active()) return 0;
+  double area = 0;
+  for (const auto& [a, b, c] : model.topology->mesh.triangles)
+    area += 0.5 * (state.x.get(b) - state.x.get(a)).cross(state.x.get(c) - state.x.get(a)).norm();
+  return std::abs(gas_excess(model.gas, compute_volume(model, state))) * area;
+}
+
 StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step) {
   double rise = 0, kinetic = 0, lift = 0;
   for (const CheckedCloth& c : cloths) {
@@ -69,6 +79,7 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
             compute_gravity_energy(c.model, c.after, gravity) -
             compute_gravity_energy(c.model, c.before, gravity) + compute_elastic_energy(c.model, c.after) -
             compute_elastic_energy(c.model, c.before);
+    lift += c.model.material.thickness * compute_push(c.model, c.before);
     for (const double m : c.model.mass) lift += m * gravity.norm() * c.model.material.thickness;
   }
   const double tolerance = step * (kEnergyRate * kinetic + kRiseOfThickness * lift);
@@ -79,14 +90,14 @@ StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity
 
 StepCheck check_step(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step, bool is_driven) {
   StepCheck worst;
-  bool is_in_contact = false;
+  bool is_pushed = false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (!cloths[c].after.history.had_contact) continue;
-    is_in_contact = true;
+    if (!cloths[c].after.history.had_contact && !cloths[c].model.gas.is_active()) continue;
+    is_pushed = true;
     worst.include(check_stretch(cloths[c], static_cast<int>(c)));
     worst.include(check_area(cloths[c], static_cast<int>(c)));
   }
-  if (is_in_contact && !is_driven && step > kShortestForEnergy)
+  if (is_pushed && !is_driven && step > kShortestForEnergy)
     worst.include(check_energy(cloths, gravity, step));
   return worst;
 }

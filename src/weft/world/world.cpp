@@ -7,7 +7,9 @@
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/core/hash.h"
+#include "weft/forces/pressure.h"
 #include "weft/world/infeasible_pairs.h"
+#include "weft/world/measures.h"
 #include "weft/world/world_input.h"
 
 namespace weft::engine {
@@ -472,8 +474,43 @@ void World::set_material(ClothId id, const ClothMaterial& material,
   Cloth& cloth = at(id);
   require_valid(material, cloth.name);
   if (elements) require_elements_supported(integrator_settings_.integrator, cloth.name);
+  const Gas gas = cloth.model->gas;
   cloth.model = build_cloth_model(cloth.model->topology, material, std::move(elements));
+  set_gas(cloth, gas);
   set_acceleration(cloth);
+}
+
+void World::set_gas(Cloth& cloth, const Gas& gas) {
+  if (gas != cloth.model->gas) cloth.model = with_gas(*cloth.model, gas);
+}
+
+void World::set_pressure(ClothId id, double pressure, bool is_sealed) {
+  Cloth& cloth = at(id);
+  require(std::isfinite(pressure), "cloth \"" + cloth.name + "\": its pressure must be finite");
+  if (pressure == 0 && !is_sealed) return set_gas(cloth, {});
+  require_closed(cloth.model->topology->mesh, cloth.name);
+  require_pressure_supported(integrator_settings_.integrator, cloth.name);
+  const double volume = compute_volume(*with_gas(*cloth.model, {}), cloth.state);
+  const double orientation = volume < 0 ? -1 : 1;
+  if (!is_sealed) return set_gas(cloth, {.pressure = pressure, .orientation = orientation});
+  require(volume != 0 && pressure > -kAirPressure,
+          "cloth \"" + cloth.name + "\": sealed gas requires a volume, and a pressure above -101325 Pa");
+  Gas gas = seal_gas(pressure, std::abs(volume));
+  gas.orientation = orientation;
+  set_gas(cloth, gas);
+}
+
+double World::pressure(ClothId id) const { return excess_of(at(id)); }
+
+double World::excess_of(const Cloth& cloth) {
+  const Gas& gas = cloth.model->gas;
+  return gas.is_sealed() ? gas_excess(gas, compute_volume(*cloth.model, cloth.state)) : gas.pressure;
+}
+
+double World::volume(ClothId id) const {
+  const Cloth& cloth = at(id);
+  require_closed(cloth.model->topology->mesh, cloth.name);
+  return std::abs(compute_volume(*cloth.model, cloth.state));
 }
 
 void World::set_wind(const Wind& wind) {
@@ -556,6 +593,7 @@ void World::set_integrator(const IntegratorSettings& settings) {
   require_valid(settings);
   for (const Cloth& cloth : cloths_) {
     if (cloth.model->elements) require_elements_supported(settings.integrator, cloth.name);
+    if (cloth.model->gas.is_active()) require_pressure_supported(settings.integrator, cloth.name);
   }
   require_valid(wind_, settings.integrator);
   integrator_settings_ = settings;
@@ -604,7 +642,9 @@ int World::num_substeps(double dt) const {
 
 void World::show_contact_cloths() {
   contact_cloths_.clear();
-  for (Cloth& cloth : cloths_) contact_cloths_.push_back({cloth.model.get(), &cloth.state, &cloth.is_pinned});
+  for (Cloth& cloth : cloths_)
+    contact_cloths_.push_back(
+        {cloth.model.get(), &cloth.state, &cloth.is_pinned, std::abs(excess_of(cloth))});
 }
 
 void World::begin_contact(double time, double dt) {
@@ -748,7 +788,9 @@ void World::set_division(const StepDivision& division) {
 }
 
 bool World::divides() const {
-  if (!contact_ || integrator_settings_.is_double) return false;
+  const auto has_gas = [](const Cloth& cloth) { return cloth.model->gas.is_active(); };
+  if (integrator_settings_.is_double || (!contact_ && std::none_of(cloths_.begin(), cloths_.end(), has_gas)))
+    return false;
   const std::string& integrator = integrator_settings_.integrator;
   return supports_step_division(integrator) && division_.enabled.value_or(integrator == "newton");
 }
@@ -930,7 +972,8 @@ World::Held World::held(ClothId id) const {
             .attachments = cloth.attachments.attachments(),
             .pin_guide = cloth.pin_guide,
             .attachment_guide = cloth.attachment_guide,
-            .forces = cloth.forces};
+            .forces = cloth.forces,
+            .gas = cloth.model->gas};
   for (const PinnedParticle& p : cloth.pinned) {
     held.anchors[p.order] = p.anchor;
     held.on_surface[p.order] = p.on_surface;
@@ -949,6 +992,7 @@ void World::hold(ClothId id, Held held) {
   cloth.pin_guide = std::move(held.pin_guide);
   cloth.attachment_guide = std::move(held.attachment_guide);
   set_forces(id, held.forces);
+  set_gas(cloth, held.gas);
 }
 
 void World::restore(const Snapshot& snapshot) {

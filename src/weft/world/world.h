@@ -109,6 +109,13 @@ class World {
   void move_attachments(ClothId cloth, const std::vector<Vec3>& at_end);
   void set_forces(ClothId cloth,
                   const std::vector<Vec3>& forces);  // external (num_particles; empty: none) [N]
+  /// Gas inside closed cloth, with this excess over the air outside [Pa]; 0: none, unless it is sealed. A sealed
+  /// amount of gas keeps p V: it has this excess at the present volume. Throws InputError for open or twisted
+  /// cloth, for an integrator that does not support it, and for sealed gas at or below −kAirPressure or without
+  /// a volume.
+  void set_pressure(ClothId cloth, double pressure, bool is_sealed);
+  double pressure(ClothId cloth) const;  // present excess [Pa]
+  double volume(ClothId cloth) const;    // enclosed; throws InputError for open or twisted cloth [m³]
   void set_material(ClothId cloth, const ClothMaterial& material);  // keeps the elements
   void set_material(ClothId cloth, const ClothMaterial& material,
                     std::shared_ptr<const ClothElements> elements);
@@ -215,7 +222,7 @@ class World {
     std::shared_ptr<const VertexSource> source;           // likewise
   };
 
-  /// Pins, attachments and forces of a cloth.
+  /// Pins, attachments, forces and gas of a cloth.
   struct Held {
     std::vector<Pin> pins;
     std::vector<Vec3> anchors;              // of each pinned particle, in the order of the pins' lists [m]
@@ -223,9 +230,10 @@ class World {
     std::vector<Attachment> attachments;
     PointGuide pin_guide, attachment_guide;
     std::vector<Vec3> forces;  // external (num_particles; empty: none) [N]
+    Gas gas;
   };
 
-  /// Present pins, attachments and forces, and their replacement. Throws InputError as set_pins() and
+  /// Present pins, attachments, forces and gas, and their replacement. Throws InputError as set_pins() and
   /// set_attachments() do.
   Held held(ClothId cloth) const;
   void hold(ClothId cloth, Held held);
@@ -281,6 +289,8 @@ class World {
   void guide_colliders(double dt);
   void guide_points(double dt);
   void set_acceleration(Cloth& cloth);
+  static void set_gas(Cloth& cloth, const Gas& gas);
+  static double excess_of(const Cloth& cloth);
   Cloth& at(ClothId id);
   const Cloth& at(ClothId id) const;
   int num_substeps(double dt) const;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "weft/integrators/integrator.h"
+#include "weft/mesh/solid.h"
 
 namespace weft::engine {
 namespace {
@@ -166,6 +167,20 @@ void require_elements_supported(const std::string& integrator, const std::string
               " supports springs only; use newton, "
               "implicit_euler or xpbd, or set spring_structural, spring_shear and "
               "spring_bend instead of the fabric");
+}
+
+void require_pressure_supported(const std::string& integrator, const std::string& cloth) {
+  require(supports_pressure(integrator), "cloth \"" + cloth + "\" has a pressure, but " + integrator +
+                                             " does not support it; use newton or implicit_euler");
+}
+
+void require_closed(const TriangleMesh& mesh, const std::string& cloth) {
+  const SurfaceEdges edges = count_surface_edges(mesh);
+  require(is_closed(edges),
+          "cloth \"" + cloth + "\" is not closed: pressure requires a surface without a border, but " +
+              std::to_string(edges.border) + " of its edges have one triangle, and " +
+              std::to_string(edges.unbalanced - edges.border) +
+              " others join triangles that face opposite ways; join pieces with sew or weld");
 }
 
 }  // namespace weft::engine

@@ -34,5 +34,9 @@ void require_valid(const Wind& wind, const std::string& integrator);
 
 /// An integrator that supports elements.
 void require_elements_supported(const std::string& integrator, const std::string& cloth);
+void require_pressure_supported(const std::string& integrator, const std::string& cloth);
+
+/// For gas inside the cloth: every edge joins two triangles that face the same way.
+void require_closed(const TriangleMesh& mesh, const std::string& cloth);
 
 }  // namespace weft::engine
