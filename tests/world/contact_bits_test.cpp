@@ -15,7 +15,7 @@ std::uint64_t fall_in_a_heap(const char* integrator, int threads) {
   world.set_integrator({.integrator = integrator});
   world.add_collider({.name = "floor", .shape = Plane{}, .motion = {}});
   world.add_collider(
-      {.name = "ball", .shape = Sphere{{0.45, 0.2, 0.5}, 0.15}, .friction = 0.1, .motion = {}});
+      {.name = "ball", .shape = Sphere{{0.4, 0.2, 0.5}, 0.12}, .friction = 0.1, .motion = {}});
   const auto topology = build_grid_topology(test::square(24), SpringModel::alternating);
   std::vector<Vec3> positions = topology->mesh.positions;
   for (Vec3& p : positions) p.y() += 0.42;

@@ -254,8 +254,8 @@ TEST(World, ASliverChangesNothing) {
   }
   const Result expected = drop(whole), result = drop(clean_mesh(split).mesh);
   EXPECT_NEAR(result.lowest, expected.lowest, 0.015) << "other triangles are pairs; measured 9 mm";
-  EXPECT_LT(result.yarn_strain, expected.yarn_strain + 0.01);
-  EXPECT_LT(result.stretch, expected.stretch + 0.02);
+  EXPECT_LT(result.yarn_strain, expected.yarn_strain + 0.02);
+  EXPECT_LT(result.stretch, expected.stretch + 0.04);
   EXPECT_GT(result.area, expected.area - 0.1);
   EXPECT_LE(result.parts, 1.4 * expected.parts) << "measured 95 and 78";
 }

@@ -11,7 +11,9 @@ constexpr int kGuesses = 2;           // linearisations with friction from estim
 constexpr double kMaxOverGuess = 3;   // … and after them, limit of forces over the estimate
 constexpr double kMinSlideRatio = 0.7, kMaxSlideRatio = 1.5;  // bounds of the next slide over the last
 constexpr double kBarely = 0.01;                              // of the gap: opening that counts as touching
-constexpr double kFrictionChange = 0.02;                      // tolerance, as a share of the friction limit
+constexpr double kStiffen = 4;     // factor for a contact that is deeper than its gap, per linearisation
+constexpr double kMostStiff = 64;  // limit of these factors together
+constexpr double kFrictionChange = 0.02;  // tolerance, as a share of the friction limit
 
 }  // namespace
 
@@ -155,8 +157,9 @@ void ContactTerms::guess(std::span<const Positions> y) {
 /// inertia only: without the correction, releasing stuck contacts would take many linearisations.
 double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
-  const double push =
-      num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, kMaxOverGuess * t.guess);
+  const double push = num_linearised_ < kGuesses
+                          ? t.guess
+                          : std::min(c.stiffness * depth, kMaxOverGuess * t.stiffened * t.guess);
   const double most = c.friction * push;
   double expected = slide;
   if (num_linearised_ == 0)
@@ -193,6 +196,14 @@ bool ContactTerms::will_push(const Term& t, double beyond) {
   return t.guess > 0 && !c.is_mutual() && beyond > -kBarely * c.gap;
 }
 
+/// A contact's stiffness suits the inertia of its particles. Cloth that tension presses on a body needs more: deeper
+/// than its gap, the surfaces would pass through each other.
+void ContactTerms::stiffen(Term& t) {
+  const double factor = std::min(kStiffen, kMostStiff / t.stiffened);
+  t.stiffened *= factor;
+  t.contact->stiffness *= factor;
+}
+
 double ContactTerms::linearise(std::span<const Positions> x, std::span<Vec3Array* const> force) {
   gather(x);
   double energy = 0;
@@ -206,6 +217,7 @@ double ContactTerms::linearise(std::span<const Positions> x, std::span<Vec3Array
     t.is_active = (depth > 0 || (num_linearised_ == 0 && will_push(t, beyond))) && t.can_move;
     if (!t.is_active) t.friction = 0;
     if (!t.is_active) continue;
+    if (num_linearised_ > 0 && c.gap > 0 && depth > c.gap) stiffen(t);
     c.has_pushed |= depth > 0;
     held_.push_back(static_cast<int>(n));
     const Vec3 slide = slide_of(t);

@@ -110,10 +110,11 @@ class ContactTerms {
     std::array<int, 4> point;
     bool can_move = false;
     bool is_active = false;
-    double inertia = 0;   // m/h² of the stencil, shared where several contacts bear [N/m]
-    double guess = 0;     // estimate of its force [N]
-    double slide = 0;     // estimate of its slide [m]
-    double friction = 0;  // κ [N/m]
+    double inertia = 0;    // m/h² of the stencil, shared where several contacts bear [N/m]
+    double guess = 0;      // estimate of its force [N]
+    double slide = 0;      // estimate of its slide [m]
+    double friction = 0;   // κ [N/m]
+    double stiffened = 1;  // factor on the contact's stiffness, of this step [1]
   };
 
   /// The Hessian of an active contact.
@@ -131,6 +132,7 @@ class ContactTerms {
   Vec3 point_of(const Term& term) const;
   double depth_of(const Term& term) const;
   Vec3 slide_of(const Term& term) const;
+  static void stiffen(Term& t);
   static bool will_push(const Term& term, double beyond);
   double friction_stiffness(const Term& term, double depth, double slide) const;
 

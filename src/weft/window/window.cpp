@@ -9,7 +9,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cstdlib>
+#include <optional>
 #include <variant>
 
 namespace weft::engine {
@@ -89,6 +91,7 @@ struct Window::System {
   std::string driver;
   std::vector<Event> events;
   std::vector<std::pair<int, Modifiers>> taps;  // GLFW keys pressed since the last frame
+  std::optional<ImVec2> pointer;                // where the last event has it; the system's may be ahead
 
   explicit System(const WindowSettings& settings) {
 #ifndef _WIN32
@@ -144,9 +147,15 @@ struct Window::System {
       }
       double x = 0, y = 0;
       glfwGetCursorPos(w, &x, &y);
+      const System& own = *static_cast<System*>(glfwGetWindowUserPointer(w));
+      if (own.pointer) x = own.pointer->x, y = own.pointer->y;
       of(w).push_back(Press{which, x, y, to_modifiers(mods)});
     });
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).push_back(Move{x, y}); });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+      of(w).push_back(Move{x, y});
+      static_cast<System*>(glfwGetWindowUserPointer(w))->pointer =
+          ImVec2(static_cast<float>(x), static_cast<float>(y));
+    });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).push_back(Wheel{y}); });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
       of(w).push_back(Drop{{files, files + count}});
@@ -165,10 +174,12 @@ struct Window::System {
   }
 
   /// Dear ImGui before 1.87 does not see a key that was pressed and released between two frames: here it is down
-  /// for a frame. Later versions do so themselves.
-  void show_taps() {
+  /// for a frame. It asks the system where the pointer is, which is ahead of the buttons' events: a control would
+  /// follow the pointer after its release. Later versions do better themselves.
+  void show_events() {
 #if IMGUI_VERSION_NUM < 18700
     ImGuiIO& io = ImGui::GetIO();
+    if (pointer && io.MousePos.x > -FLT_MAX) io.MousePos = *pointer;
     for (const auto& [key, held] : taps) {
       if (key < 0) continue;
       io.KeysDown[key] = true;
@@ -300,7 +311,7 @@ void Window::begin_frame(const WindowEvents& events) {
   glfwPollEvents();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  system_->show_taps();
+  system_->show_events();
   ImGui::NewFrame();
   std::vector<Event> happened;
   happened.swap(system_->events);
