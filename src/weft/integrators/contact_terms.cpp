@@ -196,8 +196,8 @@ bool ContactTerms::will_push(const Term& t, double beyond) {
   return t.guess > 0 && !c.is_mutual() && beyond > -kBarely * c.gap;
 }
 
-/// A contact's stiffness suits the inertia of its particles. Cloth that tension presses on a body needs more: deeper
-/// than its gap, the surfaces would pass through each other.
+/// A contact's stiffness suits the inertia of its particles. Cloth that tension presses on a body needs more:
+/// deeper than its gap, the surfaces would pass through each other.
 void ContactTerms::stiffen(Term& t) {
   const double factor = std::min(kStiffen, kMostStiff / t.stiffened);
   t.stiffened *= factor;

@@ -11,8 +11,8 @@
 
 namespace weft::engine {
 
-/// E(V) − E at the start of the step, with its force, and the part E″ ∂V ∂Vᵀ of its Hessian. Positions are floats, laid out by the rows; sums
-/// are doubles, one triangle after the other.
+/// E(V) − E at the start of the step, with its force, and the part E″ ∂V ∂Vᵀ of its Hessian. Positions are
+/// floats, laid out by the rows; sums are doubles, one triangle after the other.
 class PressureTerms {
  public:
   /// `state` is the state at the start of the step.
