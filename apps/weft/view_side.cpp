@@ -245,9 +245,8 @@ void RunSide::show(int frame) {
 
 /// The world in the state of the frame, with instruments and a sample.
 void RunSide::show_world(int frame) {
-  run_.world->show(*run_.frames, frame);
+  measured_.meshes = run_.world->show(*run_.frames, frame);
   const World& world = run_.world->world();
-  measured_.meshes = run_.frames->read(frame);
   LiveInstruments wanted = instruments_;  // forces of contacts are not in a run
   wanted.contacts = false;
   if (wanted.color == ParticleValue::contact) wanted.color.reset();

@@ -25,7 +25,7 @@ TriangleMesh dented_ball() {
 }
 
 double volume_of(const TriangleMesh& mesh) {
-  return enclosed_volume(mesh.triangles, [&](int v) { return mesh.positions[v]; });
+  return compute_signed_volume(mesh.triangles, [&](int v) { return mesh.positions[v]; });
 }
 
 TEST(Pressure, VolumesAreThoseOfSolids) {

@@ -222,7 +222,6 @@ class ContactSystem {
   // Constant between renumberings.
   std::vector<std::shared_ptr<const ClothTopology>> numbered_cloths_;
   std::vector<std::shared_ptr<const TriangleMesh>> numbered_meshes_;
-  bool has_pressure_ = false;      // some cloth has
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<ClosedMesh> closed_meshes_;
@@ -238,6 +237,7 @@ class ContactSystem {
   std::vector<ContactCloth> cloths_;
   std::vector<MovingShape> shapes_;
   ContactStep step_;
+  bool has_pressure_ = false;      // some cloth has
   bool is_predicted_ = false;      // the solve includes contacts
   bool is_for_solve_ = false;      // contacts are being predicted
   bool is_near_shape_ = false;     // some vertex may touch a primitive shape

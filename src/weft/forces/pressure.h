@@ -1,18 +1,16 @@
 #pragma once
-/// Pressure of gas inside closed cloth, in excess of the air outside.
+/// Gauge pressure of gas inside closed cloth: in excess of the air outside.
 ///
 ///     E(V) = −p V                                 kept pressure p
 ///     E(V) = a V₀ (u − 1 − ln u),  u = V / V₀     sealed gas, isothermal (Boyle): excess a (1/u − 1)
 ///     V = Σ xa·(xb × xc) / 6                      over the triangles a b c
 ///
-/// with the outside's pressure a, and V₀ = Gas::sealed_volume. Each particle's force is
-/// excess · ∂V/∂x. Of the Hessian only E″ ∂V ∂Vᵀ is positive semidefinite: excess · ∂²V turns forces with the
-/// surface and is left out of it.
+/// with the outside's pressure a, and V₀ = Gas::sealed_volume. Each particle's force is excess · ∂V/∂x. Of the
+/// Hessian only E″ ∂V ∂Vᵀ is positive semidefinite: excess · ∂²V turns forces with the surface, and is left out.
 
 #include <span>
 
-#include "weft/core/vec.h"
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/solid.h"
 #include "weft/model/gas.h"
 
 namespace weft::engine {
@@ -30,16 +28,6 @@ double gas_excess(const Gas& gas, double volume);
 
 /// E″ ≥ 0 [Pa/m³].
 double gas_stiffness(const Gas& gas, double volume);
-
-/// Volume of a closed mesh, negative if it faces inwards [m³]. `at(v)` is a vertex's position.
-template <class At>
-double enclosed_volume(std::span<const Triangle> triangles, const At& at) {
-  if (triangles.empty()) return 0;
-  const Vec3 origin = at(triangles[0][0]);  // the volume does not depend on it, its rounding error does
-  double sum = 0;
-  for (const auto& [a, b, c] : triangles) sum += (at(a) - origin).dot((at(b) - origin).cross(at(c) - origin));
-  return sum / 6;
-}
 
 /// Adds the volume's gradient by add(v, part) [m²]: at each vertex a third of its triangles' vector areas.
 template <class At, class Add>

@@ -140,7 +140,7 @@ double ImplicitCloth::energy(const std::vector<Vec3>& x) const {
 
 double ImplicitCloth::volume(const std::vector<Vec3>& x) const {
   return model_->gas.orientation *
-         enclosed_volume(model_->topology->mesh.triangles, [&](int v) { return x[v]; });
+         compute_signed_volume(model_->topology->mesh.triangles, [&](int v) { return x[v]; });
 }
 
 std::optional<ImplicitCloth::GasHessian> ImplicitCloth::gas_hessian(const std::vector<Vec3>& x) const {

@@ -402,8 +402,7 @@ class ImplicitGroup {
   /// decrease.
   double search_line() {
     const double energy = compute_energy(x_);
-    double slope = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i) slope += gradient_[i].dot(direction_[i]);
+    const double slope = dot(gradient_, direction_);
     const double rounding = 1e-13 * std::abs(energy);
     for (double share = 1; share > kSmallestShare; share /= 2) {
       trial_ = x_;

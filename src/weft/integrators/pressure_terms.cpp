@@ -1,6 +1,5 @@
 #include "weft/integrators/pressure_terms.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace weft::engine {
@@ -12,19 +11,17 @@ void PressureTerms::begin(const ClothModel& model, const PaddedRows& rows, const
   stiffness_ = start_ = 0;
   if (!gas_.is_active()) return;
   const auto at = [&](int v) { return state.x.get(v); };
-  start_ = gas_energy(gas_, gas_.orientation * enclosed_volume(topology_->mesh.triangles, at));
+  start_ = gas_energy(gas_, gas_.orientation * compute_signed_volume(topology_->mesh.triangles, at));
 }
 
 double PressureTerms::volume(const Vec3Array& x) const {
   return gas_.orientation *
-         enclosed_volume(topology_->mesh.triangles, [&](int v) { return x.get(rows_.index(v)); });
+         compute_signed_volume(topology_->mesh.triangles, [&](int v) { return x.get(rows_.index(v)); });
 }
 
 double PressureTerms::linearise(const Vec3Array& x, Vec3Array& force) {
   if (!gas_.is_active()) return 0;
   if (gradient_.size() != x.size()) gradient_ = Vec3Array(x.size());
-  for (float* component : {gradient_.x(), gradient_.y(), gradient_.z()})
-    std::fill_n(component, gradient_.size(), 0.0f);
   std::vector<Vec3> gradient(topology_->num_particles(), Vec3::Zero());
   add_volume_gradient(
       topology_->mesh.triangles, [&](int v) { return x.get(rows_.index(v)); },

@@ -105,14 +105,7 @@ SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
 }
 
 double compute_signed_volume(const TriangleMesh& mesh) {
-  if (mesh.positions.empty()) return 0;
-  const Vec3 near = mesh.positions[0];  // correct for any point; a near one keeps the terms small
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto& x = mesh.positions;
-    volume += (x[a] - near).dot((x[b] - near).cross(x[c] - near)) / 6;
-  }
-  return volume;
+  return compute_signed_volume(mesh.triangles, [&](int v) { return mesh.positions[v]; });
 }
 
 Shells turn_shells_outwards(TriangleMesh& mesh) {

@@ -29,7 +29,15 @@ inline bool is_closed(const SurfaceEdges& edges) { return edges.unbalanced == 0;
 ///
 ///     V = Σ a·(b × c)/6   over the triangles a b c; hollows are subtracted, overlaps count twice
 ///
-/// For an open mesh the number depends on its position and is meaningless.
+/// For an open mesh the number depends on its position and is meaningless. `at(v)` is a vertex's position.
+template <class At>
+double compute_signed_volume(std::span<const Triangle> triangles, const At& at) {
+  if (triangles.empty()) return 0;
+  const Vec3 near = at(triangles[0][0]);  // correct for any point; a near one keeps the terms small
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) sum += (at(a) - near).dot((at(b) - near).cross(at(c) - near));
+  return sum / 6;
+}
 double compute_signed_volume(const TriangleMesh& mesh);
 
 /// Shells of a closed mesh: its components connected by vertices.

@@ -32,23 +32,24 @@ std::vector<float> PastWorld::to_particles(int cloth, const std::vector<float>& 
 
 void PastWorld::set_time(double time) { WorldAccess::engine(world_).set_time(time); }
 
-void PastWorld::show(FrameSource& frames, int number) {
+AnimationFrame PastWorld::show(FrameSource& frames, int number) {
   World& world = WorldAccess::engine(world_);
-  const AnimationFrame now = frames.read(number), before = number > 0 ? frames.read(number - 1) : now;
+  AnimationFrame now = frames.read(number);
+  const std::vector<std::vector<float>> before = number > 0 ? frames.read(number - 1).cloths : now.cloths;
   const double rate = frames.meshes().frames_per_second;
   for (int c = 0; c < world.num_cloths(); ++c) {
     const std::vector<Vec3> positions = to_points(now.cloths[c]);
-    std::vector<Vec3> velocities = to_points(before.cloths[c]);
+    std::vector<Vec3> velocities = to_points(before[c]);
     for (std::size_t i = 0; i < positions.size(); ++i) velocities[i] = rate * (positions[i] - velocities[i]);
     world.set_positions(world.cloth(c), positions);
     world.set_velocities(world.cloth(c), velocities);
   }
   world.set_time(number / rate);
+  return now;
 }
 
 AnimationFrame FramesWithValues::read(int number) {
-  world_.show(frames_, number);
-  AnimationFrame frame = frames_.read(number);
+  AnimationFrame frame = world_.show(frames_, number);
   const World& world = world_.world();
   for (int c = 0; c < world.num_cloths(); ++c)
     frame.values.push_back(compute_values(value_, world, world.cloth(c)));

@@ -26,8 +26,9 @@ class PastWorld {
   /// Puts colliders where they are at a time, cloth aside.
   void set_time(double time);
 
-  /// Puts everything where a frame of particles has it. Velocities are differences from the frame before.
-  void show(FrameSource& frames, int number);
+  /// Puts everything where a frame of particles has it, and returns the frame. Velocities are differences from
+  /// the frame before.
+  AnimationFrame show(FrameSource& frames, int number);
 
  private:
   SceneDesc scene_;

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-
 #include <string>
 
 #include "weft/io/animation.h"

@@ -76,7 +76,7 @@ double compute_gas_energy(const ClothModel& model, const ClothState& state) {
 
 double compute_volume(const ClothModel& model, const ClothState& state) {
   return model.gas.orientation *
-         enclosed_volume(model.topology->mesh.triangles, [&](int v) { return state.x.get(v); });
+         compute_signed_volume(model.topology->mesh.triangles, [&](int v) { return state.x.get(v); });
 }
 
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {

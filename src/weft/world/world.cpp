@@ -490,7 +490,8 @@ void World::set_pressure(ClothId id, double pressure, bool is_sealed) {
   if (pressure == 0 && !is_sealed) return set_gas(cloth, {});
   require_closed(cloth.model->topology->mesh, cloth.name);
   require_pressure_supported(integrator_settings_.integrator, cloth.name);
-  const double volume = compute_volume(*with_gas(*cloth.model, {}), cloth.state);
+  const double volume =
+      cloth.model->gas.orientation * compute_volume(*cloth.model, cloth.state);  // the mesh's
   const double orientation = volume < 0 ? -1 : 1;
   if (!is_sealed) return set_gas(cloth, {.pressure = pressure, .orientation = orientation});
   require(volume != 0 && pressure > -kAirPressure,
