@@ -205,22 +205,22 @@ void draw_look(Viewer& viewer) {
   ViewLook& look = viewer.look;
   struct Switch {
     const char* name;
-    bool* value;
+    bool ViewLook::*value;
     const char* meaning;
   };
   const Switch switches[] = {
-      {"springs", &look.springs, "Particles and springs in place of the cloth (G)"},
-      {"yarns", &look.yarns, "Warp blue and weft orange, of fabrics: as long as they are stretched (Y)"},
-      {"seams", &look.seams, "Edges where the texture coordinates break (E)"},
-      {"pins", &look.pins, "Pinned particles (X)"},
-      {"contacts", &look.contacts, "Forces of contacts on cloth, in the last step (F)"},
-      {"checker", &look.checker, "Crossings of triangles, found by the exact checker (K)"},
+      {"springs", &ViewLook::springs, "Particles and springs in place of the cloth (G)"},
+      {"yarns", &ViewLook::yarns, "Warp blue and weft orange, of fabrics: as long as they are stretched (Y)"},
+      {"seams", &ViewLook::seams, "Edges where the texture coordinates break (E)"},
+      {"pins", &ViewLook::pins, "Pinned particles (X)"},
+      {"contacts", &ViewLook::contacts, "Forces of contacts on cloth, in the last step (F)"},
+      {"checker", &ViewLook::checker, "Crossings of triangles, found by the exact checker (K)"},
   };
   int column = 0;
   for (const auto& [name, value, meaning] : switches) {
-    if (!viewer.can_show(*value)) continue;
+    if (!viewer.can_show(value)) continue;
     if (column++ % 2 == 1) ImGui::SameLine(kWidth * 0.5f * scale());
-    ImGui::Checkbox(name, value);
+    ImGui::Checkbox(name, &(look.*value));
     if (ImGui::IsItemHovered()) show_tooltip(meaning);
     note_control(viewer, name);
   }

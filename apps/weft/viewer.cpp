@@ -486,17 +486,17 @@ bool Viewer::on_look_key(int key) {
     return set_color(kParticleValues[key - '2']), true;
   if (key == 'K') return look.checker = !look.checker, true;
   if (key == 'W' && is_simulation()) return hands_.toggle_wind(), true;
-  for (const auto& [letter, shown] :
-       {std::pair('G', &look.springs), std::pair('Y', &look.yarns), std::pair('E', &look.seams),
-        std::pair('X', &look.pins), std::pair('F', &look.contacts)}) {
-    if (key == letter && can_show(*shown)) return *shown = !*shown, true;
+  for (const auto& [letter, shown] : {std::pair('G', &ViewLook::springs), std::pair('Y', &ViewLook::yarns),
+                                      std::pair('E', &ViewLook::seams), std::pair('X', &ViewLook::pins),
+                                      std::pair('F', &ViewLook::contacts)}) {
+    if (key == letter && can_show(shown)) return look.*shown = !(look.*shown), true;
   }
   return false;
 }
 
-bool Viewer::can_show(const bool& shown) const {
-  if (&shown == &look.checker) return true;
-  return &shown == &look.contacts ? is_simulation() : sides_[0]->measured() != nullptr;
+bool Viewer::can_show(bool ViewLook::*shown) const {
+  if (shown == &ViewLook::checker) return true;
+  return shown == &ViewLook::contacts ? is_simulation() : sides_[0]->measured() != nullptr;
 }
 
 void Viewer::scale_text(double factor) {

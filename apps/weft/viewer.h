@@ -107,7 +107,7 @@ class Viewer {
   }  // else frames of a run
   bool is_playing() const { return is_playing_; }
   /// Whether this switch of `look` has an effect: a run has no forces of contacts, and may have positions only.
-  bool can_show(const bool& shown) const;
+  bool can_show(bool ViewLook::*shown) const;
   bool shows_record() const { return shows_record_; }
   const Recording* recording() const { return recording_.get(); }
   const ViewScales& scales() const { return scales_; }

@@ -304,7 +304,7 @@ std::uint64_t Window::make_texture(const Image& image) {
 bool Window::wait_for_event(double seconds) {
   const double start = glfwGetTime();
   glfwWaitEventsTimeout(seconds);
-  return glfwGetTime() - start < seconds;
+  return !system_->events.empty() || glfwGetTime() - start < seconds;  // on a busy machine input may come late
 }
 
 void Window::begin_frame(const WindowEvents& events) {
