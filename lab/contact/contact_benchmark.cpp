@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numeric>
 
 #include "lab/benchmarks/machine.h"
+#include "lab/contact/contact_cost.h"
 #include "lab/contact/contact_experiments.h"
 #include "weft/run/scene_run.h"
 #include "weft/scene/scene_library.h"
@@ -23,7 +23,6 @@ namespace {
 constexpr int kQuickFrames = 20;
 constexpr int kFineSteps = 16;  // per frame, for reference strains
 constexpr double kTableFriction = 0.1, kSheetFriction = 0.3;
-constexpr double kForever = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
@@ -184,28 +183,6 @@ void bench_layers(bool quick) {
   fmt::print("\n");
 }
 
-/// Overhead of contact for a sheet without collisions: wall time per step over that without contact.
-double measure_nothing_near(int cells) {
-  constexpr int kRuns = 5, kSettle = 10, kSteps = 40;
-  double fastest[2] = {kForever, kForever};  // without contact, with it [s]
-  for (int run = 0; run < kRuns; ++run) {
-    for (const bool contact : {false, true}) {
-      World world;
-      world.set_contact(contact);
-      world.add_cloth(
-          {.name = "sheet",
-           .topology = build_grid_topology({.size_x = 1, .size_z = 1, .cells_x = cells, .cells_z = cells},
-                                           SpringModel::alternating),
-           .material = {.structural = 2000, .shear = 1000, .bend = 20, .damping = 0.002}});
-      for (int s = 0; s < kSettle; ++s) world.step(1.0 / 60);
-      const double start = seconds_now();
-      for (int s = 0; s < kSteps; ++s) world.step(1.0 / 60);
-      fastest[contact] = std::min(fastest[contact], seconds_now() - start);
-    }
-  }
-  return fastest[true] / fastest[false];
-}
-
 /// Memory per particle of contact/ball_and_floor after a second [bytes].
 double measure_memory(int cells) {
   SceneDesc scene = read_scene(find_scene("contact/ball_and_floor"));
@@ -217,14 +194,10 @@ double measure_memory(int cells) {
   return (resident_bytes() - before) / grid.num_particles();
 }
 
-void bench_overhead(bool quick) {
-  const int cells = quick ? 63 : 127, cells_on_ball = quick ? 127 : 255;
-  fmt::print("## Memory, and overhead without contacts\n\n");
-  fmt::print("contact/ball_and_floor with {0}×{0} particles: {1:.0f} bytes per particle after a second.\n",
-             cells_on_ball + 1, measure_memory(cells_on_ball));
-  fmt::print(
-      "A sheet of {0}×{0} particles in free fall: {1:.2f} times the time per step without contact.\n\n",
-      cells + 1, measure_nothing_near(cells));
+void bench_memory(bool quick) {
+  const int cells = quick ? 127 : 255;
+  fmt::print("contact/ball_and_floor with {0}×{0} particles: {1:.0f} bytes per particle after a second.\n\n",
+             cells + 1, measure_memory(cells));
   std::fflush(stdout);
 }
 
@@ -377,8 +350,9 @@ void bench_energy(bool quick) {
 }  // namespace
 
 bool bench_contact(const ContactBenchOptions& options) {
-  bench_overhead(options.quick);  // first, because memory that other benchmarks have freed does not count
+  bench_memory(options.quick);  // first, because memory that other benchmarks have freed does not count
   const bool is_clean = bench_scenes(options);
+  bench_contact_cost(options.quick);
   const ContactExperiment setup{.cells = options.quick ? 16 : 32};
   bench_layers(options.quick);
   bench_rest(setup, options.quick ? 4 : 20);

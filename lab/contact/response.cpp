@@ -70,6 +70,7 @@ double time_step(Stack& stack, double stretch) {
   }
   begin = seconds_now();
   stack.contact.read_solution({});
+  stack.contact.find_violations(*stack.jobs);
   stack.contact.project_contacts(*stack.jobs);
   return seconds + seconds_now() - begin;
 }

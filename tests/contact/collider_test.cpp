@@ -48,6 +48,7 @@ struct Particles {
     contact.begin_step({&cloth, 1}, colliders, step);
     move();
     contact.read_solution({});
+    contact.find_violations(*make_serial_jobs());
     contact.project_contacts(*make_serial_jobs());
   }
 

@@ -83,7 +83,7 @@ TEST_P(ContactPoints, OfASheetOnAFloorCarryItsWeight) {
 TEST_P(ContactPoints, OfASheetOnABallCarryItsWeight) {
   World world = make_world();
   world.add_collider({"ball", Sphere{Vec3::Zero(), 0.2}, 0.5, {}});
-  const ClothId sheet = add_sheet(world, "sheet", 0.3, 8, Mat3::Identity(), 0.2 + kSoft.thickness / 2);
+  const ClothId sheet = add_sheet(world, "sheet", 0.3, 16, Mat3::Identity(), 0.2 + kSoft.thickness / 2);
   const Vec3 force = settle(world, 2.5, GetParam().steps_per_second);
   const double weight = mass_of(world, sheet) * kGravity;
   // It still swings a little, and paper_fixed does not conserve momentum where borders differ.

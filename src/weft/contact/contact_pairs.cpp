@@ -13,9 +13,11 @@ namespace {
 
 constexpr int kPairGrain = 1024;  // pairs per chunk
 
-/// Cloth too near to cloth at the start of a step is separated gradually, by this share of the missing
-/// distance per step: full separation in one step would throw it.
-constexpr double kRecovery = 0.2;
+/// Cloth too near to cloth at the start of a step is separated gradually, at most by this share of the missing
+/// distance: full separation in one step would throw it. A solve with contacts recovers by this rate, so that
+/// parts of a step do not throw it either.
+constexpr double kMaxRecovery = 0.2;
+constexpr double kRecoveryRate = 12;  // [1/s]
 
 /// Almost parallel edges have no reliable direction between them: limit of sin² of the angle.
 constexpr double kParallelSq = 0.03;
@@ -225,7 +227,8 @@ bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) cons
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
   if (c.inverse_mass == 0) return false;
   const bool is_body = is_on_body(c);
-  c.target = distance < gap && !is_body ? distance + kRecovery * (gap - distance) : gap;
+  const double recovery = is_predicted_ ? std::min(kMaxRecovery, kRecoveryRate * step_.step) : kMaxRecovery;
+  c.target = distance < gap && !is_body ? distance + recovery * (gap - distance) : gap;
   const Place cloth = place_of(std::min(first, last)), other = place_of(std::max(first, last));
   set_friction(pair_settings_[pair_index(cloth, other)], c);
   return true;

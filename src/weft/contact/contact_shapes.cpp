@@ -72,13 +72,15 @@ void ContactSystem::generate_constraints_of_shape(int shape, double share_of_tra
       add_shape_constraint(cloth, shape, 1, {v, v, v}, nearest_of(d, motion_.end[v], {1, 0, 0, 0}));
   }
   if (std::holds_alternative<Plane>(moving.after)) return;
-  const bool is_for_solve = share_of_travel > 0;
-  const bool is_round = radius_of(moving.after) > kRound * longest_rest_edge_;
-  if (is_for_solve && is_round) {
+  if (is_for_solve_ && is_round(shape)) {
     generate_edge_constraints(shape, share_of_travel);
   } else {
     generate_triangle_constraints(shape, share_of_travel);
   }
+}
+
+bool ContactSystem::is_round(int shape) const {
+  return radius_of(shapes_[shape].after) > kRound * longest_rest_edge_;
 }
 
 /// The distance below which a vertex counts [m].
@@ -112,7 +114,7 @@ void ContactSystem::generate_triangle_constraints(int shape, double share_of_tra
     const double reach = shape_reach(t[0], share_of_travel);
     if (nearest > reach + triangle_reach) continue;
     const double nearer =
-        std::max(kNearerThanCorners, share_of_travel * kMuchNearer * motion_.half_thickness[t[0]]);
+        std::max(kNearerThanCorners, is_for_solve_ ? kMuchNearer * motion_.half_thickness[t[0]] : 0.0);
     const double farthest = std::min(reach, nearest - nearer);
     const TriangleSignedDistance d =
         signed_distance(shapes_[shape].after, x[t[0]], x[t[1]], x[t[2]], farthest);

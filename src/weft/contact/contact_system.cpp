@@ -308,12 +308,13 @@ void ContactSystem::read_ends() {
 
 void ContactSystem::read_solution(std::span<const Contact> contacts) {
   if (is_placed_) read_ends();
+  contact_forces_.clear();
   is_solved_.assign(cloths_.size(), is_predicted_);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact& c = contacts[n];
     for (const int v : {c.particle[0], c.particle[c.num_particles - 1]})
       is_solved_[mesh_of(first_vertex_, v)] = c.is_solved;
-    add_contact_force(constraints_[found_[n]], c.force);
+    add_contact_force(solved_for_[n], c.force);
     if (step_.clock && c.has_pushed) ++step_.clock->times.active;
   }
 }
@@ -402,12 +403,10 @@ double ContactSystem::pressure_stiffness(const Constraint& c) const {
 void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   const WorkScope scope(step_.clock, &WorkTimes::rows);
   contacts.clear();
-  found_.clear();
+  solved_for_.swap(constraints_);
+  std::erase_if(solved_for_, [](const Constraint& c) { return c.inverse_mass == 0; });
   const double h = step_.step;
-  for (int n = 0; n < static_cast<int>(constraints_.size()); ++n) {
-    const Constraint& c = constraints_[n];
-    if (c.inverse_mass == 0) continue;
-    found_.push_back(n);
+  for (const Constraint& c : solved_for_) {
     Contact& contact = contacts.emplace_back();
     contact.num_particles = 0;
     contact.normal = c.normal;
@@ -483,7 +482,7 @@ bool ContactSystem::matches_prediction() const {
 void ContactSystem::leave_out_solved() {
   if (!is_predicted_) return;
   for (const Constraint& c : constraints_) {
-    if (c.target - c.normal.dot(c.sum(motion_.end)) > kMaxShortfall * kept_gap(c)) mark_unsolved(c);
+    if (is_short(c)) mark_unsolved(c);
   }
   for (bool is_spreading = true; is_spreading;) {
     is_spreading = false;
@@ -494,9 +493,10 @@ void ContactSystem::leave_out_solved() {
   std::erase_if(constraints_, [&](const Constraint& c) { return is_solved(c); });
 }
 
-void ContactSystem::project_contacts(JobSystem& jobs) {
+void ContactSystem::find_violations(JobSystem& jobs) {
   is_for_solve_ = is_clear_ = false;
   pressed_in_ = is_predicted_ ? kPressedIn : 0;
+  constraints_.clear();
   if (is_surveyed_ || !is_placed_) {
     survey_solved();
     if (is_clear_) return;
@@ -506,7 +506,6 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
     read_ends();
   }
   update_lists(jobs);
-  constraints_.clear();
   if (proximity_.diverged_vertex() >= 0) return;
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
   is_clear_ = lists_are_empty && !has_plain_shapes();
@@ -515,6 +514,52 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
   generate_shape_constraints(0.0);
   is_clear_ = lists_are_empty && !is_near_shape_;
   leave_out_solved();
+}
+
+bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSystem& jobs) {
+  if (!is_predicted_ || constraints_.empty()) return false;
+  known_.clear();
+  for (const Constraint& c : solved_for_) known_.push_back(key_of(c));
+  std::sort(known_.begin(), known_.end());
+  const auto is_known = [&](const Constraint& c) {
+    return std::binary_search(known_.begin(), known_.end(), key_of(c));
+  };
+  if (std::none_of(constraints_.begin(), constraints_.end(),
+                   [&](const Constraint& c) { return has_passed(c) && !is_known(c); }))
+    return false;
+  is_for_solve_ = true;
+  pressed_in_ = 0;
+  constraints_.clear();
+  generate_pair_constraints(jobs);
+  generate_shape_constraints(0.0);
+  std::erase_if(constraints_, is_known);
+  constraints_.insert(constraints_.begin(), solved_for_.begin(), solved_for_.end());
+  expected_.assign(motion_.end.begin(), motion_.end.begin() + first_vertex_.back());
+  find_contacts(contacts);
+  return true;
+}
+
+/// Whether features passed through each other, or cloth through a shape's surface. On round shapes the solve
+/// replaces triangles by edges: those do not count.
+bool ContactSystem::has_passed(const Constraint& c) const {
+  if (c.shape >= 0 && c.num_vertices == 3 && is_round(c.shape)) return false;
+  const double most = c.shape >= 0 ? motion_.half_thickness[c.vertex[0]] : kept_gap(c);
+  return c.target - c.normal.dot(c.sum(motion_.end)) > most;
+}
+
+/// The features of a constraint.
+ContactSystem::FeatureKey ContactSystem::key_of(const Constraint& c) {
+  FeatureKey key{c.shape, -1, -1, -1, -1};
+  std::copy_n(c.vertex.begin(), c.num_vertices, key.begin() + 1);
+  return key;
+}
+
+/// Whether the features ended nearer than a solve may leave them.
+bool ContactSystem::is_short(const Constraint& c) const {
+  return c.target - c.normal.dot(c.sum(motion_.end)) > kMaxShortfall * kept_gap(c);
+}
+
+void ContactSystem::project_contacts(JobSystem& jobs) {
   if (constraints_.empty()) return;
   project(jobs);
   store_touched();

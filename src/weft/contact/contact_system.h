@@ -55,6 +55,8 @@ struct ContactStep {
 ///     predict              for integrators that resolve contacts: finds the likely contacts
 ///     find_contacts        … and returns them as half-space constraints
 ///     read_solution        reads the cloths after the integrator's solve
+///     find_violations      finds features that ended too near to each other
+///     add_missed_contacts  for another solve from the same start: adds those that the solve did not know
 ///     project_contacts     contact projection of positions and velocities
 ///     run_ccd_fail_safe    CCD fail-safe for everything that would still intersect (see ccd_fail_safe.h)
 ///
@@ -73,12 +75,23 @@ class ContactSystem {
   /// The contacts of all cloths. Particles are numbered through the cloths.
   void find_contacts(std::vector<Contact>& contacts);
 
+  /// Whether predict() found that cloth may meet something.
+  bool may_meet() const { return is_predicted_ && !is_clear_; }
+
   /// Reads the cloths' states at the end of the step. `contacts` are those from find_contacts, solved for,
   /// or none.
   void read_solution(std::span<const Contact> contacts);
 
-  /// Contact projection: separates positions that are too close, removes approaching velocities, and applies
-  /// friction to sliding ones (see constraint.h). Call it when every cloth is at its end position.
+  /// Finds the features that are too near at the end positions of the cloths.
+  void find_violations(JobSystem& jobs);
+
+  /// Adds to the contacts of the solve those that it lacked, and returns whether there are any: cloth that did
+  /// not move as predicted. The caller returns the cloths to the start, solves again, and calls read_solution()
+  /// and find_violations().
+  bool add_missed_contacts(std::vector<Contact>& contacts, JobSystem& jobs);
+
+  /// Contact projection of what find_violations() found: separates positions that are too close, removes
+  /// approaching velocities, and applies friction to sliding ones (see constraint.h).
   void project_contacts(JobSystem& jobs);
 
   /// CCD fail-safe: stops all penetrations since begin_step. Call it last.
@@ -150,6 +163,11 @@ class ContactSystem {
   void add_contact_force(const Constraint& c, const Vec3& force);
   ContactPoint describe(const ContactForce& contact) const;
 
+  using FeatureKey = std::array<int, 5>;  // shape and vertices, -1 beyond the last
+  static FeatureKey key_of(const Constraint& c);
+  bool is_short(const Constraint& c) const;
+  bool has_passed(const Constraint& c) const;
+
   static Nearest nearest_of(const SignedDistance& d, const Vec3& p, const std::array<double, 4>& weight);
   static Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c);
   static Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x);
@@ -195,6 +213,7 @@ class ContactSystem {
   bool has_plain_shapes() const;
   void generate_constraints_of_shape(int shape, double share_of_travel);
   void find_separations();
+  bool is_round(int shape) const;
   double shape_reach(int v, double share_of_travel) const;
   void generate_edge_constraints(int shape, double share_of_travel);
   void generate_triangle_constraints(int shape, double share_of_travel);
@@ -257,7 +276,7 @@ class ContactSystem {
   std::vector<Vec3> velocity_before_;        // (num_vertices) [m/s]; empty without static friction
   std::vector<Constraint> constraints_;
   std::vector<char> is_solved_;               // (cloths) the solve separated it from all its known contacts
-  std::vector<int> found_;                    // indices of the constraints that find_contacts returned
+  std::vector<Constraint> solved_for_;        // of the contacts that find_contacts returned
   std::vector<ContactForce> contact_forces_;  // contact forces of this step
 
   // Work space.
@@ -266,6 +285,7 @@ class ContactSystem {
   std::vector<ClothMotion> motions_;  // (cloths)
   std::vector<ItemPair> uncertain_;   // patch pairs that may meet
   std::vector<std::vector<Constraint>> chunks_;
+  std::vector<FeatureKey> known_;  // of solved_for_, sorted
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
   std::vector<int> near_;  // indices into constraints_, for project_positions

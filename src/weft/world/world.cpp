@@ -683,10 +683,17 @@ void World::advance(double time, double dt, StepReport& report) {
   // Contact candidates.
   contacts_.clear();
   if (contact_) begin_contact(time, dt);
-  // The solve.
+  // The solve; once more if cloth met what its contacts lacked.
+  const bool may_repeat = contact_ && contact_system_.may_meet();
+  if (may_repeat) save_states(solve_starts_);
   solve(dt, report);
+  if (may_repeat && contact_system_.add_missed_contacts(contacts_, *jobs_)) {
+    for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = solve_starts_[c];
+    solve(dt, report);
+  }
+  for (Cloth& cloth : cloths_)
+    cloth.attachment_impulse += cloth.attachments.impulse(cloth.is_pinned, dt, cloth.state);
   if (!contact_) return;
-  contact_system_.read_solution(contacts_);
   // Contact projection.
   contact_system_.project_contacts(*jobs_);
   // Continuous collision detection: the fail-safe.
@@ -695,19 +702,20 @@ void World::advance(double time, double dt, StepReport& report) {
   if (diverged >= 0) is_diverged_[diverged] = 1;
 }
 
-/// Solves all cloths together.
+/// Solves all cloths together, and looks for what contact must still separate.
 void World::solve(double dt, StepReport& report) {
   bodies_.clear();
   for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
   const SystemStep step{.step = dt, .computes_contact_forces = tracks_contacts_, .clock = &clock_};
   const IntegratorReport done = integrator_->advance(bodies_, contacts_, step, *jobs_);
-  for (Cloth& cloth : cloths_)
-    cloth.attachment_impulse += cloth.attachments.impulse(cloth.is_pinned, dt, cloth.state);
   report.iterations += done.iterations;
   add_count(done.linear_iterations, report.linear_iterations);
   take_larger(done.residual, report.residual);
   add_count(done.guard_events, report.guard_events);
   if (!done.converged) report.warnings.push_back({WarningCode::not_converged, done.unconverged});
+  if (!contact_) return;
+  contact_system_.read_solution(contacts_);
+  contact_system_.find_violations(*jobs_);
 }
 
 void World::run_ccd_fail_safe(StepReport& report) {
@@ -948,8 +956,12 @@ void World::save(Snapshot& snapshot) const {
   snapshot.time = time_;
   snapshot.part = part_;
   snapshot.calm = calm_;
-  snapshot.states.resize(cloths_.size());
-  for (std::size_t c = 0; c < cloths_.size(); ++c) snapshot.states[c] = cloths_[c].state;
+  save_states(snapshot.states);
+}
+
+void World::save_states(std::vector<ClothState>& states) const {
+  states.resize(cloths_.size());
+  for (std::size_t c = 0; c < cloths_.size(); ++c) states[c] = cloths_[c].state;
 }
 
 World::Snapshot World::snapshot() const {

@@ -317,6 +317,7 @@ class World {
   void set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
                        double static_friction);
   void save(Snapshot& snapshot) const;
+  void save_states(std::vector<ClothState>& states) const;
   void place_pins(Cloth& cloth, std::vector<Pin> pins);
   void bind_pins(Cloth& cloth) const;
   static void release_followers(int collider, Cloth& cloth);
@@ -354,6 +355,7 @@ class World {
   std::vector<Pose> poses_;
   std::vector<std::optional<PlacedCollider>> followed_;  // (colliders) those that pins or attachments follow
   Snapshot before_step_, before_part_;
+  std::vector<ClothState> solve_starts_;  // before the solve, if there may be another
   double last_step_ = 0;  // step after before_step_; 0: none, or cloth was changed from outside since [s]
   std::vector<CheckedCloth> checked_;
   std::vector<Vec3> attachment_impulses_;  // (cloths) before the current part
