@@ -1,5 +1,5 @@
 #pragma once
-/// Shared test helpers: small cloths, chains, random motion.
+/// Shared test helpers: small cloths, chains, random motion, energy.
 
 #include <cmath>
 #include <memory>
@@ -9,6 +9,7 @@
 #include "weft/integrators/integrator.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
+#include "weft/world/measures.h"
 #include "weft/world/world.h"
 
 namespace weft::engine::test {
@@ -48,6 +49,14 @@ inline std::shared_ptr<const ClothTopology> chain(const std::vector<Vec3>& place
   }
   topology->table = build_neighbour_table(topology->num_particles(), topology->springs);
   return topology;
+}
+
+/// Kinetic, elastic and gravitational energy of the first cloth [J].
+inline double energy_of(const World& world) {
+  const ClothModel& model = world.model(world.cloth(0));
+  const ClothState& state = world.state(world.cloth(0));
+  return compute_kinetic_energy(model, state) + compute_elastic_energy(model, state) +
+         compute_gravity_energy(model, state, world.gravity());
 }
 
 /// Steps an integrator without a world: no substeps, no contact.

@@ -28,13 +28,6 @@ World make_landing(const StepDivision& division = {}) {
   return world;
 }
 
-double energy_of(const World& world) {
-  const ClothModel& model = world.model(world.cloth(0));
-  const ClothState& state = world.state(world.cloth(0));
-  return compute_kinetic_energy(model, state) + compute_elastic_energy(model, state) +
-         compute_gravity_energy(model, state, world.gravity());
-}
-
 struct Landing {
   double rise = 0;  // largest rise of energy in a frame, over the total fall [1]
   double strain = 0;
@@ -44,14 +37,14 @@ struct Landing {
 Landing land(const StepDivision& division) {
   World world = make_landing(division);
   Landing landing;
-  const double start = energy_of(world);
+  const double start = test::energy_of(world);
   double before = start, most = 0;
   for (int frame = 0; frame < 60; ++frame) {
     const StepReport report = world.step(kFrame);
     EXPECT_TRUE(report.ok);
     landing.divisions += report.divisions;
     landing.retries += report.retries;
-    const double now = energy_of(world);
+    const double now = test::energy_of(world);
     most = std::max(most, now - before);
     before = now;
     landing.strain = std::max(landing.strain,

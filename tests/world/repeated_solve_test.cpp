@@ -1,8 +1,11 @@
-/// A solve is repeated where cloth met what its contacts lacked.
+/// The second solve of a step, with the contacts missing from the first.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "tests/support.h"
 #include "weft/world/measures.h"
@@ -13,16 +16,9 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60;
 
-double energy_of(const World& world) {
-  const ClothModel& model = world.model(world.cloth(0));
-  const ClothState& state = world.state(world.cloth(0));
-  return compute_kinetic_energy(model, state) + compute_elastic_energy(model, state) +
-         compute_gravity_energy(model, state, world.gravity());
-}
-
 TEST(RepeatedSolve, AFoldThatClosesFasterThanPredictedMakesLittleEnergy) {
-  // The lower corners of a falling sheet that hangs by two others close like a whip. Elasticity drives them, so
-  // that inertia predicts one contact of some hundred.
+  // Elasticity closes the lower corners of a falling sheet that hangs by the two others: inertia predicts one
+  // contact of about a hundred.
   World world;
   world.set_division({.enabled = false});
   const ClothId sheet =
@@ -30,12 +26,12 @@ TEST(RepeatedSolve, AFoldThatClosesFasterThanPredictedMakesLittleEnergy) {
                        .topology = build_grid_topology(test::square(63), SpringModel::alternating),
                        .material = {.structural = 2000, .shear = 1000, .bend = 20}});
   world.set_pins(sheet, {Pin{.particles = {0, 63}}});
-  double before = energy_of(world), rise = 0;
+  double before = test::energy_of(world), rise = 0;
   const double start = before;
   int contacts = 0;
   for (int frame = 0; frame < 90; ++frame) {
     contacts += static_cast<int>(world.step(kFrame).work.active);
-    const double now = energy_of(world);
+    const double now = test::energy_of(world);
     rise = std::max(rise, now - before);
     before = now;
   }
@@ -68,7 +64,7 @@ TEST(RepeatedSolve, AReleasedStripIsNotStretchedByTheClothInItsWay) {
   for (Vec3& p : places) p += Vec3(0.35, 0.05, -0.1);
   const ClothId sheet = world.add_cloth({.name = "sheet", .topology = plate, .positions = places});
   std::vector<int> all(plate->num_particles());
-  for (int i = 0; i < plate->num_particles(); ++i) all[i] = i;
+  std::iota(all.begin(), all.end(), 0);
   world.set_pins(sheet, {Pin{.particles = all}});
   double strain = 0;
   for (int k = 0; k < 10; ++k) {

@@ -539,12 +539,17 @@ bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSyste
   return true;
 }
 
+/// How far the features end beyond the constraint's plane; negative on the free side [m].
+double ContactSystem::depth_at_end(const Constraint& c) const {
+  return c.target - c.normal.dot(c.sum(motion_.end));
+}
+
 /// Whether features passed through each other, or cloth through a shape's surface. On round shapes the solve
 /// replaces triangles by edges: those do not count.
 bool ContactSystem::has_passed(const Constraint& c) const {
   if (c.shape >= 0 && c.num_vertices == 3 && is_round(c.shape)) return false;
   const double most = c.shape >= 0 ? motion_.half_thickness[c.vertex[0]] : kept_gap(c);
-  return c.target - c.normal.dot(c.sum(motion_.end)) > most;
+  return depth_at_end(c) > most;
 }
 
 /// The features of a constraint.
@@ -554,9 +559,9 @@ ContactSystem::FeatureKey ContactSystem::key_of(const Constraint& c) {
   return key;
 }
 
-/// Whether the features ended nearer than a solve may leave them.
+/// Whether the features end nearer than the tolerance of a solve.
 bool ContactSystem::is_short(const Constraint& c) const {
-  return c.target - c.normal.dot(c.sum(motion_.end)) > kMaxShortfall * kept_gap(c);
+  return depth_at_end(c) > kMaxShortfall * kept_gap(c);
 }
 
 void ContactSystem::project_contacts(JobSystem& jobs) {

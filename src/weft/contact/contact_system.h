@@ -55,8 +55,8 @@ struct ContactStep {
 ///     predict              for integrators that resolve contacts: finds the likely contacts
 ///     find_contacts        … and returns them as half-space constraints
 ///     read_solution        reads the cloths after the integrator's solve
-///     find_violations      finds features that ended too near to each other
-///     add_missed_contacts  for another solve from the same start: adds those that the solve did not know
+///     find_violations      finds features that end too near to each other
+///     add_missed_contacts  for another solve from the same start: adds the contacts missing from this one
 ///     project_contacts     contact projection of positions and velocities
 ///     run_ccd_fail_safe    CCD fail-safe for everything that would still intersect (see ccd_fail_safe.h)
 ///
@@ -85,8 +85,8 @@ class ContactSystem {
   /// Finds the features that are too near at the end positions of the cloths.
   void find_violations(JobSystem& jobs);
 
-  /// Adds to the contacts of the solve those that it lacked, and returns whether there are any: cloth that did
-  /// not move as predicted. The caller returns the cloths to the start, solves again, and calls read_solution()
+  /// Adds contacts that were missing from the solve, because cloth did not move as predicted. Returns whether
+  /// there are any; the caller then restores the cloths to the start, solves again, and calls read_solution()
   /// and find_violations().
   bool add_missed_contacts(std::vector<Contact>& contacts, JobSystem& jobs);
 
@@ -165,6 +165,7 @@ class ContactSystem {
 
   using FeatureKey = std::array<int, 5>;  // shape and vertices, -1 beyond the last
   static FeatureKey key_of(const Constraint& c);
+  double depth_at_end(const Constraint& c) const;
   bool is_short(const Constraint& c) const;
   bool has_passed(const Constraint& c) const;
 

@@ -683,12 +683,12 @@ void World::advance(double time, double dt, StepReport& report) {
   // Contact candidates.
   contacts_.clear();
   if (contact_) begin_contact(time, dt);
-  // The solve; once more if cloth met what its contacts lacked.
+  // The solve; once more if contacts were missing from it.
   const bool may_repeat = contact_ && contact_system_.may_meet();
   if (may_repeat) save_states(solve_starts_);
   solve(dt, report);
   if (may_repeat && contact_system_.add_missed_contacts(contacts_, *jobs_)) {
-    for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = solve_starts_[c];
+    restore_states(solve_starts_);
     solve(dt, report);
   }
   for (Cloth& cloth : cloths_)
@@ -702,7 +702,7 @@ void World::advance(double time, double dt, StepReport& report) {
   if (diverged >= 0) is_diverged_[diverged] = 1;
 }
 
-/// Solves all cloths together, and looks for what contact must still separate.
+/// Solves all cloths together, and finds the remaining violations of contact.
 void World::solve(double dt, StepReport& report) {
   bodies_.clear();
   for (Cloth& cloth : cloths_) bodies_.push_back({cloth.held_model, &cloth.environment, &cloth.state});
@@ -882,7 +882,7 @@ StepReport World::fail(const StepCheck& check, StepReport report) {
   time_ = before_step_.time;
   part_ = before_step_.part;
   calm_ = before_step_.calm;
-  restore_motion(before_step_);
+  restore_states(before_step_.states);
   report.work = clock_.stop();
   return report;
 }
@@ -921,7 +921,7 @@ StepReport World::step(double dt) {
     }
     if (!stands && parts == most) return fail(check, std::move(report));
     if (!stands) {
-      restore_motion(before);
+      restore_states(before.states);
       for (std::size_t c = 0; c < cloths_.size(); ++c)
         cloths_[c].attachment_impulse = attachment_impulses_[c];
       parts = std::min(most, check.severity > kFarTooLong ? 4 * parts : 2 * parts);
@@ -1021,7 +1021,7 @@ void World::restore(const Snapshot& snapshot) {
   part_ = snapshot.part;
   calm_ = snapshot.calm;
   last_step_ = 0;
-  restore_motion(snapshot);
+  restore_states(snapshot.states);
   for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(cloth(static_cast<int>(c)), snapshot.held[c]);
   const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
   if (std::ranges::any_of(guides_, is_by_hand) || std::ranges::any_of(snapshot.guides, is_by_hand))
@@ -1035,8 +1035,8 @@ void World::restore(const Snapshot& snapshot) {
   }
 }
 
-void World::restore_motion(const Snapshot& snapshot) {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = snapshot.states[c];
+void World::restore_states(const std::vector<ClothState>& states) {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = states[c];
 }
 
 std::uint64_t World::state_hash() const {

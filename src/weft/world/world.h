@@ -299,7 +299,7 @@ class World {
   void advance(double time, double dt, StepReport& report);
   StepCheck try_part(const Snapshot& before, double time, double dt, StepReport& report);
   void accept(const StepReport& part, StepReport& report);
-  void restore_motion(const Snapshot& snapshot);
+  void restore_states(const std::vector<ClothState>& states);
   StepReport fail(const StepCheck& check, StepReport report);
   void begin_contact(double time, double dt);
   void run_ccd_fail_safe(StepReport& report);
