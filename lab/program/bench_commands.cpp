@@ -8,6 +8,7 @@
 #include "lab/benchmarks/integrators.h"
 #include "lab/benchmarks/kernels.h"
 #include "lab/benchmarks/pictures.h"
+#include "lab/benchmarks/random_contact.h"
 #include "lab/benchmarks/random_scenes.h"
 #include "lab/contact/collision.h"
 #include "lab/contact/contact_benchmark.h"
@@ -75,10 +76,9 @@ void add_kernels(CLI::App& bench) {
 
 void add_frontier(CLI::App& bench) {
   auto options = std::make_shared<FrontierOptions>();
-  CLI::App* command = bench.add_subcommand(
-      "frontier", "Error against time for each integrator at several settings");
-  command->add_option("--methods", options->methods, "Integrators, or Bullet (default: all)")
-      ->delimiter(',');
+  CLI::App* command =
+      bench.add_subcommand("frontier", "Error against time for each integrator at several settings");
+  command->add_option("--methods", options->methods, "Integrators, or Bullet (default: all)")->delimiter(',');
   command->add_option("--sizes", options->sizes, "Particles per side of the sheets")
       ->delimiter(',')
       ->check(CLI::Range(2, 1024))
@@ -117,8 +117,7 @@ void add_collision(CLI::App& bench, int& exit_code) {
 void add_contact(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<ContactBenchOptions>();
   CLI::App* command = bench.add_subcommand(
-      "contact",
-      "Accuracy and cost of contact: all scenes, checked at every frame, rest, friction, energy");
+      "contact", "Accuracy and cost of contact: all scenes, checked at every frame, rest, friction, energy");
   command->add_option("--scenes", options->scenes, "Which (default: all of contact/)")->delimiter(',');
   command->add_option("--threads", options->threads, "Numbers of threads")
       ->delimiter(',')
@@ -153,8 +152,7 @@ void add_pictures(CLI::App& bench) {
 
 void add_scaling(CLI::App& bench) {
   auto options = std::make_shared<ScalingBenchOptions>();
-  CLI::App* command =
-      bench.add_subcommand("scaling", "Cost of newton against size, at the same accuracy");
+  CLI::App* command = bench.add_subcommand("scaling", "Cost of newton against size, at the same accuracy");
   command->add_option("--sizes", options->sizes, "Particles per side")
       ->delimiter(',')
       ->check(CLI::Range(2, 4096))
@@ -171,7 +169,8 @@ void add_scaling(CLI::App& bench) {
   command->add_option("--steps", options->steps, "Per measurement")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  command->add_flag("--motion", options->motion, "Also report the distance between the motions of consecutive sizes");
+  command->add_flag("--motion", options->motion,
+                    "Also report the distance between the motions of consecutive sizes");
   command->callback([options] { bench_scaling(*options); });
 }
 
@@ -200,20 +199,32 @@ void add_garments(CLI::App& bench, int& exit_code) {
 
 void add_random(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<RandomBenchOptions>();
+  auto contact = std::make_shared<RandomContactOptions>();
+  auto is_contact = std::make_shared<bool>(false);
+  auto scenes = std::make_shared<std::optional<int>>();
+  auto steps = std::make_shared<std::optional<int>>();
   CLI::App* command = bench.add_subcommand(
-      "random", "Energy and momentum in random scenes, from soft and light to stiff and heavy");
-  command->add_option("--integrator", options->integrator, "Which")->capture_default_str();
-  command->add_option("--scenes", options->scenes, "How many")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
+      "random", "Energy and momentum in random scenes, from soft and light to stiff and heavy; or contact");
+  command->add_flag("--contact", *is_contact,
+                    "Contact instead: cloths and moving bodies, every step checked, with defaults");
+  command->add_option("--integrator", options->integrator, "Which, without contact")->capture_default_str();
+  command->add_option("--scenes", *scenes, "How many (default: 1000; with contact 200)")
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option("--first", options->first_seed, "Seed of the first")
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
-  command->add_option("--steps", options->steps, "Per scene")
-      ->check(CLI::Range(1, 1'000'000))
+  command->add_option("--steps", *steps, "Per scene (default: 60)")->check(CLI::Range(1, 1'000'000));
+  command->add_option("--threads", contact->threads, "With contact")
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->callback([options, &exit_code] {
-    if (!bench_random(*options)) exit_code = 1;
+  command->add_option("--out", contact->out, "Folder for the scenes of --contact (default: a temporary one)");
+  command->callback([=, &exit_code] {
+    options->scenes = scenes->value_or(options->scenes);
+    options->steps = steps->value_or(options->steps);
+    contact->scenes = scenes->value_or(contact->scenes);
+    contact->frames = steps->value_or(contact->frames);
+    contact->first_seed = options->first_seed;
+    if (!(*is_contact ? bench_random_contact(*contact) : bench_random(*options))) exit_code = 1;
   });
 }
 

@@ -55,6 +55,14 @@ TEST_F(Laboratory, BenchRandomCountsWhatWentWrong) {
   EXPECT_TRUE(contains(done.out, "newton, 5 scenes of 20 steps: 0 became infinite")) << done.out;
 }
 
+TEST_F(Laboratory, BenchRandomContactWritesAndChecksScenes) {
+  const Finished done = shell("weft bench random --contact --scenes 2 --first 2 --steps 5 --out scenes");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.out, "2 scenes of 5 frames")) << done.out;
+  EXPECT_TRUE(contains(done.out, "0 refused; 0 with intersections")) << done.out;
+  EXPECT_EQ(shell("weft check scenes/seed_3.toml").exit_code, 0);
+}
+
 TEST_F(Laboratory, BenchComparesWaysToFindPairs) {
   const Finished done =
       shell("weft bench collision --sizes 200,1000 --cells 4 --threads 1,2 --seconds 0.001");

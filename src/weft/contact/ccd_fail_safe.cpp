@@ -218,7 +218,7 @@ bool CcdFailSafe::comes_from_inside(const Constraint& c) const {
 template <class Find>
 bool CcdFailSafe::test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find,
                             Hit& hit) const {
-  if (!needs_test(vertex, 4) || is_rigid(vertex)) return false;
+  if (!needs_test(vertex, 4) || is_rigid(vertex) || is_caught(vertex, -1)) return false;
   const std::vector<Vec3>&x = motion_->start, &y = motion_->end;
   const double thickness = motion_->half_thickness[vertex[0]] + motion_->half_thickness[vertex[3]];
   const ImpactLimit limit = limit_for(std::min(thickness, double{pair.max_gap}), vertex[0]);
@@ -261,7 +261,7 @@ void CcdFailSafe::find_shape_hits(int s) {
     const bool is_known = known != step_.separations.end() && known->shape == s && known->triangle == t;
     if (is_known && keeps(*known++)) continue;
     if (!is_near_[t[0]] && !is_near_[t[1]] && !is_near_[t[2]]) continue;
-    if (!needs_test({t[0], t[1], t[2], 0}, 3) || is_non_colliding(t[0], s)) continue;
+    if (!needs_test({t[0], t[1], t[2], 0}, 3) || is_non_colliding(t[0], s) || is_caught(t, s)) continue;
     if (test_triangle_shape(s, t, hit)) hits_.push_back(hit);
   }
 }
@@ -279,6 +279,10 @@ bool CcdFailSafe::keeps(const Separation& separation) const {
   const double room = std::min(at_start - support(shape.before, normal_at_start),
                                at_end - support(shape.after, separation.normal));
   return room > kFar * separation_of(motion_->half_thickness[separation.triangle[0]]);
+}
+
+bool CcdFailSafe::is_caught(std::span<const int> vertices, int shape) const {
+  return step_.caught && step_.caught->includes(vertices, shape);
 }
 
 /// Whether a cloth vertex and a shape do not collide.

@@ -18,6 +18,7 @@
 
 #include <vector>
 
+#include "weft/contact/caught_particles.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
@@ -63,6 +64,7 @@ struct CcdFailSafeStep {
   const std::vector<char>* non_colliding =
       nullptr;                                   // (cloths and shapes, the same) 1: do not collide; or empty
   const ShapeClearance* clearance = nullptr;     // of cloth from primitive shapes
+  const CaughtParticles* caught = nullptr;       // not tested against what holds them; null: none
   double thickest = 0;                           // half thickness of the thickest cloth [m]
   std::span<const Separation> separations = {};  // of some triangles, in the order of shapes and triangles
   WorkClock* clock = nullptr;                    // counts detections; null: not counted
@@ -111,6 +113,7 @@ class CcdFailSafe {
   bool test_pair(const FeaturePair& pair, const std::array<int, 4>& vertex, const Find& find, Hit& hit) const;
   void find_shape_hits(int shape);
   bool keeps(const Separation& separation) const;
+  bool is_caught(std::span<const int> vertices, int shape) const;
   bool is_non_colliding(int vertex, int shape) const;
   bool test_triangle_shape(int shape, const Triangle& triangle, Hit& hit) const;
   void move(int vertex, const Vec3& to);

@@ -20,6 +20,7 @@ struct Constraint {
   Vec3 surface_velocity = Vec3::Zero();         // of a primitive shape's surface there [m/s]
   int shape = -1;                               // primitive shape index, -1: a pair of features
   bool is_fixed = false;                        // the plane of a primitive shape is not updated
+  bool is_caught = false;  // of a caught particle (caught_particles.h); `shape`: a collider
 
   double inverse_mass = 0;               // Σ w_i²/m_i [1/kg]
   bool is_active = false;                // the position projection pushed it

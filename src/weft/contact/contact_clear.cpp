@@ -62,7 +62,9 @@ bool ContactSystem::may_survey() {
   }
   const auto has_static = [](const MovingShape& shape) { return shape.collider->static_friction > 0; };
   const auto sets_static = [](const ContactRule& rule) { return rule.static_friction.value_or(0) > 0; };
-  return has_grids_ && std::none_of(shapes_.begin(), shapes_.end(), has_static) &&
+  const auto has_caught = [](const ContactCloth& cloth) { return !cloth.state->caught.empty(); };
+  return has_grids_ && std::none_of(cloths_.begin(), cloths_.end(), has_caught) &&
+         std::none_of(shapes_.begin(), shapes_.end(), has_static) &&
          std::none_of(step_.rules.begin(), step_.rules.end(), sets_static);
 }
 

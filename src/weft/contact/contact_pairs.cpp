@@ -114,7 +114,8 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
     if (there.region == TriangleRegion::face) {
       c.weight = {-there.weights[0], -there.weights[1], -there.weights[2], 1};
       c.normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
-      return finish_crossing(pair, c);
+      const bool leaves = is_on_closed_body(i) && c.normal.dot(c.sum(motion_.end) - c.sum(x)) > 0;
+      return !leaves && finish_crossing(pair, c);
     }
   }
   if (d.region != TriangleRegion::face) return false;
@@ -129,8 +130,26 @@ bool ContactSystem::make_vertex_triangle(const FeaturePair& pair, Constraint& c)
   } else {
     if (distance < kTouching) return false;
     c.normal = c.sum(x) / distance;
+    if (is_on_closed_body(pair.a) && is_behind(std::span(&pair.a, 1), -c.normal)) turn_outwards(distance, c);
   }
   return finish_pair(distance, gap, c);
+}
+
+/// Whether a direction from a corner or an edge of a mesh points behind all faces there.
+bool ContactSystem::is_behind(std::span<const int> vertices, const Vec3& direction) const {
+  const std::vector<Vec3>& x = motion_.start;
+  bool is = true;
+  surface().for_triangles_with(vertices, [&](int t) {
+    const auto [i, j, k] = surface().triangles[t];
+    is = is && (x[j] - x[i]).cross(x[k] - x[i]).dot(direction) < 0;
+  });
+  return is;
+}
+
+/// Cloth that a corner or an edge of a closed mesh has pierced leaves it outwards.
+void ContactSystem::turn_outwards(double& distance, Constraint& c) {
+  c.normal = -c.normal;
+  distance = -distance;
 }
 
 bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const {
@@ -146,7 +165,8 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
     return u.cross(v).squaredNorm() < kParallelSq * u.squaredNorm() * v.squaredNorm();
   };
   const EdgeEdgeDistance d = edge_edge_distance(x[i], x[j], x[k], x[l]);
-  const double distance = d.distance(), gap = gap_of(pair, c), travel = relative_travel(c);
+  double distance = d.distance();
+  const double gap = gap_of(pair, c), travel = relative_travel(c);
   if (distance > gap + travel) return false;
   if (const auto time = find_meeting_time(c, distance, travel)) {
     const std::array<Vec3, 4> p = places_at(c, *time);
@@ -154,7 +174,7 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
     if (is_inside(there) && there.distance() < kMeeting && !are_parallel(p[1] - p[0], p[3] - p[2])) {
       c.weight = {1 - there.s, there.s, -(1 - there.t), -there.t};
       c.normal = (p[1] - p[0]).cross(p[3] - p[2]).stableNormalized();
-      return finish_crossing(pair, c);
+      return !starts_behind(c) && finish_crossing(pair, c);
     }
   }
   if (!is_inside(d) || are_parallel(x[j] - x[i], x[l] - x[k])) return false;
@@ -164,7 +184,17 @@ bool ContactSystem::make_edge_edge(const FeaturePair& pair, Constraint& c) const
   if (distance > near && edge_edge_distance(y[i], y[j], y[k], y[l]).distance() > near) return false;
   c.weight = {1 - d.s, d.s, -(1 - d.t), -d.t};
   c.normal = c.sum(x) / distance;
+  if (starts_behind(c)) turn_outwards(distance, c);
   return finish_pair(distance, gap, c);
+}
+
+/// Whether an edge of cloth starts behind both faces at the edge of a closed mesh.
+bool ContactSystem::starts_behind(const Constraint& c) const {
+  if (!is_on_body(c)) return false;
+  const bool is_first = c.vertex[0] >= first_vertex_.back();
+  const std::span edge = std::span(c.vertex).subspan(is_first ? 0 : 2, 2);
+  const Vec3 between = c.sum(motion_.start);
+  return is_on_closed_body(edge[0]) && is_behind(edge, is_first ? Vec3(-between) : between);
 }
 
 /// Time of coplanarity, if the four vertices can meet by then: from `distance`, with motion up to `travel`.
@@ -225,7 +255,7 @@ double ContactSystem::relative_travel(const Constraint& c) const {
 bool ContactSystem::finish_pair(double distance, double gap, Constraint& c) const {
   const int first = c.vertex[0], last = c.vertex[3];
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
-  if (c.inverse_mass == 0) return false;
+  if (c.inverse_mass == 0 || is_between(c)) return false;
   const bool is_body = is_on_body(c);
   const double recovery = is_predicted_ ? std::min(kMaxRecovery, kRecoveryRate * step_.step) : kMaxRecovery;
   c.target = distance < gap && !is_body ? distance + recovery * (gap - distance) : gap;

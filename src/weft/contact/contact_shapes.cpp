@@ -41,6 +41,7 @@ bool ContactSystem::has_plain_shapes() const {
 void ContactSystem::generate_shape_constraints(double share_of_travel, double stretch) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   is_near_shape_ = false;
+  add_caught_constraints();
   if (!has_plain_shapes()) return;
   longest_edge_ = proximity_.longest_edge() + stretch;
   constexpr double kRoom = 1e-4;  // more than the CCD fail-safe needs [m]
@@ -134,7 +135,7 @@ void ContactSystem::add_shape_constraint(int cloth, int shape, int num_vertices,
   c.shape = shape;
   update_plane(nearest, c);
   set_friction(settings, c);
-  if (c.inverse_mass > 0) constraints_.push_back(c);
+  if (c.inverse_mass > 0 && !is_between(c)) constraints_.push_back(c);
 }
 
 ContactSystem::Nearest ContactSystem::nearest_of(const SignedDistance& d, const Vec3& p,

@@ -106,6 +106,7 @@ void ContactSystem::place() {
   place_bodies();
   set_pair_settings();
   store_velocities();
+  update_caught();
 }
 
 /// Default friction: for two cloths the geometric mean of both, for a cloth and a collider the collider's.
@@ -205,7 +206,8 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   closed_meshes_.clear();
   Surface surface;
   std::vector<Vec3> rest;
-  std::vector<int> body_of_triangle;  // (triangles)
+  std::vector<int> body_of_triangle;    // (triangles)
+  std::vector<int> collider_of_vertex;  // (vertices of meshes)
   std::vector<Grid> grids;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Proximity::Slack slack{kInfinity, kInfinity, 0};
@@ -229,7 +231,9 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
     if (!shape) continue;
     numbered_meshes_.push_back(shape->mesh);
     bodies_.push_back({c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(),
+                       static_cast<int>(surface.triangles.size()),
                        is_closed(count_surface_edges(*shape->mesh))});
+    collider_of_vertex.resize(collider_of_vertex.size() + shape->mesh->num_vertices(), c);
     Body& body = bodies_.back();
     body.min = body.max = shape->mesh->positions[0];
     for (const Vec3& p : shape->mesh->positions) {
@@ -246,10 +250,16 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   }
   surface.build_one_rings();
   const Patches patches = build_patches(surface, rest);
-  longest_rest_edge_ = 0;
+  longest_rest_edge_ = mean_rest_edge_ = 0;
+  int num_edges = 0;
   for (const auto& [i, j] : surface.edges) {
-    if (i < num_cloth_vertices) longest_rest_edge_ = std::max(longest_rest_edge_, (rest[j] - rest[i]).norm());
+    if (i >= num_cloth_vertices) break;
+    const double length = (rest[j] - rest[i]).norm();
+    longest_rest_edge_ = std::max(longest_rest_edge_, length);
+    mean_rest_edge_ += length;
+    ++num_edges;
   }
+  mean_rest_edge_ /= std::max(num_edges, 1);
   const int n = surface.num_vertices;
   motion_.start.assign(n, Vec3::Zero());
   motion_.end.assign(n, Vec3::Zero());
@@ -263,6 +273,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
                    slack);
   proximity_.set_bodies(std::move(body_of_triangle));
+  caught_.reset(num_cloth_vertices, std::move(collider_of_vertex));
   has_grids_ = grids.size() == cloths_.size();
   cloth_clearance_.reset(grids);
   starts_.resize(cloths_.size());
@@ -344,6 +355,7 @@ void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Ve
   std::swap(motion_.end, ballistic_);
   generate_pair_constraints(jobs);
   if (constraints_.empty()) return;
+  find_caught();
   // Cloth that is stopped far from its predicted end is hit by the cloth behind it: search pairs at the more
   // likely positions.
   arrived_ = motion_.end;
@@ -437,6 +449,7 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
 /// Penetration of a collider, 0 for cloth. For a primitive shape relative to its start pose, because the
 /// constraint's plane moves in a straight line.
 double ContactSystem::depth_at_start(const Constraint& c) const {
+  if (c.is_caught) return 0;
   if (c.shape < 0) return is_on_body(c) ? c.target - c.normal.dot(c.sum(motion_.start)) : 0;
   return clearance_of(c) - find_nearest(shapes_[c.shape].before, c, motion_.start).distance;
 }
@@ -508,11 +521,12 @@ void ContactSystem::find_violations(JobSystem& jobs) {
   update_lists(jobs);
   if (proximity_.diverged_vertex() >= 0) return;
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
-  is_clear_ = lists_are_empty && !has_plain_shapes();
+  is_clear_ = lists_are_empty && !has_plain_shapes() && caught_.empty();
   if (is_clear_ || matches_prediction()) return;
   generate_pair_constraints(jobs);
   generate_shape_constraints(0.0);
-  is_clear_ = lists_are_empty && !is_near_shape_;
+  if (!is_predicted_) find_caught();
+  is_clear_ = lists_are_empty && !is_near_shape_ && caught_.empty();
   leave_out_solved();
 }
 
@@ -571,6 +585,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
 }
 
 CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
+  store_caught();
   if (is_clear_) return {};
   origins_.clear();
   read_ends();
@@ -580,7 +595,7 @@ CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
   find_separations();
   const CcdFailSafeReport report =
       ccd_fail_safe_.resolve({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &closed_meshes_,
-                              &non_colliding_, &clearance_, thickest_, separations_, step_.clock},
+                              &non_colliding_, &clearance_, &caught_, thickest_, separations_, step_.clock},
                              proximity_, motion_, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : ccd_fail_safe_.pushes())

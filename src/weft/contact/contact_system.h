@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "weft/contact/caught_particles.h"
 #include "weft/contact/ccd_fail_safe.h"
 #include "weft/contact/cloth_clearance.h"
 #include "weft/contact/collider.h"
@@ -97,6 +98,9 @@ class ContactSystem {
   /// CCD fail-safe: stops all penetrations since begin_step. Call it last.
   CcdFailSafeReport run_ccd_fail_safe(JobSystem& jobs);
 
+  /// Particles that are caught between colliders since this step, with each of the colliders that hold them.
+  std::span<const Infeasible> newly_caught() const { return newly_caught_; }
+
   /// All contacts since begin_step, if the step is tracked, each feature pair once: the mean force over the
   /// step from the solve, project_contacts and the impulses of run_ccd_fail_safe. The effect of rigid impact
   /// zones is not included.
@@ -126,6 +130,7 @@ class ContactSystem {
     int collider = 0;      // number
     int first_vertex = 0;  // under the common numbering
     int end_vertex = 0;
+    int first_triangle = 0;  // likewise
     bool is_closed = false;
     Vec3 min = Vec3::Zero(), max = Vec3::Zero();  // of its vertices, in its own coordinates [m]
 
@@ -163,6 +168,58 @@ class ContactSystem {
   void add_contact_force(const Constraint& c, const Vec3& force);
   ContactPoint describe(const ContactForce& contact) const;
 
+  /// A point on a triangle.
+  struct SurfacePoint {
+    int triangle;
+    Vec3 weights, point;
+    double distance_sq;  // from where it is sought [m²]
+  };
+
+  /// Two surfaces around a point at the end of the step.
+  struct Between {
+    std::array<double, 2> before;  // signed distances of the point from them at the start of the step [m]
+    std::array<Vec3, 2> ways;      // how far they move in the step [m]
+    Vec3 p;                        // the point
+    SignedDistance first, second;  // of the point from them
+
+    /// How much nearer than to fit the surfaces are to the middle [m].
+    double missing(double half_thickness) const {
+      return half_thickness - 0.5 * (first.distance + second.distance);
+    }
+  };
+
+  /// A feature of cloth that touches a collider.
+  struct Touch {
+    HoldingSide side;
+    Vec3 normal, point;  // towards the cloth; at the start [m]
+    std::array<int, 3> vertices = {};
+    int num_vertices = 0;
+  };
+
+  SurfacePoint point_on(int triangle, const Vec3& p, const std::vector<Vec3>& x) const;
+  SurfacePoint walk(HoldingSide& side, const Vec3& p, const std::vector<Vec3>& x) const;
+  const Body& body_with(int collider) const;
+  SignedDistance distance_at_start(HoldingSide& side, const Vec3& p, Vec3& way) const;
+  SignedDistance distance_from(HoldingSide& side, const Vec3& p) const;
+  SignedDistance signed_distance_to(const SurfacePoint& foot, const HoldingSide& side, const Vec3& p,
+                                    const std::vector<Vec3>& x) const;
+  Between look_between(std::array<HoldingSide, 2>& sides, const Vec3& start) const;
+  bool is_caught(const Between& between, double half_thickness, bool is_pulled) const;
+  bool has_long_edge(int vertex, double stretch, bool only_caught) const;
+  bool has_long_edge(const Touch& touch, double stretch, bool only_caught) const;
+  bool can_hold(const HoldingSide& first, const HoldingSide& second) const;
+  bool place_caught(Caught& caught) const;
+  bool is_beside(const HoldingSide& side, const Vec3& p, double room) const;
+  bool are_present(const std::array<HoldingSide, 2>& sides) const;
+  std::optional<Touch> touch_of(const Constraint& c) const;
+  void update_caught();
+  void find_caught();
+  bool find_face(const Vec3& direction, const Touch& touch, HoldingSide& side) const;
+  void catch_between(const Touch& first, const Touch& second);
+  bool is_between(const Constraint& c) const;
+  void add_caught_constraints();
+  void store_caught();
+
   using FeatureKey = std::array<int, 5>;  // shape and vertices, -1 beyond the last
   static FeatureKey key_of(const Constraint& c);
   double depth_at_end(const Constraint& c) const;
@@ -193,6 +250,9 @@ class ContactSystem {
   bool make_vertex_triangle(const FeaturePair& pair, Constraint& c) const;
   bool make_vertex_corner(int first, Constraint& c) const;
   bool make_edge_edge(const FeaturePair& pair, Constraint& c) const;
+  bool is_behind(std::span<const int> vertices, const Vec3& direction) const;
+  bool starts_behind(const Constraint& c) const;
+  static void turn_outwards(double& distance, Constraint& c);
   std::optional<double> find_meeting_time(const Constraint& c, double distance, double travel) const;
   static std::array<Vec3, 4> places(const Constraint& c, const std::vector<Vec3>& x);
   std::array<Vec3, 4> places_at(const Constraint& c, double time) const;
@@ -247,6 +307,7 @@ class ContactSystem {
   std::vector<ClosedMesh> closed_meshes_;
   std::vector<char> non_colliding_;  // (bodies, bodies) 1: do not collide; empty: all collide
   double longest_rest_edge_ = 0;     // of cloth [m]
+  double mean_rest_edge_ = 0;        // likewise
   bool has_grids_ = false;           // every cloth is a grid
   Proximity proximity_;
   ClothClearance cloth_clearance_;
@@ -279,6 +340,8 @@ class ContactSystem {
   std::vector<char> is_solved_;               // (cloths) the solve separated it from all its known contacts
   std::vector<Constraint> solved_for_;        // of the contacts that find_contacts returned
   std::vector<ContactForce> contact_forces_;  // contact forces of this step
+  CaughtParticles caught_;
+  std::vector<Infeasible> newly_caught_;
 
   // Work space.
   std::vector<Vec3Array> ends_;       // (cloths) predicted offsets
@@ -287,6 +350,8 @@ class ContactSystem {
   std::vector<ItemPair> uncertain_;   // patch pairs that may meet
   std::vector<std::vector<Constraint>> chunks_;
   std::vector<FeatureKey> known_;  // of solved_for_, sorted
+  std::vector<Touch> touches_;
+  std::vector<std::pair<int, int>> touched_;  // vertices, and indices into touches_
   std::vector<const TriangleMesh*> meshes_now_;
   std::vector<char> is_touched_;
   std::vector<int> near_;  // indices into constraints_, for project_positions

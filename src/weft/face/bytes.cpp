@@ -172,9 +172,17 @@ void describe(Archive& archive, Vec3Array& values) {
   }
 }
 template <class Archive>
+void describe(Archive& archive, HoldingSide& side) {
+  members(archive, side.collider, side.face, side.is_back);
+}
+template <class Archive>
+void describe(Archive& archive, CaughtParticle& p) {
+  members(archive, p.particle, p.sides[0], p.sides[1]);
+}
+template <class Archive>
 void describe(Archive& archive, ClothState& s) {
   members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
-          s.history.velocity, s.precise.x, s.precise.v, s.precise.displacement, s.precise.velocity);
+          s.history.velocity, s.precise.x, s.precise.v, s.precise.displacement, s.precise.velocity, s.caught);
 }
 template <class Archive>
 void describe(Archive& archive, RigidMotion::Passage& p) {
@@ -244,7 +252,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 3;         // of the format
+constexpr std::uint32_t kVersion = 4;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -316,6 +324,12 @@ void check(const engine::ClothState& state, std::size_t count) {
   for (const auto* values :
        {&state.precise.x, &state.precise.v, &state.precise.displacement, &state.precise.velocity})
     check(*values, values->empty() ? 0 : count);
+  for (std::size_t n = 0; n < state.caught.size(); ++n) {
+    const engine::CaughtParticle& p = state.caught[n];
+    require(p.particle >= 0 && std::cmp_less(p.particle, count));
+    require(n == 0 || state.caught[n - 1].particle < p.particle);
+    for (const engine::HoldingSide& side : p.sides) require(side.collider >= 0 && side.face >= -1);
+  }
 }
 
 void check(const engine::PointGuide& guide, std::size_t count) {

@@ -77,6 +77,13 @@ void add_to_hash(const ClothState& state, Hash& hash) {
       for (const double component : value) hash.add(component);
     }
   }
+  for (const CaughtParticle& p : state.caught) {
+    hash.add(static_cast<double>(p.particle));
+    for (const HoldingSide& side : p.sides) {
+      for (const int number : {side.collider, side.face, side.is_back ? 1 : 0})
+        hash.add(static_cast<double>(number));
+    }
+  }
   const MotionHistory& history = state.history;
   if (history.step == 0) return;
   hash.add(history.step);

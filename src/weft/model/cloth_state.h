@@ -1,6 +1,9 @@
 #pragma once
 /// Variables of one cloth: positions and velocities. Constants are in ClothModel.
 
+#include <array>
+#include <vector>
+
 #include "weft/core/hash.h"
 #include "weft/core/vec3_array.h"
 #include "weft/model/cloth_model.h"
@@ -23,6 +26,23 @@ struct PreciseState {
   std::vector<Vec3> x, v, displacement, velocity;
 };
 
+/// A surface that holds a caught particle.
+struct HoldingSide {
+  int collider = 0;      // number
+  int face = -1;         // a triangle of its mesh; of a box 0 to 5: +x, −x, +y, …; -1 of other shapes
+  bool is_back = false;  // the particle came from behind the triangle, of an open mesh
+
+  bool operator==(const HoldingSide&) const = default;
+};
+
+/// A particle caught between two surfaces of colliders that overlap, or leave less room than it is thick.
+struct CaughtParticle {
+  int particle = 0;
+  std::array<HoldingSide, 2> sides;
+
+  bool operator==(const CaughtParticle&) const = default;
+};
+
 /// Positions are float offsets from a double origin, so that cloth far from the world's origin keeps its
 /// precision.
 struct ClothState {
@@ -31,6 +51,7 @@ struct ClothState {
   Vec3Array v;                 // velocity (num_particles) [m/s]
   MotionHistory history;       // reset (step = 0) when positions or velocities are set from outside
   PreciseState precise;
+  std::vector<CaughtParticle> caught;  // in ascending order of particles
 
   Vec3 position(std::size_t i) const { return origin + x.get(i); }
   void set_position(std::size_t i, const Vec3& position) { x.set(i, position - origin); }

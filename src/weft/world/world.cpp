@@ -183,7 +183,10 @@ void World::remove(ColliderId id) {
   const int index = static_cast<int>(index_of(id));
   std::erase_if(rules_, [&](const ContactRule& r) { return r.collider == index; });
   for (ContactRule& r : rules_) r.collider -= r.collider > index;
-  for (Cloth& cloth : cloths_) release_followers(index, cloth);
+  for (Cloth& cloth : cloths_) {
+    release_followers(index, cloth);
+    cloth.state.caught.clear();
+  }
   colliders_.erase(colliders_.begin() + index);
   guides_.erase(guides_.begin() + index);
   contact_system_ = {};
@@ -833,6 +836,13 @@ int World::num_parts_at_most(double dt) const {
 StepCheck World::try_part(const Snapshot& before, double time, double dt, StepReport& report) {
   is_diverged_.assign(cloths_.size(), 0);
   advance(time, dt, report);
+  const StepCheck check = check_part(before, dt, report);
+  for (const Infeasible& pair : contact_ ? contact_system_.newly_caught() : std::span<const Infeasible>())
+    add_once(describe(pair), report.infeasible);
+  return check;
+}
+
+StepCheck World::check_part(const Snapshot& before, double dt, StepReport& report) {
   for (int c = 0; c < num_cloths(); ++c) {
     const int broken = find_non_finite(cloths_[c].state);
     if (broken >= 0) return {StepFault::non_finite, kForever, 0, c, broken};

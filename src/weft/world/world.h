@@ -297,6 +297,7 @@ class World {
   bool divides() const;
   int num_parts_at_most(double dt) const;
   void advance(double time, double dt, StepReport& report);
+  StepCheck check_part(const Snapshot& before, double dt, StepReport& report);
   StepCheck try_part(const Snapshot& before, double time, double dt, StepReport& report);
   void accept(const StepReport& part, StepReport& report);
   void restore_states(const std::vector<ClothState>& states);
