@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cstdio>
 
 #include "lab/benchmarks/random_contact_scene.h"
 #include "weft/core/make_folder.h"
@@ -66,8 +66,8 @@ bool bench_random_contact(const RandomContactOptions& options) {
     add_scene(static_cast<std::uint64_t>(options.first_seed + s), folder, options, summary);
   fmt::print(
       "\n{} scenes of {} frames, {:.0f} s of CPU time: {} refused; {} with intersections, passages or "
-      "penetrations "
-      "and without infeasible pairs; {} with infeasible pairs; {} with problems reported. Scenes in {}\n",
+      "penetrations and without infeasible pairs; {} with infeasible pairs; {} with problems reported. "
+      "Scenes in {}\n",
       options.scenes, options.frames, summary.cpu_seconds, summary.refused, summary.wrong, summary.infeasible,
       summary.with_problems, folder.string());
   return summary.refused == 0 && summary.wrong == 0;

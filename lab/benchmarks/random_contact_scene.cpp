@@ -105,17 +105,17 @@ class Writer {
                            kFabrics[count(0, std::size(kFabrics) - 1)], thickness);
       return;
     }
-    const double stiffness = between_logs(50, 2e4);
+    const double stiffness = between_logs(50, 2e4), density = between_logs(0.05, 0.5),
+                 softer = between_logs(50, 2000), friction = between(0, 1);
     text_ += fmt::format(
         "fabric = {{ density = {:.4g}, spring_structural = {:.4g}, spring_shear = {:.4g}, spring_bend = "
         "{:.4g}, "
         "thickness = {:.4g}, friction = {:.3g} }}\n",
-        between_logs(0.05, 0.5), stiffness, stiffness / 2, stiffness / between_logs(50, 2000), thickness,
-        between(0, 1));
+        density, stiffness, stiffness / 2, stiffness / softer, thickness, friction);
   }
 
   void add_pins(const std::array<int, 2>& cells) {
-    std::string pin = fmt::format("select = \"corner:{},{}\"", chance(0.5) ? 0 : 1, 0);
+    std::string pin = fmt::format("select = \"corner:{},0\"", chance(0.5) ? 0 : 1);
     if (chance(0.5)) pin = fmt::format("select = {{ index = [0, {}] }}", cells[0]);
     text_ += fmt::format("\n[[cloth.pin]]\n{}\n", pin);
     if (chance(0.5)) text_ += "motion = " + motion(0.4, 0) + "\n";
@@ -124,22 +124,24 @@ class Writer {
   /// Key frames over a second: displacements [m], angles [degrees].
   std::string motion(double way, double angle) {
     std::string keys = "[{ time = 0 }";
-    for (const double time : {between(0.1, 0.5), between(0.6, 1.0)})
-      keys += fmt::format(", {{ time = {:.4g}, position = {}, rotation = {} }}", time,
-                          text_of(within({way, way, way})), text_of(within({angle, angle, angle})));
+    for (const double time : {between(0.1, 0.5), between(0.6, 1.0)}) {
+      const Vec3 place = within({way, way, way}), turn = within({angle, angle, angle});
+      keys += fmt::format(", {{ time = {:.4g}, position = {}, rotation = {} }}", time, text_of(place),
+                          text_of(turn));
+    }
     return keys + "]";
   }
 
   void add_floor() {
-    text_ += fmt::format(
-        "\n[[collider]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0, 0, 0]\nnormal = {}\nfriction = "
-        "{:.3g}\n",
-        chance(0.5) ? "[0, 1, 0]" : "[0.2, 1, 0.1]", between(0, 1));
+    const char* normal = chance(0.5) ? "[0, 1, 0]" : "[0.2, 1, 0.1]";
+    text_ += fmt::format("\n[[collider]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0, 0, 0]\n");
+    text_ += fmt::format("normal = {}\nfriction = {:.3g}\n", normal, between(0, 1));
   }
 
   void add_body(int number) {
     const double reach = between(0.05, 0.3);  // no point is farther from the centre [m]
-    const Vec3 centre = within({0.4, 0, 0.4}) + Vec3(0, kBodiesBelow - reach - between(0, 0.3), 0);
+    Vec3 centre = within({0.4, 0, 0.4});
+    centre.y() = kBodiesBelow - reach - between(0, 0.3);
     const Vec3 angles = within({180, 180, 180});
     text_ += fmt::format("\n[[collider]]\nname = \"body {}\"\nfriction = {:.3g}\n", number, between(0, 1));
     switch (count(0, 4)) {
@@ -154,7 +156,7 @@ class Writer {
         break;
       }
       case 2: {
-        const Vec3 half = reach * Vec3(between(0.05, 0.55), between(0.05, 0.55), between(0.05, 0.55));
+        const Vec3 half = reach * (Vec3::Constant(0.3) + within({0.25, 0.25, 0.25}));
         text_ += fmt::format("shape = \"box\"\ncenter = {}\nhalf_size = {}\nrotation = {}\n", text_of(centre),
                              text_of(half), text_of(angles));
         break;
@@ -173,7 +175,8 @@ class Writer {
                              text_of(centre));
       }
     }
-    if (chance(0.7)) text_ += "motion = " + motion(chance(0.3) ? 1.5 : 0.4, chance(0.5) ? 180 : 0) + "\n";
+    const double way = chance(0.3) ? 1.5 : 0.4, angle = chance(0.5) ? 180 : 0;
+    if (chance(0.7)) text_ += "motion = " + motion(way, angle) + "\n";
   }
 
   /// With spikes and dents, which move with the phase.

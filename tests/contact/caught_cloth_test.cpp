@@ -8,7 +8,6 @@
 #include "tests/support.h"
 #include "weft/animation/mesh_sequence.h"
 #include "weft/mesh/sample_meshes.h"
-#include "weft/mesh/solid.h"
 #include "weft/run/frame_checks.h"
 #include "weft/world/measures.h"
 
@@ -174,6 +173,20 @@ TEST(CaughtCloth, ContinuesFromASnapshotForAnyNumberOfThreads) {
   EXPECT_EQ(hash[0], hash[1]);
 }
 
+TEST(CaughtCloth, IsForgottenByASnapshotFromBefore) {
+  World world;
+  add_jaws("sphere", 0, world);
+  const ClothId sheet = hang(world);
+  const World::Snapshot start = world.snapshot();
+  world.step(kFrame);
+  const std::uint64_t hash = world.state_hash();
+  for (int frame = 1; frame < 25; ++frame) world.step(kFrame);
+  ASSERT_FALSE(world.state(sheet).caught.empty());
+  world.restore(start);
+  world.step(kFrame);
+  EXPECT_EQ(world.state_hash(), hash);
+}
+
 TEST(CaughtCloth, IsForgottenWithTheColliderThatHeldIt) {
   World world;
   add_jaws("sphere", 0, world);
@@ -183,6 +196,36 @@ TEST(CaughtCloth, IsForgottenWithTheColliderThatHeldIt) {
   world.remove(world.collider(0));
   EXPECT_TRUE(world.state(sheet).caught.empty());
   EXPECT_TRUE(world.step(kFrame).ok);
+}
+
+TEST(CaughtCloth, IsNotClothThatWallsPushTogetherOnAFloor) {
+  // The walls stand on the floor, or reach into it: between the two is no room, but cloth is beside the walls.
+  for (const double below : {0.0, 0.05}) {
+    for (const bool is_mesh : {false, true}) {
+      SCOPED_TRACE(is_mesh ? "meshes" : "boxes");
+      World world;
+      world.add_collider({"floor", OrientedBox{{0, -0.1, 0}, {0.6, 0.1, 0.6}}, 0.3, {}});
+      for (const double side : {1.0, -1.0}) {
+        const Vec3 center(side * 0.28, 0.1 - below, 0), half_size(0.02, 0.1, 0.4);
+        ColliderShape wall = OrientedBox{center, half_size};
+        if (is_mesh) wall = MeshShape{.mesh = shared(make_box_mesh(center, half_size, Mat3::Identity()))};
+        world.add_collider(
+            {"", wall, 0.3, RigidMotion({{.time = 0}, {.time = 1, .translation = {-side * 0.15, 0, 0}}})});
+      }
+      const auto topology = build_grid_topology(test::square(25, 0.5), SpringModel::alternating);
+      std::vector<Vec3> positions;
+      for (const Vec3& p : topology->mesh.positions)
+        positions.emplace_back(p.x() - 0.25, 0.002, p.z() - 0.25);
+      world.add_cloth({.name = "sheet",
+                       .topology = topology,
+                       .material = {.structural = 2000, .shear = 1000, .bend = 2, .damping = 0.05},
+                       .positions = positions});
+      for (int frame = 1; frame <= 60; ++frame) {
+        ASSERT_TRUE(world.step(kFrame).infeasible.empty()) << frame;
+        ASSERT_EQ(verify::check_frame(WorldFrames(world).now().frame, 1).penetration(), 0) << frame;
+      }
+    }
+  }
 }
 
 TEST(CaughtCloth, PressedClothIsNotCaught) {

@@ -1,9 +1,9 @@
 #pragma once
-/// Cloth caught between colliders: in an armpit, under a hand on a hip, in a gripper.
+/// Cloth caught between colliders: in a gripper, under a hand on a table, in an armpit.
 ///
 ///        first ↓            Where two surfaces of colliders leave a particle less room than it is thick, no
 ///     ╲───────────╱         position satisfies both contacts: each would push cloth through the other, and
-///      ╲─ middle ─╱         stretch it without end. Both are replaced by one, with the surface halfway
+///      ╲─ middle ─╱         stretch it without end. Both are replaced by planes around the surface halfway
 ///     ╱───────────╲         between them. The cloth around is not pulled; when the colliders part, the
 ///        second ↑           particle is between them.
 

@@ -29,8 +29,8 @@ namespace weft::engine {
 
 /// Infeasible kinematic motions: a pair of features that they have pushed through each other.
 struct Infeasible {
-  int vertex = 0, other = 0;  // one of each feature, under the common numbering; `other` -1: primitive shape
-  int shape = -1;             // index of the primitive shape
+  int vertex = 0, other = 0;  // one of each feature, under the common numbering; `other` -1: see `shape`
+  int shape = -1;             // number of the primitive shape, or of the collider that catches the vertex
 };
 
 /// Work done by the CCD fail-safe.

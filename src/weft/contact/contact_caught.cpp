@@ -128,36 +128,48 @@ SignedDistance ContactSystem::distance_at_start(HoldingSide& side, const Vec3& p
 }
 
 /// From the surface at the end of the step to p.
-SignedDistance ContactSystem::distance_from(HoldingSide& side, const Vec3& p) const {
+SignedDistance ContactSystem::distance_at_end(HoldingSide& side, const Vec3& p) const {
   const MovingShape& shape = shapes_[side.collider];
   if (!shape.is_mesh()) return distance_from_shape(shape.after, side.face, p);
   return signed_distance_to(walk(side, p, motion_.end), side, p, motion_.end);
 }
 
-/// Two surfaces at the end of the step, from where a point is carried by their mean motion; `start`: where it
-/// is at the start.
 ContactSystem::Between ContactSystem::look_between(std::array<HoldingSide, 2>& sides,
                                                    const Vec3& start) const {
-  Between b;
-  for (int s = 0; s < 2; ++s) b.before[s] = distance_at_start(sides[s], start, b.ways[s]).distance;
-  b.p = start + 0.5 * (b.ways[0] + b.ways[1]);
-  b.first = distance_from(sides[0], b.p);
-  b.second = distance_from(sides[1], b.p);
+  Between b{.start = start};
+  for (int s = 0; s < 2; ++s) b.before[s] = distance_at_start(sides[s], start, b.ways[s]);
+  b.end = start + 0.5 * (b.ways[0] + b.ways[1]);
+  for (int s = 0; s < 2; ++s) b.after[s] = distance_at_end(sides[s], b.end);
   return b;
 }
 
-/// Whether the surfaces leave cloth no room that it could reach. Cloth that caught cloth pulls need not reach any:
-/// pushed out of the wedge between the surfaces step by step, it would be torn off.
-bool ContactSystem::is_caught(const Between& b, double half_thickness, bool is_pulled) const {
-  const double facing = b.first.normal.dot(b.second.normal), missing = b.missing(half_thickness);
+/// Between the normals of the surfaces at the start; beside a box's face that of the box there.
+double ContactSystem::cosine_at_start(const Between& b, const std::array<HoldingSide, 2>& sides) const {
+  std::array<Vec3, 2> normals;
+  for (int s = 0; s < 2; ++s) {
+    const ColliderShape& shape = shapes_[sides[s].collider].before;
+    normals[s] = std::holds_alternative<OrientedBox>(shape) ? signed_distance(shape, b.start).normal
+                                                            : b.before[s].normal;
+  }
+  return normals[0].dot(normals[1]);
+}
+
+/// Whether the surfaces leave cloth no room that it could reach. It was between them at the start, not where they are
+/// now by moving along each other. Cloth that caught cloth pulls need not reach any: pushed out of the wedge
+/// between the surfaces step by step, it would be torn off.
+bool ContactSystem::is_caught(const Between& b, const std::array<HoldingSide, 2>& sides, int vertex,
+                              bool is_pulled) const {
+  const double half_thickness = motion_.half_thickness[vertex], missing = b.missing(half_thickness);
   // From deep behind a surface, cloth is on another side of the same solid.
-  if (std::min(b.before[0], b.before[1]) < -2 * half_thickness) return false;
+  if (std::min(b.before[0].distance, b.before[1].distance) < -2 * half_thickness) return false;
   if (missing < (is_pulled ? kPressedWherePulled : kPressed) * half_thickness) return false;
-  if (facing > (is_pulled ? kStillFacing : kFacing)) return false;
+  const double most = is_pulled ? kStillFacing : kFacing;
+  if (b.after[0].normal.dot(b.after[1].normal) > most || cosine_at_start(b, sides) > most) return false;
   // Along the bisector of the normals, the distance to the outside grows as the surfaces become parallel.
-  const double sine = 0.5 * (b.first.normal + b.second.normal).norm();
-  const double near = std::max(2 * half_thickness, kReach * mean_rest_edge_) +
-                      kShareOfTravel * (b.ways[0] - b.ways[1]).norm();
+  const double sine = 0.5 * (b.after[0].normal + b.after[1].normal).norm();
+  const double near =
+      std::max(2 * half_thickness, kReach * rest_edges_[mesh_of(first_vertex_, vertex)].mean) +
+      kShareOfTravel * (b.ways[0] - b.ways[1]).norm();
   return is_pulled || missing > sine * near;
 }
 
@@ -168,32 +180,32 @@ bool ContactSystem::is_caught(const Between& b, double half_thickness, bool is_p
 /// is left alone.
 bool ContactSystem::place_caught(Caught& caught) const {
   const double half_thickness = motion_.half_thickness[caught.vertex];
-  const double room = 2 * half_thickness + kFree * longest_rest_edge_;
+  const double room = 2 * half_thickness + kFree * rest_edges_[mesh_of(first_vertex_, caught.vertex)].longest;
   const Between b = look_between(caught.sides, motion_.start[caught.vertex]);
-  const bool are_facing = b.first.normal.dot(b.second.normal) <= kStillFacing;
+  const bool are_facing = b.after[0].normal.dot(b.after[1].normal) <= kStillFacing;
   const auto is_gone = [&](int s) {
-    return is_beside(caught.sides[s], b.p, room) || (!are_facing && b.before[s] > 0);
+    return is_beside(caught.sides[s], b.end, room) || (!are_facing && b.before[s].distance > 0);
   };
   const auto plane = [&](int s, const Vec3& normal, double distance) {
-    const SignedDistance& d = s == 0 ? b.first : b.second;
-    const double reachable = std::max(d.distance, b.before[s]) + kLeavingSpeed * step_.step;
+    const SignedDistance& d = b.after[s];
+    const double reachable = std::max(d.distance, b.before[s].distance) + kLeavingSpeed * step_.step;
     const double way = (std::min(distance, reachable) - d.distance) / normal.dot(d.normal);
-    return Caught::Plane{normal, normal.dot(b.p) + way, b.ways[s] / step_.step};
+    return Caught::Plane{normal, normal.dot(b.end) + way, b.ways[s] / step_.step};
   };
   caught.planes = {};
   const bool first_is_gone = is_gone(0), second_is_gone = is_gone(1);
   if (first_is_gone || second_is_gone) {
     const int s = first_is_gone ? 1 : 0;
-    if ((first_is_gone && second_is_gone) || b.before[s] > 0) return false;
-    caught.planes[s] = plane(s, s == 0 ? b.first.normal : b.second.normal, half_thickness);
+    if ((first_is_gone && second_is_gone) || b.before[s].distance > 0) return false;
+    caught.planes[s] = plane(s, b.after[s].normal, half_thickness);
     return true;
   }
   if (!are_facing) return true;
   const double missing = b.missing(half_thickness);
-  if (-missing > room && b.before[0] > 0 && b.before[1] > 0) return false;
+  if (-missing > room && b.before[0].distance > 0 && b.before[1].distance > 0) return false;
   const double play = std::min(missing, kMaxPlay * 2 * half_thickness);
   const double distance = half_thickness - (missing > 0 ? missing + play : 0);
-  const Vec3 axis = (b.first.normal - b.second.normal).normalized();
+  const Vec3 axis = (b.after[0].normal - b.after[1].normal).normalized();
   caught.planes = {plane(0, axis, distance), plane(1, -axis, distance)};
   return true;
 }
@@ -205,9 +217,8 @@ bool ContactSystem::is_beside(const HoldingSide& side, const Vec3& p, double roo
          signed_distance(*box, p).distance > room;
 }
 
-/// Those of the state that are still caught.
+/// Takes over from the states the particles that are still caught.
 void ContactSystem::update_caught() {
-  caught_.clear();
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     for (const CaughtParticle& p : cloths_[c].state->caught) {
       Caught caught{.vertex = first_vertex_[c] + p.particle, .sides = p.sides};
@@ -260,6 +271,7 @@ std::optional<ContactSystem::Touch> ContactSystem::touch_of(const Constraint& c)
 
 /// Finds cloth that is caught from this step on, where its constraints with colliders oppose each other.
 void ContactSystem::find_caught() {
+  if (bodies_.empty() && shapes_.size() < 2) return;  // one convex shape holds nothing
   touches_.clear();
   touched_.clear();
   for (const Constraint& c : constraints_) {
@@ -337,8 +349,8 @@ void ContactSystem::catch_between(const Touch& first, const Touch& second) {
     const bool is_pulled = !caught_.empty() && has_long_edge(*touch, kPulled, true);
     const bool is_one_body = first.side.collider == second.side.collider;
     if (is_one_body && !is_pulled && !has_long_edge(*touch, kTorn, false)) continue;
-    if (!is_caught(look_between(sides, touch->point), motion_.half_thickness[touch->vertices[0]], is_pulled))
-      continue;
+    const Between between = look_between(sides, touch->point);
+    if (!is_caught(between, sides, touch->vertices[0], is_pulled)) continue;
     for (int k = 0; k < touch->num_vertices; ++k) {
       Caught caught{.vertex = touch->vertices[k], .sides = sides};
       if (inverse_mass_[caught.vertex] > 0 && place_caught(caught)) caught_.add(caught);

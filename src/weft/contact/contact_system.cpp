@@ -63,6 +63,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   is_predicted_ = is_for_solve_ = false;
   pressed_in_ = 0;
   contact_forces_.clear();
+  caught_.clear();
   shapes_.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
@@ -250,16 +251,7 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   }
   surface.build_one_rings();
   const Patches patches = build_patches(surface, rest);
-  longest_rest_edge_ = mean_rest_edge_ = 0;
-  int num_edges = 0;
-  for (const auto& [i, j] : surface.edges) {
-    if (i >= num_cloth_vertices) break;
-    const double length = (rest[j] - rest[i]).norm();
-    longest_rest_edge_ = std::max(longest_rest_edge_, length);
-    mean_rest_edge_ += length;
-    ++num_edges;
-  }
-  mean_rest_edge_ /= std::max(num_edges, 1);
+  measure_edges(surface, rest);
   const int n = surface.num_vertices;
   motion_.start.assign(n, Vec3::Zero());
   motion_.end.assign(n, Vec3::Zero());
@@ -280,6 +272,25 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   ends_.resize(cloths_.size());
   motions_.resize(cloths_.size());
   is_clearance_known_ = false;
+}
+
+/// Mean and longest edges at rest, of each cloth and of all.
+void ContactSystem::measure_edges(const Surface& surface, const std::vector<Vec3>& rest) {
+  rest_edges_.assign(cloths_.size(), {});
+  std::vector<int> count(cloths_.size(), 0);
+  for (const auto& [i, j] : surface.edges) {
+    if (i >= first_vertex_.back()) break;
+    const int cloth = mesh_of(first_vertex_, i);
+    const double length = (rest[j] - rest[i]).norm();
+    rest_edges_[cloth].longest = std::max(rest_edges_[cloth].longest, length);
+    rest_edges_[cloth].mean += length;
+    ++count[cloth];
+  }
+  longest_rest_edge_ = 0;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    rest_edges_[c].mean /= std::max(count[c], 1);
+    longest_rest_edge_ = std::max(longest_rest_edge_, rest_edges_[c].longest);
+  }
 }
 
 Patches ContactSystem::build_patches(const Surface& surface, const std::vector<Vec3>& rest) const {

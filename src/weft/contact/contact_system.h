@@ -144,6 +144,11 @@ class ContactSystem {
     double reach;
   };
 
+  /// Lengths of a cloth's edges at rest.
+  struct RestEdges {
+    double mean = 0, longest = 0;  // [m]
+  };
+
   struct PairSettings {
     double friction = 0;         // [1]
     double static_friction = 0;  // of sticking contacts, if larger [1]
@@ -175,16 +180,15 @@ class ContactSystem {
     double distance_sq;  // from where it is sought [m²]
   };
 
-  /// Two surfaces around a point at the end of the step.
+  /// Two surfaces around a point, which they carry along with their mean motion.
   struct Between {
-    std::array<double, 2> before;  // signed distances of the point from them at the start of the step [m]
-    std::array<Vec3, 2> ways;      // how far they move in the step [m]
-    Vec3 p;                        // the point
-    SignedDistance first, second;  // of the point from them
+    Vec3 start, end;                              // the point [m]
+    std::array<Vec3, 2> ways;                     // how far the surfaces move in the step [m]
+    std::array<SignedDistance, 2> before, after;  // of the point from them, at the start and the end
 
-    /// How much nearer than to fit the surfaces are to the middle [m].
+    /// How much nearer than to fit the surfaces are to the middle at the end [m].
     double missing(double half_thickness) const {
-      return half_thickness - 0.5 * (first.distance + second.distance);
+      return half_thickness - 0.5 * (after[0].distance + after[1].distance);
     }
   };
 
@@ -200,11 +204,13 @@ class ContactSystem {
   SurfacePoint walk(HoldingSide& side, const Vec3& p, const std::vector<Vec3>& x) const;
   const Body& body_with(int collider) const;
   SignedDistance distance_at_start(HoldingSide& side, const Vec3& p, Vec3& way) const;
-  SignedDistance distance_from(HoldingSide& side, const Vec3& p) const;
+  SignedDistance distance_at_end(HoldingSide& side, const Vec3& p) const;
   SignedDistance signed_distance_to(const SurfacePoint& foot, const HoldingSide& side, const Vec3& p,
                                     const std::vector<Vec3>& x) const;
   Between look_between(std::array<HoldingSide, 2>& sides, const Vec3& start) const;
-  bool is_caught(const Between& between, double half_thickness, bool is_pulled) const;
+  double cosine_at_start(const Between& between, const std::array<HoldingSide, 2>& sides) const;
+  bool is_caught(const Between& between, const std::array<HoldingSide, 2>& sides, int vertex,
+                 bool is_pulled) const;
   bool has_long_edge(int vertex, double stretch, bool only_caught) const;
   bool has_long_edge(const Touch& touch, double stretch, bool only_caught) const;
   bool can_hold(const HoldingSide& first, const HoldingSide& second) const;
@@ -243,6 +249,7 @@ class ContactSystem {
   void renumber(const std::vector<Collider>& colliders);
   RepairInput make_repair_input() const;
   std::vector<Vec3> positions_now() const;
+  void measure_edges(const Surface& surface, const std::vector<Vec3>& rest);
   Patches build_patches(const Surface& surface, const std::vector<Vec3>& rest) const;
   void place_bodies();
   void expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets);
@@ -305,10 +312,10 @@ class ContactSystem {
   std::vector<int> first_vertex_;  // of each cloth, and the end of the last one
   std::vector<Body> bodies_;
   std::vector<ClosedMesh> closed_meshes_;
-  std::vector<char> non_colliding_;  // (bodies, bodies) 1: do not collide; empty: all collide
-  double longest_rest_edge_ = 0;     // of cloth [m]
-  double mean_rest_edge_ = 0;        // likewise
-  bool has_grids_ = false;           // every cloth is a grid
+  std::vector<char> non_colliding_;    // (bodies, bodies) 1: do not collide; empty: all collide
+  std::vector<RestEdges> rest_edges_;  // (cloths)
+  double longest_rest_edge_ = 0;       // of all cloths [m]
+  bool has_grids_ = false;             // every cloth is a grid
   Proximity proximity_;
   ClothClearance cloth_clearance_;
   ShapeClearance clearance_;

@@ -31,16 +31,12 @@ struct HoldingSide {
   int collider = 0;      // number
   int face = -1;         // a triangle of its mesh; of a box 0 to 5: +x, −x, +y, …; -1 of other shapes
   bool is_back = false;  // the particle came from behind the triangle, of an open mesh
-
-  bool operator==(const HoldingSide&) const = default;
 };
 
 /// A particle caught between two surfaces of colliders that overlap, or leave less room than it is thick.
 struct CaughtParticle {
   int particle = 0;
   std::array<HoldingSide, 2> sides;
-
-  bool operator==(const CaughtParticle&) const = default;
 };
 
 /// Positions are float offsets from a double origin, so that cloth far from the world's origin keeps its

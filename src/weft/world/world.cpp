@@ -837,11 +837,12 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
   is_diverged_.assign(cloths_.size(), 0);
   advance(time, dt, report);
   const StepCheck check = check_part(before, dt, report);
-  for (const Infeasible& pair : contact_ ? contact_system_.newly_caught() : std::span<const Infeasible>())
-    add_once(describe(pair), report.infeasible);
+  if (!contact_) return check;
+  for (const Infeasible& pair : contact_system_.newly_caught()) add_once(describe(pair), report.infeasible);
   return check;
 }
 
+/// Pairs that are infeasible so far request shorter parts; newly caught particles do not.
 StepCheck World::check_part(const Snapshot& before, double dt, StepReport& report) {
   for (int c = 0; c < num_cloths(); ++c) {
     const int broken = find_non_finite(cloths_[c].state);
