@@ -260,6 +260,26 @@ TEST(ContactSystem, StandsOneTriangleAndClothThatHasNone) {
   }
 }
 
+TEST(ContactSystem, StandsABodyThatPushesClothJustBesideAPin) {
+  // Between the pin and a distance of 0.3 mm: the rest of the triangle has almost no lever.
+  for (const char* integrator : {"newton", "paper", "xpbd"}) {
+    for (const double beside : {0.0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-6, 1e-5, 1e-4, 3e-4}) {
+      SCOPED_TRACE(testing::Message() << integrator << " " << beside);
+      World world;
+      world.set_integrator(settings(integrator));
+      const ClothId cloth = world.add_cloth(sheet(8, 0.2, {0.1, 0, 0.1}));
+      world.set_pins(cloth, {Pin{.particles = {0, 8, 72, 80}}});
+      world.add_collider({"ball", Sphere{{beside, -0.102, 2 * beside}, 0.1}, 0.5,
+                          RigidMotion({{.time = 0}, {.time = 0.1, .translation = {0, 0.004, 0}}})});
+      for (int step = 0; step < 60; ++step) {
+        ASSERT_TRUE(world.step(1.0 / 120).ok) << step;
+        const ClothState& state = world.state(cloth);
+        for (std::size_t i = 0; i < state.x.size(); ++i) ASSERT_LT(state.v.get(i).norm(), 5) << step;
+      }
+    }
+  }
+}
+
 TEST(ContactSystem, StandsHugeAndTinyColliders) {
   for (const char* integrator : {"explicit", "implicit_euler"}) {
     for (const double size : {1e6, 1e-4}) {

@@ -344,6 +344,15 @@ bool CcdFailSafe::test_triangle_shape(int s, const Triangle& t, Hit& hit) const 
   c.target = c.normal.dot(hit.foot_end) + target_for(limit, before.distance + lift) - lift;
   c.shape = s;
   c.inverse_mass = c.inverse_mass_of(*step_.inverse_mass);
+  for (int k = 0; k < 3; ++k) {
+    const bool is_pinned = (*step_.inverse_mass)[t[k]] == 0;
+    if (!is_pinned || signed_distance(shape.after, motion_->end[t[k]]).distance > limit.separation) continue;
+    // Its pin takes it there. The free corners have other triangles.
+    std::swap(c.vertex[0], c.vertex[k]);
+    std::swap(c.weight[0], c.weight[k]);
+    c.inverse_mass = 0;
+    break;
+  }
   return true;
 }
 

@@ -2,6 +2,7 @@
 /// Contact constraints of a step, and the projection of positions onto them.
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "weft/core/vec.h"
@@ -34,11 +35,17 @@ struct Constraint {
     return result;
   }
 
-  /// Σ w_i²/m_i over all its vertices [1/kg].
+  /// Σ w_i²/m_i over all its vertices [1/kg]. 0 where free vertices have almost no weight, beside a pin: to move the
+  /// contact they would have to move a hundred times as far.
   double inverse_mass_of(const std::vector<double>& inverse_masses) const {
+    constexpr double kLeastWeight = 1e-2;
     double result = 0;
-    for (int k = 0; k < num_vertices; ++k) result += weight[k] * weight[k] * inverse_masses[vertex[k]];
-    return result;
+    bool moves = false;
+    for (int k = 0; k < num_vertices; ++k) {
+      result += weight[k] * weight[k] * inverse_masses[vertex[k]];
+      moves |= inverse_masses[vertex[k]] > 0 && std::abs(weight[k]) > kLeastWeight;
+    }
+    return moves ? result : 0;
   }
 
   /// Applies the impulse p: each vertex receives its weighted share over its mass.

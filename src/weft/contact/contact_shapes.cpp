@@ -175,9 +175,22 @@ void ContactSystem::update_plane(const Nearest& at_end, Constraint& c) const {
   }
   c.normal = nearest.normal;
   c.weight = nearest.weight;
-  c.target = c.normal.dot(nearest.foot) + clearance_of(c);
+  c.target = c.normal.dot(nearest.foot) + clearance_of(c) - pinned_depth(c);
   c.surface_velocity = moving.velocity_at(nearest.foot, step_.step);
   c.inverse_mass = c.inverse_mass_of(inverse_mass_);
+}
+
+/// How much of an edge's or a triangle's depth in a primitive shape is that of pinned particles, which nothing can push
+/// out [m]. The free ones beside them would have to make up for it, many times as far.
+double ContactSystem::pinned_depth(const Constraint& c) const {
+  double depth = 0;
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    if (inverse_mass_[v] > 0) continue;
+    const double distance = signed_distance(shapes_[c.shape].after, motion_.end[v]).distance;
+    depth += c.weight[k] * std::max(0.0, clearance_of(c) - distance);
+  }
+  return depth;
 }
 
 /// Separating axes for the CCD fail-safe, from the triangles that project_contacts found.

@@ -645,7 +645,9 @@ void ContactSystem::settle_positions() {
     if (moved < kSettled) return;
     for (Constraint& c : constraints_) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
-      update_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), c);
+      Constraint updated = c;
+      update_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), updated);
+      if (updated.inverse_mass > 0) c = updated;  // 0: at a pin
       c.push = 0;
     }
   }

@@ -287,6 +287,7 @@ class ContactSystem {
   void generate_triangle_constraints(int shape, double share_of_travel);
   void add_shape_constraint(int cloth, int shape, int num_vertices, const Triangle& vertices,
                             const Nearest& nearest);
+  double pinned_depth(const Constraint& c) const;
   void update_plane(const Nearest& at_end, Constraint& c) const;
   double clearance_of(const Constraint& c) const;
   double kept_gap(const Constraint& c) const;

@@ -842,7 +842,7 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
   return check;
 }
 
-/// Pairs that are infeasible so far request shorter parts; newly caught particles do not.
+/// Pairs that are infeasible so far request shorter parts; newly caught and pinned particles do not.
 StepCheck World::check_part(const Snapshot& before, double dt, StepReport& report) {
   for (int c = 0; c < num_cloths(); ++c) {
     const int broken = find_non_finite(cloths_[c].state);
@@ -859,8 +859,11 @@ StepCheck World::check_part(const Snapshot& before, double dt, StepReport& repor
   for (int c = 0; c < num_cloths(); ++c) {
     if (is_diverged_[c]) check.include({StepFault::skipped, 1, 0, c, -1});
   }
-  if (!report.infeasible.empty())
-    check.include({StepFault::infeasible, 1, 0, report.infeasible[0].cloth, report.infeasible[0].particle});
+  const auto worst = std::ranges::find_if(report.infeasible, [&](const InfeasiblePair& pair) {
+    return pair.cloth < 0 || !cloths_[pair.cloth].is_pinned[pair.particle];
+  });
+  if (worst != report.infeasible.end())
+    check.include({StepFault::infeasible, 1, 0, worst->cloth, worst->particle});
   return check;
 }
 
