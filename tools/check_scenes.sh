@@ -45,5 +45,8 @@ done
 "$weft" run garment --frames 30 --out "$out/garment"
 "$weft" verify "$out/garment" || echo "garment: reported only"
 
+# Random cloths on random bodies.
+"$weft" bench random --contact --scenes 20 --out "$out/random"
+
 # Typical input: garments that intersect the figure at the start, in several pieces, in another unit.
 "$weft" bench garments --garments shirt,dress,scarf --motions kick --frames 20 --cell 0.012 --out "$out/garments"
