@@ -4,6 +4,7 @@
 
 #include "tests/support.h"
 #include "weft/error.h"
+#include "weft/mesh/sample_meshes.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
@@ -151,6 +152,27 @@ TEST(StepDivision, JoinsAgainWhenCalm) {
   }
   EXPECT_GT(divided, 0);
   EXPECT_EQ(last, 1);
+}
+
+TEST(StepDivision, ClothAtRestIsNotDivided) {
+  // Stiff cloth in a heap: contacts settle within a share of their gaps, and the springs store that.
+  for (int seed = 1; seed <= 4; ++seed) {
+    World world;
+    const auto topology = build_mesh_topology(build_random_mesh(test::square(14, 0.5), seed));
+    std::vector<Vec3> positions;
+    const Mat3 turn = rotation_from_angles_deg({80, 0, 15});
+    for (const Vec3& p : topology->mesh.positions) positions.push_back(turn * p + Vec3(0, 0.55, 0));
+    const ClothMaterial stiff{
+        .density = 0.12, .structural = 4e4, .bend = 0.2, .damping = 1e-3, .thickness = 4e-4};
+    world.add_cloth({.name = "sheet", .topology = topology, .material = stiff, .positions = positions});
+    world.add_collider({"floor", Plane{}, 0.4, {}});
+    int divided = 0;
+    for (int frame = 0; frame < 180; ++frame) {
+      const bool is_divided = world.step(kFrame).divisions > 1;
+      if (frame >= 120) divided += is_divided;
+    }
+    EXPECT_LT(divided, 10) << seed;
+  }
 }
 
 TEST(StepDivision, RefusesWhatCannotBe) {

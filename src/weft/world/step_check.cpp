@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "weft/forces/pressure.h"
 #include "weft/world/measures.h"
@@ -15,6 +16,10 @@ constexpr double kAreaKept = 0.5;    // minimum share of the area at the start o
 constexpr double kEnergyRate = 0.3;  // maximum rise of energy, of the kinetic energy at the start [1/s] …
 constexpr double kRiseOfThickness =
     30;  // … and of the work against gravity of lifting all by its thickness [1/s]
+
+/// Cloth is at rest if its kinetic energy is below this share of the work of lifting it by its thickness. Its contacts
+/// then settle within this share of their gaps, and may do so in stiff cloth: see compute_settling().
+constexpr double kAtRest = 0.05, kSettling = 0.05;
 
 /// Shorter steps have no energy check: what contact projection then adds does not fall with their length.
 constexpr double kShortestForEnergy = 1.0 / 500;  // [s]
@@ -70,19 +75,27 @@ double compute_push(const ClothModel& model, const ClothState& state) {
   return std::abs(gas_excess(model.gas, compute_volume(model, state))) * area;
 }
 
+/// The energy of moving every particle by a share of the thickness, against its springs or elements [J].
+double compute_settling(const ClothModel& model) {
+  const double way = kSettling * model.material.thickness;
+  return 0.5 * way * way * std::accumulate(model.stiffness_sum.begin(), model.stiffness_sum.end(), 0.0);
+}
+
 StepCheck check_energy(std::span<const CheckedCloth> cloths, const Vec3& gravity, double step) {
-  double rise = 0, kinetic = 0, lift = 0;
+  double rise = 0, kinetic = 0, kinetic_after = 0, lift = 0, settling = 0;
   for (const CheckedCloth& c : cloths) {
-    const double before = compute_kinetic_energy(c.model, c.before);
-    kinetic += before;
-    rise += compute_kinetic_energy(c.model, c.after) - before +
-            compute_gravity_energy(c.model, c.after, gravity) -
+    kinetic += compute_kinetic_energy(c.model, c.before);
+    kinetic_after += compute_kinetic_energy(c.model, c.after);
+    rise += compute_gravity_energy(c.model, c.after, gravity) -
             compute_gravity_energy(c.model, c.before, gravity) + compute_elastic_energy(c.model, c.after) -
             compute_elastic_energy(c.model, c.before);
     lift += c.model.material.thickness * compute_push(c.model, c.before);
+    settling += compute_settling(c.model);
     for (const double m : c.model.mass) lift += m * gravity.norm() * c.model.material.thickness;
   }
-  const double tolerance = step * (kEnergyRate * kinetic + kRiseOfThickness * lift);
+  rise += kinetic_after - kinetic;
+  double tolerance = step * (kEnergyRate * kinetic + kRiseOfThickness * lift);
+  if (std::max(kinetic, kinetic_after) < kAtRest * lift) tolerance += settling;
   return {StepFault::energy, std::max(0.0, rise / tolerance), rise, -1, -1};
 }
 
