@@ -17,9 +17,10 @@ constexpr double kEnergyRate = 0.3;  // maximum rise of energy, of the kinetic e
 constexpr double kRiseOfThickness =
     30;  // … and of the work against gravity of lifting all by its thickness [1/s]
 
-/// Cloth is at rest if its kinetic energy is below this share of the work of lifting it by its thickness. Its contacts
-/// then settle within this share of their gaps, and may do so in stiff cloth: see compute_settling().
-constexpr double kAtRest = 0.05, kSettling = 0.05;
+/// Cloth is at rest if its kinetic energy is below this share of the work of lifting it by its thickness [1].
+constexpr double kAtRest = 0.05;
+/// The contacts of cloth at rest settle within this share of their gaps; what stiff cloth stores by that is no fault [1].
+constexpr double kSettling = 0.05;
 
 /// Shorter steps have no energy check: what contact projection then adds does not fall with their length.
 constexpr double kShortestForEnergy = 1.0 / 500;  // [s]
