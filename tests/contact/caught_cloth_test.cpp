@@ -202,7 +202,7 @@ TEST(CaughtCloth, IsNotClothThatWallsPushTogetherOnAFloor) {
   // The walls stand on the floor, or reach into it: between the two is no room, but cloth is beside the walls.
   for (const double below : {0.0, 0.05}) {
     for (const bool is_mesh : {false, true}) {
-      SCOPED_TRACE(is_mesh ? "meshes" : "boxes");
+      SCOPED_TRACE(testing::Message() << (is_mesh ? "meshes" : "boxes") << " to " << below << " m below");
       World world;
       world.add_collider({"floor", OrientedBox{{0, -0.1, 0}, {0.6, 0.1, 0.6}}, 0.3, {}});
       for (const double side : {1.0, -1.0}) {
