@@ -230,9 +230,12 @@ void bench_laws(const ContactExperiment& setup) {
                slide.acceleration, slide.expected, off);
   }
   for (const double friction : {0.1, 0.3, 0.5}) {
-    const Capstan capstan = pull_over_drum(setup, friction);
-    fmt::print("| capstan, half a turn, ratio of tensions | {} | {:.3f} | {:.3f} | {:+.1f} % |\n", friction,
-               capstan.ratio, capstan.expected, 100 * (capstan.ratio / capstan.expected - 1));
+    for (const Drum drum : {Drum::capsule, Drum::cloth}) {
+      const Capstan capstan = pull_over_drum(setup, friction, drum);
+      fmt::print("| capstan{}, half a turn, ratio of tensions | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
+                 drum == Drum::cloth ? " of cloth" : "", friction, capstan.ratio, capstan.expected,
+                 100 * (capstan.ratio / capstan.expected - 1));
+    }
   }
   for (const double friction : {0.02, 0.03, 0.6}) {
     const Spin spin = spin_ball(setup, friction);

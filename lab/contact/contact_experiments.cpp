@@ -155,13 +155,35 @@ Slide slide_on_incline(const ContactExperiment& setup, double angle_deg, double 
           std::max(0.0, kGravity * (std::sin(angle) - friction * std::cos(angle)))};
 }
 
-Capstan pull_over_drum(const ContactExperiment& setup, double friction) {
+namespace {
+
+/// A tube of pinned particles around the z axis that turns with the motion.
+void add_tube(World& world, const ClothMaterial& material, double radius, double width,
+              const RigidMotion& motion) {
+  const Grid grid{.size_x = 2 * kPi * radius, .size_z = width, .cells_x = 80, .cells_z = 12};
+  const auto topology = build_grid_topology(grid, SpringModel::alternating);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions) {
+    const double angle = p.x() / radius;
+    positions.push_back({radius * std::sin(angle), -radius * std::cos(angle), p.z() - width / 2});
+  }
+  const ClothId tube =
+      world.add_cloth({.name = "tube", .topology = topology, .material = material, .positions = positions});
+  Pin pin{.motion = motion};
+  for (int i = 0; i < topology->num_particles(); ++i) pin.particles.push_back(i);
+  world.set_pins(tube, {pin});
+}
+
+}  // namespace
+
+Capstan pull_over_drum(const ContactExperiment& setup, double friction, Drum drum) {
   constexpr double kRadius = 0.1, kHang = 0.1, kWidth = 0.08, kSpeed_deg = 60, kTension = 1.02;
   ClothMaterial material = kSoft;
+  material.friction = friction;
   material.structural = 500;
   material.shear = 0;
   material.bend = 0;
-  const double reach = kRadius + material.thickness / 2;
+  const double reach = kRadius + (drum == Drum::cloth ? material.thickness : material.thickness / 2);
   const double length = (kPi * reach + 2 * kHang) / kTension;
   const Grid grid{.size_x = length, .size_z = kWidth, .cells_x = 3 * setup.cells, .cells_z = 4};
   const auto topology = build_grid_topology(grid, SpringModel::alternating);
@@ -173,8 +195,11 @@ Capstan pull_over_drum(const ContactExperiment& setup, double friction) {
   }
   World world = make_world(setup);
   world.set_gravity(Vec3::Zero());
-  world.add_collider({"drum", Capsule{Vec3(0, 0, -0.3), Vec3(0, 0, 0.3), kRadius}, friction,
-                      RigidMotion({{.time = 0}, {.time = 100, .angles_deg = {0, 0, -100 * kSpeed_deg}}})});
+  const RigidMotion motion({{.time = 0}, {.time = 100, .angles_deg = {0, 0, -100 * kSpeed_deg}}});
+  if (drum == Drum::cloth)
+    add_tube(world, material, kRadius, 2 * kWidth, motion);
+  else
+    world.add_collider({"drum", Capsule{Vec3(0, 0, -0.3), Vec3(0, 0, 0.3), kRadius}, friction, motion});
   const ClothId strip =
       world.add_cloth({.name = "strip", .topology = topology, .material = material, .positions = positions});
   Pin ends;

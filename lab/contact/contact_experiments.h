@@ -44,7 +44,8 @@ struct Slide {
 };
 Slide slide_on_incline(const ContactExperiment& setup, double angle_deg, double friction);
 
-/// Capstan experiment: a strip over half a turn of a rotating drum, held at both ends.
+/// Capstan experiment: a strip over half a turn of a rotating drum, held at both ends. The drum is a capsule,
+/// or rigid cloth: a tube of pinned particles.
 ///
 ///          ___
 ///        /  ↻  \          T_tight / T_slack = e^{µ θ},  θ = π
@@ -54,7 +55,8 @@ struct Capstan {
   double ratio = 0;     // of the tensions at the ends [1]
   double expected = 0;  // [1]
 };
-Capstan pull_over_drum(const ContactExperiment& setup, double friction);
+enum class Drum { capsule, cloth };
+Capstan pull_over_drum(const ContactExperiment& setup, double friction, Drum drum = Drum::capsule);
 
 /// A sheet at rest on a support.
 struct RestingSheet {

@@ -29,6 +29,13 @@ TEST(ContactExperiments, ADrumPullsByTheCapstanEquation) {
   EXPECT_NEAR(other.ratio, other.expected, 0.05 * other.expected) << "another integrator";
 }
 
+TEST(ContactExperiments, ClothPullsTautClothByTheCapstanEquation) {
+  for (const double friction : {0.1, 0.3, 0.5}) {
+    const Capstan capstan = pull_over_drum({.cells = 20}, friction, Drum::cloth);
+    EXPECT_NEAR(capstan.ratio, capstan.expected, 0.05 * capstan.expected) << friction;
+  }
+}
+
 TEST(ContactExperiments, ABallTakesTheSheetAlongAsFarAsFrictionCan) {
   // For every mesh. An incomplete solve gives 0.78 to 1.56 of the analytic value.
   for (const int cells : {24, 32, 48}) {

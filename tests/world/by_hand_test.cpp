@@ -54,13 +54,15 @@ TEST(ByHand, ACollidersPosePerFrameIsTheSameAsKeyFrames) {
   by_keys.add_collider({.name = "ball", .shape = ball, .motion = RigidMotion(keys)});
   const ColliderId hand = by_hand.add_collider({.name = "ball", .shape = ball});
   int parts = 0;
+  double farthest = 0;
   for (int k = 1; k <= 40; ++k) {
     by_hand.move_collider(hand, {.translation = Vec3(way(k * kStep), 0, 0)});
     parts += by_hand.step(kStep).divisions;
+    farthest = std::max(farthest, mean_x(by_hand, sheet));
     ASSERT_TRUE(by_keys.step(kStep).ok);
     ASSERT_EQ(by_hand.state_hash(), by_keys.state_hash()) << k;
   }
-  EXPECT_GT(mean_x(by_hand, sheet), 0.05) << "the ball pushes";
+  EXPECT_GT(farthest, 0.05) << "the ball pushes";
   EXPECT_GT(parts, 40) << "through parts of steps, too";
 }
 

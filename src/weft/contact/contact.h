@@ -13,6 +13,9 @@ namespace weft::engine {
 /// Contact tolerance: a solve may leave a contact short of its gap by at most this share of the gap [1].
 constexpr double kMaxShortfall = 0.3;
 
+/// Limit of the factors on a contact's stiffness, together [1].
+constexpr double kMostStiff = 64;
+
 /// Half-space constraint on a cloth point, or on the difference of two, for one step.
 ///
 ///                 o Σ w_i x_i
@@ -35,12 +38,15 @@ struct Contact {
   double gap = 0;                               // minimum distance between the two [m]
   double depth_before = 0;                      // at the start of the step, where meaningful [m]
   double stiffness = 0;                         // [N/m]
+  double stiffened = 1;                         // factor that the stiffness includes [1]
+  double lasting_force = 0;                     // that it bore in both of the last two steps, about [N]
   double friction = 0;                          // Coulomb's coefficient [1]
   Vec3 stick_point = Vec3::Zero();              // stick point of Σ w_i x_i [m]
 
   // Results of the solve.
   bool has_pushed = false;    // at any time during the solve
   bool is_solved = false;     // all contacts of its group are within kMaxShortfall
+  double push = 0;            // normal force at the end [N]
   Vec3 force = Vec3::Zero();  // on Σ w_i x_i, friction included; if requested [N]
 
   /// Cloth–cloth contact: Σ w_i = 0, else ±1.

@@ -15,8 +15,9 @@ namespace {
 constexpr double kShapeStiffness = 1000;
 constexpr double kPairStiffness = 300;
 
-/// The pressure of gas presses a particle this share of its gap into a contact.
-constexpr double kPressedByGas = 0.1;
+/// A force that is known before the solve, as that of gas or one that lasts, presses features together by this
+/// share of their gap.
+constexpr double kPressed = 0.1;
 
 /// Penetration that the solve leaves at a collider, below this share of the gap, is kept: a contact's depth
 /// is its force, and the next step's friction starts from it.
@@ -107,6 +108,8 @@ void ContactSystem::place() {
   place_bodies();
   set_pair_settings();
   store_velocities();
+  memory_.begin_step(first_vertex_.back());
+  for (std::size_t c = 0; c < cloths_.size(); ++c) memory_.read(first_vertex_[c], *cloths_[c].state);
   update_caught();
 }
 
@@ -331,12 +334,14 @@ void ContactSystem::read_ends() {
 void ContactSystem::read_solution(std::span<const Contact> contacts) {
   if (is_placed_) read_ends();
   contact_forces_.clear();
+  memory_.restart();
   is_solved_.assign(cloths_.size(), is_predicted_);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact& c = contacts[n];
     for (const int v : {c.particle[0], c.particle[c.num_particles - 1]})
       is_solved_[mesh_of(first_vertex_, v)] = c.is_solved;
     add_contact_force(solved_for_[n], c.force);
+    memory_.add(solved_for_[n], c.push);
     if (step_.clock && c.has_pushed) ++step_.clock->times.active;
   }
 }
@@ -420,7 +425,7 @@ double ContactSystem::pressure_stiffness(const Constraint& c) const {
       force +=
           std::abs(c.weight[k]) * pressure * cloths_[cloth].model->topology->area[v - first_vertex_[cloth]];
   }
-  return force / (kPressedByGas * kept_gap(c));
+  return force / (kPressed * kept_gap(c));
 }
 
 void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
@@ -438,8 +443,13 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
     contact.depth_before = depth_at_start(c);
     contact.stick_point = h * c.surface_velocity;
     contact.friction = c.friction;
-    contact.stiffness = std::max((c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h),
-                                 has_pressure_ ? pressure_stiffness(c) : 0.0);
+    const double usual =
+        std::max((c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h),
+                 has_pressure_ ? pressure_stiffness(c) : 0.0);
+    contact.lasting_force = memory_.lasting_force(c);
+    contact.stiffness =
+        std::clamp(contact.lasting_force / (kPressed * contact.gap), usual, kMostStiff * usual);
+    contact.stiffened = contact.stiffness / usual;
     for (int k = 0; k < c.num_vertices; ++k) {
       const int v = c.vertex[k];
       const double w = c.weight[k];
@@ -468,6 +478,15 @@ double ContactSystem::depth_at_start(const Constraint& c) const {
 int ContactSystem::diverged_cloth() const {
   return is_clear_ || proximity_.diverged_vertex() < 0 ? -1
                                                        : mesh_of(first_vertex_, proximity_.diverged_vertex());
+}
+
+void ContactSystem::store_memory() {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    if (is_placed_ && is_predicted_)
+      memory_.store(first_vertex_[c], *cloths_[c].state);
+    else
+      cloths_[c].state->history.pressed = {};
+  }
 }
 
 /// Whether the solve separated all cloths of a constraint.
@@ -597,6 +616,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
 
 CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
   store_caught();
+  store_memory();
   if (is_clear_) return {};
   origins_.clear();
   read_ends();
@@ -664,8 +684,10 @@ void ContactSystem::project(JobSystem& jobs) {
     }
   }
   velocity_projection_.project(inverse_mass_, constraints_, velocity_, slowed_);
-  for (const Constraint& c : constraints_)
+  for (const Constraint& c : constraints_) {
     add_contact_force(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
+    if (is_predicted_) memory_.add(c, c.impulse / step_.step);
+  }
   if (step_.clock && !is_predicted_)
     step_.clock->times.active += std::count_if(constraints_.begin(), constraints_.end(),
                                                [](const Constraint& c) { return c.is_active; });

@@ -13,6 +13,7 @@
 #include "weft/contact/collider.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/contact.h"
+#include "weft/contact/contact_memory.h"
 #include "weft/contact/contact_point.h"
 #include "weft/contact/moving_shape.h"
 #include "weft/contact/proximity.h"
@@ -225,6 +226,7 @@ class ContactSystem {
   bool is_between(const Constraint& c) const;
   void add_caught_constraints();
   void store_caught();
+  void store_memory();
 
   using FeatureKey = std::array<int, 5>;  // shape and vertices, -1 beyond the last
   static FeatureKey key_of(const Constraint& c);
@@ -349,6 +351,7 @@ class ContactSystem {
   std::vector<Constraint> solved_for_;        // of the contacts that find_contacts returned
   std::vector<ContactForce> contact_forces_;  // contact forces of this step
   CaughtParticles caught_;
+  ContactMemory memory_;
   std::vector<Infeasible> newly_caught_;
 
   // Work space.

@@ -6,13 +6,13 @@
 namespace weft::engine {
 namespace {
 
-constexpr double kStickSpeed = 1e-3;  // slower slides count as sticking [m/s]
-constexpr int kGuesses = 2;           // linearisations with friction from estimated forces
-constexpr double kMaxOverGuess = 3;   // … and after them, limit of forces over the estimate
+constexpr double kStickSpeed = 1e-3;     // slower slides count as sticking [m/s]
+constexpr int kGuesses = 2;              // linearisations with friction from estimated forces
+constexpr double kMaxOverGuess = 3;      // … and after them, limit of forces over the estimate …
+constexpr double kMaxOverLasting = 1.5;  // … and over the force of the last steps
 constexpr double kMinSlideRatio = 0.7, kMaxSlideRatio = 1.5;  // bounds of the next slide over the last
 constexpr double kBarely = 0.01;                              // of the gap: opening that counts as touching
-constexpr double kStiffen = 4;     // factor for a contact that is deeper than its gap, per linearisation
-constexpr double kMostStiff = 64;  // limit of these factors together
+constexpr double kStiffen = 4;  // factor for a contact that is deeper than its gap, per linearisation
 constexpr double kFrictionChange = 0.02;  // tolerance, as a share of the friction limit
 
 }  // namespace
@@ -157,9 +157,8 @@ void ContactTerms::guess(std::span<const Positions> y) {
 /// inertia only: without the correction, releasing stuck contacts would take many linearisations.
 double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
-  const double push = num_linearised_ < kGuesses
-                          ? t.guess
-                          : std::min(c.stiffness * depth, kMaxOverGuess * t.stiffened * t.guess);
+  const double most_push = std::max(kMaxOverGuess * t.stiffened * t.guess, kMaxOverLasting * c.lasting_force);
+  const double push = num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, most_push);
   const double most = c.friction * push;
   double expected = slide;
   if (num_linearised_ == 0)
@@ -185,8 +184,12 @@ ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
   return {shortfall / kMaxShortfall, limits > 0 ? changes / (kFrictionChange * limits) : 0};
 }
 
-void ContactTerms::set_solved(bool is_solved) {
-  for (Term& t : terms_) t.contact->is_solved = is_solved;
+void ContactTerms::set_results(std::span<const Positions> x) {
+  const bool is_solved = find_unrest(x).shortfall <= 1;
+  for (Term& t : terms_) {
+    t.contact->is_solved = is_solved;
+    t.contact->push = t.contact->stiffness * depth_of(t);
+  }
 }
 
 /// Whether an open contact will soon push: inertia presses cloth that lies on a collider, and barely touches
@@ -199,7 +202,7 @@ bool ContactTerms::will_push(const Term& t, double beyond) {
 /// A contact's stiffness suits the inertia of its particles. Cloth that tension presses on a body needs more:
 /// deeper than its gap, the surfaces would pass through each other.
 void ContactTerms::stiffen(Term& t) {
-  const double factor = std::min(kStiffen, kMostStiff / t.stiffened);
+  const double factor = std::clamp(kMostStiff / (t.contact->stiffened * t.stiffened), 1.0, kStiffen);
   t.stiffened *= factor;
   t.contact->stiffness *= factor;
 }

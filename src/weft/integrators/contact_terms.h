@@ -68,8 +68,8 @@ class ContactTerms {
   };
   Unrest find_unrest(std::span<const Positions> x);
 
-  /// Sets Contact::is_solved of all contacts.
-  void set_solved(bool is_solved);
+  /// Sets Contact::is_solved and Contact::push of all contacts.
+  void set_results(std::span<const Positions> x);
 
   /// Whether any contact pushes at these positions (members).
   bool any_active(std::span<const Positions> x);

@@ -81,8 +81,9 @@ class ImplicitGroup {
 
   void finish_step() {
     std::vector<char> is_pushed(cloths_.size(), 0);
-    for (const Contact& c : *contacts_) {
-      if (c.depth(x_) == 0) continue;
+    for (Contact& c : *contacts_) {
+      c.push = c.stiffness * c.depth(x_);
+      if (c.push == 0) continue;
       for (int k = 0; k < c.num_particles; ++k) is_pushed[cloth_of(c.particle[k])] = 1;
     }
     for (std::size_t c = 0; c < cloths_.size(); ++c)
@@ -488,6 +489,7 @@ class ImplicitEulerIntegrator final : public Integrator {
     const IntegratorReport report = system.advance(members, own, order_, step.computes_contact_forces);
     for (std::size_t n = 0; n < own.size(); ++n) {
       contacts[groups_.contacts(g)[n]].has_pushed = own[n].has_pushed;
+      contacts[groups_.contacts(g)[n]].push = own[n].push;
       contacts[groups_.contacts(g)[n]].force = own[n].force;
     }
     return report;

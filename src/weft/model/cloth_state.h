@@ -10,13 +10,20 @@
 
 namespace weft::engine {
 
-/// History of the previous step for second-order integrators. Others may ignore it.
+/// History of the previous step, for second-order integrators and for contact. Others may ignore it.
 struct MotionHistory {
+  /// Normal forces of contacts on the particles, of each the mean over its contacts; in the last step, and the
+  /// smaller ones of the last two (num_particles; empty: none) [N].
+  struct Pressed {
+    std::vector<float> last, lasting;
+  };
+
   double step = 0;           // length of the previous step; 0: no history [s]
   bool had_contact = false;  // contact took part in it
   bool is_held = false;      // a grab acts in the next step, which then uses the balance of implicit Euler
   Vec3Array displacement;    // x now − x before it (num_particles) [m]
   Vec3Array velocity;        // v before it (num_particles) [m/s]
+  std::array<Pressed, 2> pressed;  // by cloth, by colliders; only after solves with contacts
 };
 
 /// ClothState and its history in doubles, for integrators that work in double precision (num_particles each;

@@ -1,0 +1,72 @@
+#include "weft/contact/contact_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace weft::engine {
+namespace {
+
+Constraint pair(std::array<int, 4> vertex, std::array<double, 4> weight) {
+  Constraint c;
+  c.num_vertices = 4;
+  c.vertex = vertex;
+  c.weight = weight;
+  return c;
+}
+
+/// A cloth of four particles, which remember forces.
+ClothState make_cloth() {
+  ClothState state = make_state({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}});
+  state.history.step = 1;
+  return state;
+}
+
+TEST(ContactMemory, KeepsWhatTwoStepsBear) {
+  ClothState state = make_cloth();
+  const Constraint c = pair({0, 1, 2, 3}, {-0.2, -0.3, -0.5, 1});
+  const double borne[] = {5, 2, 3, 0, 4};    // in each step [N]
+  const double lasting[] = {0, 0, 2, 2, 0};  // known at its start
+  const bool was_pressed[] = {false, true, true, true, false};
+  for (int step = 0; step < 5; ++step) {
+    ContactMemory memory;
+    memory.begin_step(4);
+    memory.read(0, state);
+    EXPECT_NEAR(memory.lasting_force(c), lasting[step], 1e-6) << step;
+    EXPECT_EQ(memory.was_pressed(c), was_pressed[step]) << step;
+    memory.add(c, borne[step]);
+    memory.store(0, state);
+  }
+}
+
+TEST(ContactMemory, SolvesAgainWithoutTheForcesOfTheFirstSolve) {
+  ClothState state = make_cloth();
+  const Constraint c = pair({0, 1, 2, 3}, {-0.2, -0.3, -0.5, 1});
+  ContactMemory memory;
+  memory.begin_step(4);
+  memory.add(c, 7);
+  memory.restart();
+  memory.store(0, state);
+  for (const MotionHistory::Pressed& pressed : state.history.pressed) EXPECT_TRUE(pressed.last.empty());
+}
+
+TEST(ContactMemory, TellsClothFromColliders) {
+  // The particle 3 lies on a collider, vertices 4 to 6, and cloth on it.
+  ClothState state = make_cloth();
+  const Constraint on_body = pair({4, 5, 6, 3}, {-0.2, -0.3, -0.5, 1}),
+                   on_cloth = pair({0, 1, 2, 3}, {-0.2, -0.3, -0.5, 1});
+  ContactMemory memory;
+  for (int step = 0; step < 3; ++step) {
+    memory.begin_step(4);
+    memory.read(0, state);
+    if (step == 2) break;
+    memory.add(on_body, 4);
+    memory.store(0, state);
+  }
+  EXPECT_NEAR(memory.lasting_force(on_body), 4, 1e-6);
+  EXPECT_EQ(memory.lasting_force(on_cloth), 0);
+  EXPECT_FALSE(memory.was_pressed(on_cloth));
+}
+
+}  // namespace
+}  // namespace weft::engine
