@@ -19,6 +19,9 @@ constexpr double kPairStiffness = 300;
 /// share of their gap.
 constexpr double kPressed = 0.1;
 
+/// Contacts that slide farther than this share of a mean edge in a step have no use for the forces of earlier ones.
+constexpr double kFarSlide = 0.5;
+
 /// Penetration that the solve leaves at a collider, below this share of the gap, is kept: a contact's depth
 /// is its force, and the next step's friction starts from it.
 constexpr double kPressedIn = 0.2;
@@ -428,6 +431,18 @@ double ContactSystem::pressure_stiffness(const Constraint& c) const {
   return force / (kPressed * kept_gap(c));
 }
 
+/// Whether the features are predicted to slide over other cells within the step.
+bool ContactSystem::slides_far(const Constraint& c) const {
+  Vec3 way = -step_.step * c.surface_velocity;
+  double edge = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < c.num_vertices; ++k) {
+    const int v = c.vertex[k];
+    way += c.weight[k] * (motion_.end[v] - motion_.start[v]);
+    if (v < first_vertex_.back()) edge = std::min(edge, rest_edges_[mesh_of(first_vertex_, v)].mean);
+  }
+  return (way - way.dot(c.normal) * c.normal).norm() > kFarSlide * edge;
+}
+
 void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   const WorkScope scope(step_.clock, &WorkTimes::rows);
   contacts.clear();
@@ -446,10 +461,13 @@ void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
     const double usual =
         std::max((c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h),
                  has_pressure_ ? pressure_stiffness(c) : 0.0);
-    contact.lasting_force = memory_.lasting_force(c);
-    contact.stiffness =
-        std::clamp(contact.lasting_force / (kPressed * contact.gap), usual, kMostStiff * usual);
-    contact.stiffened = contact.stiffness / usual;
+    contact.stiffness = usual;
+    contact.lasting_force = slides_far(c) ? 0 : memory_.lasting_force(c);
+    if (contact.lasting_force > 0) {
+      contact.stiffness =
+          std::clamp(contact.lasting_force / (kPressed * contact.gap), usual, kMostStiff * usual);
+      contact.stiffened = contact.stiffness / usual;
+    }
     for (int k = 0; k < c.num_vertices; ++k) {
       const int v = c.vertex[k];
       const double w = c.weight[k];

@@ -294,6 +294,7 @@ class ContactSystem {
   double clearance_of(const Constraint& c) const;
   double kept_gap(const Constraint& c) const;
   double pressure_stiffness(const Constraint& c) const;
+  bool slides_far(const Constraint& c) const;
   double depth_at_start(const Constraint& c) const;
   bool is_within_ccd_range() const;
   void read_ends();
