@@ -25,7 +25,7 @@ for frame in range(1, 271):
     borne.append(contacts["force"][contacts["collider"] >= 0, 1].sum())  # its layers also press each other
 
 weight = 9.81 * towel.masses.sum()
-mean = np.mean(borne[-30:])
+mean = np.mean(borne[-60:])  # of the last second: single steps vary by a quarter
 print(f"the towel hangs at {towel.center_of_mass[1]:.3f} m; the jaws bear {mean:.3f} N of its {weight:.3f} N")
 assert towel.center_of_mass[1] > 0.6
 assert abs(mean - weight) < 0.1 * weight
