@@ -249,7 +249,7 @@ void bench_laws(const ContactExperiment& setup) {
                acceleration, kTableFriction, table.acceleration, table.expected,
                100 * (table.acceleration / table.expected - 1));
   }
-  for (const double acceleration : {1.0, 2.0, 6.0}) {
+  for (const double acceleration : {1.0, 2.0, 4.0, 6.0, 10.0}) {
     const CarriedSheet sheet = carry_sheet(setup, kSheetFriction, acceleration);
     fmt::print("| sheet on a sheet at {} m/s²: the upper one, m/s² | {} | {:.3f} | {:.3f} | {:+.1f} % |\n",
                acceleration, kSheetFriction, sheet.acceleration, sheet.expected,

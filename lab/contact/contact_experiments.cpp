@@ -40,6 +40,13 @@ ClothId add_sheet(World& world, const std::string& name, int cells, double size,
                           .velocity = velocity});
 }
 
+/// Pins all particles, which follow the motion.
+void pin_all(World& world, ClothId cloth, const RigidMotion& motion) {
+  Pin pin{.motion = motion};
+  for (int i = 0; i < world.model(cloth).num_particles(); ++i) pin.particles.push_back(i);
+  world.set_pins(cloth, {pin});
+}
+
 Vec3 middle_of(const World& world, ClothId cloth) {
   return compute_center_of_mass(world.model(cloth), world.state(cloth));
 }
@@ -169,9 +176,7 @@ void add_tube(World& world, const ClothMaterial& material, double radius, double
   }
   const ClothId tube =
       world.add_cloth({.name = "tube", .topology = topology, .material = material, .positions = positions});
-  Pin pin{.motion = motion};
-  for (int i = 0; i < topology->num_particles(); ++i) pin.particles.push_back(i);
-  world.set_pins(tube, {pin});
+  pin_all(world, tube, motion);
 }
 
 }  // namespace
@@ -322,9 +327,7 @@ CarriedSheet carry_sheet(const ContactExperiment& setup, double friction, double
                                   Vec3(0.2, kSoft.thickness, 0));
   world.set_friction("lower", "upper", friction);
   const auto moved_by = [](double way) { return KeyFrame{.translation = {way, 0, 0}}; };
-  Pin all{.particles = {}, .motion = accelerate(setup, kSettle, kSeconds, lower_acceleration, moved_by)};
-  for (int i = 0; i < world.model(lower).num_particles(); ++i) all.particles.push_back(i);
-  world.set_pins(lower, {all});
+  pin_all(world, lower, accelerate(setup, kSettle, kSeconds, lower_acceleration, moved_by));
   run(world, setup, kSettle, [] {});
   CarriedSheet result{.expected = std::min(lower_acceleration, friction * kGravity)};
   run(world, setup, kSeconds,

@@ -78,6 +78,9 @@ TEST(ContactExperiments, ASheetThatMovesTakesAnotherAlong) {
                 (integrator == std::string("newton") ? 0.2 : 0.03) * fast.expected)
         << integrator << " slides; with newton friction is too weak (docs/explanation/contact.md)";
   }
+  const CarriedSheet fine = carry_sheet({.cells = 32}, 0.3, 6);
+  EXPECT_NEAR(fine.acceleration, fine.expected, 0.1 * fine.expected)
+      << "with forces that the cells before bore it was half as much again";
 }
 
 TEST(ContactExperiments, TheAuditOfASheetOnABallAgreesWithItsAngularMomentum) {

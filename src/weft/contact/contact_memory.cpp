@@ -43,9 +43,10 @@ void ContactMemory::restart() {
 
 void ContactMemory::add(const Constraint& c, double force) {
   if (force == 0 || c.is_caught) return;
+  std::vector<Sum>& sums = sums_[kind_of(c)];
   for (int k = 0; k < c.num_vertices; ++k) {
     if (c.vertex[k] >= size()) continue;
-    Sum& sum = sums_[kind_of(c)][c.vertex[k]];
+    Sum& sum = sums[c.vertex[k]];
     sum.force += static_cast<float>(std::abs(c.weight[k]) * force);
     sum.weight += static_cast<float>(std::abs(c.weight[k]));
   }

@@ -111,9 +111,13 @@ void ContactSystem::place() {
   place_bodies();
   set_pair_settings();
   store_velocities();
+  if (is_predicted_) recall_forces();
+  update_caught();
+}
+
+void ContactSystem::recall_forces() {
   memory_.begin_step(first_vertex_.back());
   for (std::size_t c = 0; c < cloths_.size(); ++c) memory_.read(first_vertex_[c], *cloths_[c].state);
-  update_caught();
 }
 
 /// Default friction: for two cloths the geometric mean of both, for a cloth and a collider the collider's.
@@ -351,7 +355,9 @@ void ContactSystem::read_solution(std::span<const Contact> contacts) {
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
   is_predicted_ = is_for_solve_ = true;
-  if (!is_placed_) {
+  if (is_placed_) {
+    recall_forces();
+  } else {
     constraints_.clear();
     expected_.clear();
     survey_expected(acceleration, pin_targets);
@@ -498,7 +504,7 @@ int ContactSystem::diverged_cloth() const {
                                                        : mesh_of(first_vertex_, proximity_.diverged_vertex());
 }
 
-void ContactSystem::store_memory() {
+void ContactSystem::store_forces() {
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     if (is_placed_ && is_predicted_)
       memory_.store(first_vertex_[c], *cloths_[c].state);
@@ -634,7 +640,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
 
 CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
   store_caught();
-  store_memory();
+  store_forces();
   if (is_clear_) return {};
   origins_.clear();
   read_ends();

@@ -226,7 +226,8 @@ class ContactSystem {
   bool is_between(const Constraint& c) const;
   void add_caught_constraints();
   void store_caught();
-  void store_memory();
+  void recall_forces();
+  void store_forces();
 
   using FeatureKey = std::array<int, 5>;  // shape and vertices, -1 beyond the last
   static FeatureKey key_of(const Constraint& c);

@@ -115,14 +115,6 @@ bool ContactTerms::any_active(std::span<const Positions> x) {
   return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return depth_of(t) > 0; });
 }
 
-void ContactTerms::find_pushed(std::span<const Positions> x, std::vector<char>& is_pushed) {
-  gather(x);
-  for (const Term& t : terms_) {
-    if (depth_of(t) == 0) continue;
-    for (int k = 0; k < t.contact->num_particles; ++k) is_pushed[points_[t.point[k]].member] = 1;
-  }
-}
-
 /// Force estimate from the inertial prediction, the larger of two. One is the force that stops the particles,
 /// shared among the contacts that bear the same particle: right under weight. The other is the force at the
 /// depth so far, moved along with the surface: right under tension.
@@ -184,11 +176,14 @@ ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
   return {shortfall / kMaxShortfall, limits > 0 ? changes / (kFrictionChange * limits) : 0};
 }
 
-void ContactTerms::set_results(std::span<const Positions> x) {
+void ContactTerms::finish(std::span<const Positions> x, std::vector<char>& is_pushed) {
   const bool is_solved = find_unrest(x).shortfall <= 1;
   for (Term& t : terms_) {
-    t.contact->is_solved = is_solved;
-    t.contact->push = t.contact->stiffness * depth_of(t);
+    Contact& c = *t.contact;
+    c.is_solved = is_solved;
+    c.push = c.stiffness * depth_of(t);
+    if (c.push == 0) continue;
+    for (int k = 0; k < c.num_particles; ++k) is_pushed[points_[t.point[k]].member] = 1;
   }
 }
 

@@ -25,8 +25,9 @@ void give_rest_to_contacts(std::span<const std::array<int, 4>> at, const std::ve
 /// Contact and friction potential: Σ ½ k max(0, offset − n·Σ w x)² + ½ κ |slide|², in double precision,
 /// contact by contact. Each linearise() recomputes κ such that κ |slide| becomes Coulomb's force µ N at the
 /// slide expected after the solve; slides slower than 1 mm/s count as sticking. N is estimated before the
-/// solve, and limited to one and a half times that estimate: an unfinished solve holds cloth that should come
-/// off, and its forces are many times too large; friction based on them would not release it.
+/// solve, and limited to three times that estimate, or to one and a half times the force that lasted two steps.
+/// An unfinished solve holds cloth that should come off, and its forces are many times too large; friction
+/// based on them would not release it.
 ///
 /// The contacts are those of a group of cloths, its members.
 class ContactTerms {
@@ -68,14 +69,12 @@ class ContactTerms {
   };
   Unrest find_unrest(std::span<const Positions> x);
 
-  /// Sets Contact::is_solved and Contact::push of all contacts.
-  void set_results(std::span<const Positions> x);
+  /// Sets Contact::is_solved and Contact::push of all contacts, and is_pushed (members) for those that a contact
+  /// pushes at these positions.
+  void finish(std::span<const Positions> x, std::vector<char>& is_pushed);
 
   /// Whether any contact pushes at these positions (members).
   bool any_active(std::span<const Positions> x);
-
-  /// Sets is_pushed (members) for those that a contact pushes there.
-  void find_pushed(std::span<const Positions> x, std::vector<char>& is_pushed);
 
   /// Returns the value [J]; adds the forces (members), and stores the Hessian.
   double linearise(std::span<const Positions> x, std::span<Vec3Array* const> force);

@@ -74,8 +74,7 @@ class NewtonGroup {
 
   void finish() {
     is_pushed_.assign(cloths_.size(), 0);
-    contacts_.find_pushed(positions(), is_pushed_);
-    contacts_.set_results(positions());
+    contacts_.finish(positions(), is_pushed_);
     if (step_.computes_contact_forces) compute_contact_forces();
     for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c]->finish(is_pushed_[c] != 0, *jobs_);
   }
