@@ -21,7 +21,7 @@ struct Patches {
   std::vector<Vec3> origins, rest;
   std::vector<double> inverse_mass;
   std::vector<MovingShape> shapes;
-  std::vector<ClosedMesh> closed_meshes;
+  std::vector<ColliderMesh> bodies;
   SurfaceMotion motion;
 
   void add(int cells, const Vec3& middle, const Mat3& turn) {
@@ -42,8 +42,11 @@ struct Patches {
     const int first_triangle = static_cast<int>(surface.triangles.size());
     first_vertex.push_back(surface.num_vertices);
     surface.add(mesh.triangles, mesh.num_vertices());
-    closed_meshes.push_back({first_vertex.back(), surface.num_vertices, first_triangle,
-                             static_cast<int>(surface.triangles.size())});
+    bodies.push_back({.first_vertex = first_vertex.back(),
+                      .end_vertex = surface.num_vertices,
+                      .first_triangle = first_triangle,
+                      .end_triangle = static_cast<int>(surface.triangles.size()),
+                      .is_closed = true});
     motion.start.insert(motion.start.end(), mesh.positions.begin(), mesh.positions.end());
     motion.half_thickness.resize(motion.start.size(), 0);
     inverse_mass.resize(motion.start.size(), 0);
@@ -53,9 +56,8 @@ struct Patches {
   CcdFailSafeReport resolve(const std::vector<Vec3>& end) {
     const auto jobs = make_serial_jobs();
     const int num_triangles = static_cast<int>(surface.triangles.size());
-    const bool has_closed = !closed_meshes.empty();
-    const int num_cloth_vertices = has_closed ? closed_meshes[0].first_vertex : surface.num_vertices;
-    const int num_cloth_triangles = has_closed ? closed_meshes[0].first_triangle : num_triangles;
+    const int num_cloth_vertices = bodies.empty() ? surface.num_vertices : bodies[0].first_vertex;
+    const int num_cloth_triangles = bodies.empty() ? num_triangles : bodies[0].first_triangle;
     std::vector<int> first_of_cloth(first_vertex.begin(), first_vertex.begin() + origins.size());
     first_of_cloth.push_back(num_cloth_vertices);
     surface.build_one_rings();
@@ -67,7 +69,7 @@ struct Patches {
     Proximity proximity;
     proximity.reset(surface, groups, rest, num_cloth_vertices, num_cloth_triangles, {0.003, 0.001, 0.006});
     CcdFailSafe fail_safe;
-    return fail_safe.resolve({&inverse_mass, &shapes, &first_of_cloth, &origins, &closed_meshes}, proximity,
+    return fail_safe.resolve({&inverse_mass, &shapes, &first_of_cloth, &origins, &bodies}, proximity,
                              motion, *jobs);
   }
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "weft/contact/constraint.h"
 #include "weft/core/vec.h"
 #include "weft/model/cloth_state.h"
 
@@ -48,6 +49,11 @@ class CaughtParticles {
   /// Whether one of a pair's vertices is caught by the collider on the pair's other side: a mesh with other
   /// vertices of the pair, or the primitive shape with this number, else -1.
   bool includes(std::span<const int> vertices, int shape) const;
+
+  /// Whether the planes around a caught vertex replace this constraint.
+  bool replaces(const Constraint& c) const {
+    return includes(std::span(c.vertex).first(c.num_vertices), c.shape);
+  }
 
  private:
   int num_cloth_vertices_ = 0;

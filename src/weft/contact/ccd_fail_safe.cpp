@@ -202,10 +202,10 @@ bool CcdFailSafe::starts_intersecting(const Hit& hit) const {
 bool CcdFailSafe::comes_from_inside(const Constraint& c) const {
   if (c.shape >= 0) return false;
   const int of_mesh = std::max(c.vertex[0], c.vertex[3]);
-  const auto mesh =
-      std::find_if(step_.closed_meshes->begin(), step_.closed_meshes->end(),
-                   [&](const ClosedMesh& m) { return of_mesh >= m.first_vertex && of_mesh < m.end_vertex; });
-  if (mesh == step_.closed_meshes->end()) return false;
+  const auto mesh = std::find_if(step_.bodies->begin(), step_.bodies->end(), [&](const ColliderMesh& m) {
+    return m.is_closed && of_mesh >= m.first_vertex && of_mesh < m.end_vertex;
+  });
+  if (mesh == step_.bodies->end()) return false;
   Vec3 point = Vec3::Zero();
   for (int k = 0; k < c.num_vertices; ++k) {
     if (c.vertex[k] < num_cloth_vertices()) point += std::abs(c.weight[k]) * motion_->start[c.vertex[k]];

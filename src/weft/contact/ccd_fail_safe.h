@@ -21,6 +21,7 @@
 #include "weft/contact/caught_particles.h"
 #include "weft/contact/constraint.h"
 #include "weft/contact/moving_shape.h"
+#include "weft/contact/numbering.h"
 #include "weft/contact/proximity.h"
 #include "weft/contact/shape_clearance.h"
 #include "weft/geometry/time_of_impact.h"
@@ -48,19 +49,13 @@ struct Separation {
   Vec3 normal = Vec3::UnitY();  // unit length
 };
 
-/// A closed mesh of a collider, under the common numbering.
-struct ClosedMesh {
-  int first_vertex = 0, end_vertex = 0;
-  int first_triangle = 0, end_triangle = 0;
-};
-
 /// The input of a step besides the motion.
 struct CcdFailSafeStep {
   const std::vector<double>* inverse_mass = nullptr;  // (num_vertices) 0 where prescribed [1/kg]
   const std::vector<MovingShape>* shapes = nullptr;   // mesh colliders are tested as vertices instead
   const std::vector<int>* first_vertex = nullptr;     // of each cloth, and the end of the last one
   const std::vector<Vec3>* origins = nullptr;  // (cloths) of which positions are stored as float offsets
-  const std::vector<ClosedMesh>* closed_meshes = nullptr;
+  const std::vector<ColliderMesh>* bodies = nullptr;
   const std::vector<char>* non_colliding =
       nullptr;                                   // (cloths and shapes, the same) 1: do not collide; or empty
   const ShapeClearance* clearance = nullptr;     // of cloth from primitive shapes

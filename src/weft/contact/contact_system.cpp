@@ -3,36 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "weft/mesh/solid.h"
+#include "weft/contact/caught_cloth.h"
+#include "weft/contact/pair_constraints.h"
+#include "weft/contact/repair_input.h"
+#include "weft/contact/solve_contacts.h"
 
 namespace weft::engine {
 namespace {
 
-/// Contact stiffness in the solve, relative to the inertia m/h². A higher value lets cloth penetrate less and
-/// leaves less to the contact projection. Penetration at rest under gravity is g h²/1000, 3 µm at 60 steps
-/// per second.
-constexpr double kShapeStiffness = 1000;
-constexpr double kPairStiffness = 300;
-
-/// A force that is known before the solve, as that of gas or one that lasts, presses features together by this
-/// share of their gap.
-constexpr double kPressed = 0.1;
-
-/// Contacts that slide farther than this share of a mean edge in a step have no use for the forces of earlier ones.
-constexpr double kFarSlide = 0.5;
-
-/// Penetration that the solve leaves at a collider, below this share of the gap, is kept: a contact's depth
-/// is its force, and the next step's friction starts from it.
-constexpr double kPressedIn = 0.2;
-
-constexpr int kRounds = 8;            // updates of the planes of round shapes
-constexpr int kPasses = 8;            // over all constraints, per round
-constexpr int kRoundsAfterSolve = 2;  // the same after a solve with contacts: little is left to do
-constexpr int kPassesAfterSolve = 4;
-constexpr double kSlidingSpeed = 0.01;  // below, static friction applies [m/s]
-constexpr int kSearches = 6;            // maximum of repeated contact searches after friction
-constexpr double kSettled = 1e-6;       // corrections below end the rounds [m]
+constexpr int kSearches = 6;  // maximum of repeated contact searches after friction
 
 /// Verlet slack, how far cloth may move before pairs are searched again: a share of its cells or thickness.
 Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
@@ -48,6 +29,43 @@ Proximity::Slack slack_of(const ClothTopology& topology, double thickness) {
   return {std::max(thickness, kSlackPerEdge * edge), thickness / 4, std::max(2 * thickness, kNarrow * edge)};
 }
 
+Proximity::Slack slack_of(std::span<const ContactCloth> cloths) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Proximity::Slack slack{kInfinity, kInfinity, 0};
+  for (const ContactCloth& cloth : cloths) {
+    const Proximity::Slack own = slack_of(*cloth.model->topology, cloth.model->material.thickness);
+    slack = {std::min(slack.most, own.most), std::min(slack.least, own.least),
+             std::max(slack.narrow, own.narrow)};
+  }
+  return slack;
+}
+
+Patches build_patches(const Numbering& numbering, const Surface& surface, const std::vector<Vec3>& rest) {
+  Patches patches;
+  int triangle = 0;
+  for (int c = 0; c < numbering.num_cloths(); ++c) {
+    const ClothTopology& topology = *numbering.topologies[c];
+    const int end = triangle + topology.mesh.num_triangles();
+    if (topology.grid)
+      patches.add_grid(surface, *topology.grid, numbering.first_vertex[c], triangle);
+    else
+      patches.add_mesh(surface, rest, triangle, end);
+    triangle = end;
+  }
+  patches.add_body(surface, triangle, static_cast<int>(surface.triangles.size()));
+  return patches;
+}
+
+/// The body of each triangle, as in PairTable::non_colliding().
+std::vector<int> bodies_of_triangles(const Numbering& numbering) {
+  std::vector<int> result;
+  for (int c = 0; c < numbering.num_cloths(); ++c)
+    result.insert(result.end(), numbering.topologies[c]->mesh.num_triangles(), c);
+  for (const ColliderMesh& body : numbering.bodies)
+    result.resize(body.end_triangle, numbering.num_cloths() + body.collider);
+  return result;
+}
+
 /// The part of the acceleration that the particle followed in the last step: from none, where it hung or lay,
 /// to all. Supported particles are thus not predicted to fall.
 Vec3 felt_acceleration(const ClothState& state, int particle, const Vec3& acceleration) {
@@ -58,516 +76,276 @@ Vec3 felt_acceleration(const ClothState& state, int particle, const Vec3& accele
   return std::clamp(gained.dot(acceleration) / size_sq, 0.0, 1.0) * acceleration;
 }
 
+/// Separating axes for the CCD fail-safe, from the triangles that project_contacts found.
+void find_separations(std::span<const Constraint> constraints, std::vector<Separation>& separations) {
+  separations.clear();
+  for (const Constraint& c : constraints) {
+    if (c.shape < 0 || c.num_vertices < 3) continue;
+    separations.push_back({c.shape, {c.vertex[0], c.vertex[1], c.vertex[2]}, c.normal});
+  }
+}
+
 }  // namespace
 
 void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
                                const ContactStep& step) {
-  cloths_.assign(cloths.begin(), cloths.end());
   step_ = step;
-  is_predicted_ = is_for_solve_ = false;
-  pressed_in_ = 0;
-  contact_forces_.clear();
+  is_predicted_ = is_placed_ = has_few_ = is_clear_ = false;
+  forces_.clear();
   caught_.clear();
-  shapes_.clear();
+  bodies_.cloths.assign(cloths.begin(), cloths.end());
+  bodies_.step = step.step;
+  bodies_.shapes.clear();
   const double start = step.time - step.step;
   for (const Collider& c : colliders) {
-    shapes_.push_back({&c, shape_at(c, start), shape_at(c, step.time), c.motion.at(start),
-                       c.motion.at(step.time), weft::engine::pivot(c.shape)});
+    bodies_.shapes.push_back({&c, shape_at(c, start), shape_at(c, step.time), c.motion.at(start),
+                              c.motion.at(step.time), pivot(c.shape)});
   }
   proximity_.measure(step.clock);
-  renumber(colliders);
-  is_placed_ = is_surveyed_ = is_clear_ = false;
-  thickest_ = 0;
-  thinnest_ = std::numeric_limits<double>::infinity();
-  has_pressure_ =
-      std::any_of(cloths.begin(), cloths.end(), [](const ContactCloth& c) { return c.pressure > 0; });
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    starts_[c] = cloths_[c].state->x;
-    const double half_thickness = cloths_[c].model->material.thickness / 2;
-    thickest_ = std::max(thickest_, half_thickness);
-    thinnest_ = std::min(thinnest_, half_thickness);
+  if (!bodies_.numbering.holds_for(cloths, colliders)) renumber(colliders);
+  bodies_.surface = &proximity_.surface();
+  bodies_.thickest = 0;
+  bodies_.thinnest = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    starts_[c] = cloths[c].state->x;
+    const double half_thickness = cloths[c].model->material.thickness / 2;
+    bodies_.thickest = std::max(bodies_.thickest, half_thickness);
+    bodies_.thinnest = std::min(bodies_.thinnest, half_thickness);
   }
-  if (!may_survey()) place();
+  if (!survey_.may_begin(bodies_, step.rules)) place();
+}
+
+void ContactSystem::renumber(const std::vector<Collider>& colliders) {
+  Surface surface;
+  std::vector<Vec3> rest;
+  bodies_.numbering = number_bodies(bodies_.cloths, colliders, surface, rest);
+  const Numbering& numbering = bodies_.numbering;
+  const int n = surface.num_vertices, num_cloth_vertices = numbering.num_cloth_vertices();
+  bodies_.motion.start.assign(n, Vec3::Zero());
+  bodies_.motion.end.assign(n, Vec3::Zero());
+  bodies_.motion.half_thickness.assign(n, 0.0);
+  bodies_.inverse_mass.assign(n, 0.0);
+  std::vector<int> collider_of_vertex;  // (vertices of meshes)
+  for (const ColliderMesh& body : numbering.bodies)
+    collider_of_vertex.resize(body.end_vertex - num_cloth_vertices, body.collider);
+  caught_.reset(num_cloth_vertices, std::move(collider_of_vertex));
+  int num_cloth_triangles = 0;
+  for (const auto& topology : numbering.topologies) num_cloth_triangles += topology->mesh.num_triangles();
+  const Patches patches = build_patches(numbering, surface, rest);
+  proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
+                   slack_of(bodies_.cloths));
+  proximity_.set_bodies(bodies_of_triangles(numbering));
+  survey_.reset(bodies_.cloths);
+  starts_.resize(bodies_.cloths.size());
+  is_clearance_known_ = false;
 }
 
 /// Stores the start of the step, as the contact search requires it.
 void ContactSystem::place() {
   is_placed_ = true;
   double travel_sq = 0;  // since the last step with a contact search
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    const ClothModel& model = *cloths_[c].model;
-    const Vec3& origin = cloths_[c].state->origin;
-    for (int i = 0, v = first_vertex_[c]; i < model.num_particles(); ++i, ++v) {
-      const Vec3 start = origin + starts_[c].get(i);
-      travel_sq = farther_sq(travel_sq, start - motion_.start[v]);
-      motion_.start[v] = start;
-      motion_.half_thickness[v] = model.material.thickness / 2;
-      inverse_mass_[v] = (*cloths_[c].is_pinned)[i] ? 0.0 : 1 / model.mass[i];
-    }
-  }
+  bodies_.for_particles([&](int c, int i, int v) {
+    const ContactCloth& cloth = bodies_.cloths[c];
+    const Vec3 start = cloth.state->origin + starts_[c].get(i);
+    travel_sq = farther_sq(travel_sq, start - bodies_.motion.start[v]);
+    bodies_.motion.start[v] = start;
+    bodies_.motion.half_thickness[v] = cloth.model->material.thickness / 2;
+    bodies_.inverse_mass[v] = (*cloth.is_pinned)[i] ? 0.0 : 1 / cloth.model->mass[i];
+  });
   const double unknown = std::numeric_limits<double>::infinity();
-  clearance_.begin_step(shapes_, first_vertex_.back(), is_clearance_known_ ? std::sqrt(travel_sq) : unknown);
+  shape_constraints_.begin_step(bodies_, is_clearance_known_ ? std::sqrt(travel_sq) : unknown);
   is_clearance_known_ = true;
   place_bodies();
-  set_pair_settings();
+  bodies_.pairs.fill(bodies_.cloths, bodies_.shapes, step_.rules);
+  proximity_.set_non_colliding(bodies_.pairs.non_colliding());
   store_velocities();
   if (is_predicted_) recall_forces();
-  update_caught();
+  recall_caught(bodies_, caught_);
 }
 
-void ContactSystem::recall_forces() {
-  memory_.begin_step(first_vertex_.back());
-  for (std::size_t c = 0; c < cloths_.size(); ++c) memory_.read(first_vertex_[c], *cloths_[c].state);
-}
-
-/// Default friction: for two cloths the geometric mean of both, for a cloth and a collider the collider's.
-void ContactSystem::set_pair_settings() {
-  const int num_cloths = static_cast<int>(cloths_.size()), num_shapes = static_cast<int>(shapes_.size());
-  pair_settings_.resize(num_cloths * (num_cloths + num_shapes));
-  const auto own = [&](int cloth) { return cloths_[cloth].model->material.friction; };
-  for (int c = 0; c < num_cloths; ++c) {
-    for (int d = 0; d < num_cloths; ++d)
-      pair_settings_[pair_index({.cloth = c}, {.cloth = d})] = {.friction = std::sqrt(own(c) * own(d))};
-    for (int s = 0; s < num_shapes; ++s) {
-      const Collider& collider = *shapes_[s].collider;
-      pair_settings_[pair_index({.cloth = c}, {.collider = s})] = {collider.friction,
-                                                                   collider.static_friction};
+void ContactSystem::place_bodies() {
+  for (const ColliderMesh& body : bodies_.numbering.bodies) {
+    const MovingShape& shape = bodies_.shapes[body.collider];
+    const MeshShape &before = std::get<MeshShape>(shape.before), &after = std::get<MeshShape>(shape.after);
+    for (int v = body.first_vertex; v < body.end_vertex; ++v) {
+      bodies_.motion.start[v] = before.vertex(v - body.first_vertex);
+      bodies_.motion.end[v] = after.vertex(v - body.first_vertex);
     }
   }
-  for (const ContactRule& rule : step_.rules) {
-    const Place cloth{.cloth = rule.cloth}, other{.cloth = rule.other_cloth, .collider = rule.collider};
-    PairSettings& settings = pair_settings_[pair_index(cloth, other)];
-    settings = {rule.friction.value_or(settings.friction),
-                rule.static_friction.value_or(settings.static_friction), rule.collide};
-    if (rule.other_cloth >= 0) pair_settings_[pair_index(other, cloth)] = settings;
-  }
-  set_non_colliding();
-}
-
-/// Bodies are the cloths, followed by all colliders.
-void ContactSystem::set_non_colliding() {
-  non_colliding_.clear();
-  if (std::all_of(pair_settings_.begin(), pair_settings_.end(),
-                  [](const PairSettings& settings) { return settings.collide; }))
-    return proximity_.set_non_colliding(non_colliding_);
-  const int num_cloths = static_cast<int>(cloths_.size()),
-            num_bodies = num_cloths + static_cast<int>(shapes_.size());
-  non_colliding_.assign(num_bodies * num_bodies, 0);
-  for (int c = 0; c < num_cloths; ++c) {
-    for (int t = 0; t < num_bodies; ++t)
-      non_colliding_[c * num_bodies + t] = non_colliding_[t * num_bodies + c] =
-          !pair_settings_[c * num_bodies + t].collide;
-  }
-  proximity_.set_non_colliding(non_colliding_);
-}
-
-/// Index into pair_settings_ of a cloth and another cloth or collider.
-std::size_t ContactSystem::pair_index(const Place& cloth, const Place& other) const {
-  const std::size_t num_cloths = cloths_.size();
-  return cloth.cloth * (num_cloths + shapes_.size()) +
-         (other.cloth >= 0 ? other.cloth : num_cloths + other.collider);
-}
-
-/// Applies the static coefficient if the two were not sliding at the start of the step.
-void ContactSystem::set_friction(const PairSettings& settings, Constraint& c) const {
-  c.friction = settings.friction;
-  if (settings.static_friction <= settings.friction) return;
-  Vec3 slide = -c.surface_velocity;
-  for (int k = 0; k < c.num_vertices; ++k) slide += c.weight[k] * velocity_before_[c.vertex[k]];
-  slide -= slide.dot(c.normal) * c.normal;
-  if (slide.norm() < kSlidingSpeed) c.friction = settings.static_friction;
 }
 
 /// Stores velocities at the start of the step, for a mesh collider the mean over the step; only where static
 /// friction is set.
 void ContactSystem::store_velocities() {
-  velocity_before_.clear();
-  const auto has_static = [](const PairSettings& settings) {
-    return settings.static_friction > settings.friction;
-  };
-  if (std::none_of(pair_settings_.begin(), pair_settings_.end(), has_static)) return;
-  for (const ContactCloth& cloth : cloths_) {
-    for (int i = 0; i < cloth.model->num_particles(); ++i) velocity_before_.push_back(cloth.state->v.get(i));
-  }
-  for (std::size_t v = velocity_before_.size(); v < motion_.start.size(); ++v)
-    velocity_before_.push_back(velocity_[v].to_vec3());
+  std::vector<Vec3>& velocities = bodies_.velocity_before;
+  velocities.clear();
+  if (!bodies_.pairs.has_static_friction()) return;
+  bodies_.for_particles([&](int c, int i, int) { velocities.push_back(bodies_.cloths[c].state->v.get(i)); });
+  for (std::size_t v = velocities.size(); v < bodies_.motion.end.size(); ++v)
+    velocities.push_back(bodies_.mean_velocity(static_cast<int>(v)));
 }
 
-void ContactSystem::renumber(const std::vector<Collider>& colliders) {
-  std::vector<const TriangleMesh*>& meshes = meshes_now_;
-  meshes.clear();
-  for (const Collider& c : colliders) {
-    if (const MeshShape* mesh = std::get_if<MeshShape>(&c.shape)) meshes.push_back(mesh->mesh.get());
-  }
-  const auto same_cloth = [](const ContactCloth& c, const auto& topology) {
-    return c.model->topology == topology;
-  };
-  const auto same_mesh = [](const TriangleMesh* m, const auto& mesh) { return m == mesh.get(); };
-  if (!first_vertex_.empty() &&
-      std::equal(cloths_.begin(), cloths_.end(), numbered_cloths_.begin(), numbered_cloths_.end(),
-                 same_cloth) &&
-      std::equal(meshes.begin(), meshes.end(), numbered_meshes_.begin(), numbered_meshes_.end(), same_mesh)) {
-    return;
-  }
-
-  numbered_cloths_.clear();
-  numbered_meshes_.clear();
-  first_vertex_.clear();
-  bodies_.clear();
-  closed_meshes_.clear();
-  Surface surface;
-  std::vector<Vec3> rest;
-  std::vector<int> body_of_triangle;    // (triangles)
-  std::vector<int> collider_of_vertex;  // (vertices of meshes)
-  std::vector<Grid> grids;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Proximity::Slack slack{kInfinity, kInfinity, 0};
-  for (const ContactCloth& cloth : cloths_) {
-    const ClothTopology& topology = *cloth.model->topology;
-    numbered_cloths_.push_back(cloth.model->topology);
-    first_vertex_.push_back(surface.num_vertices);
-    surface.add(topology.mesh.triangles, topology.num_particles());
-    body_of_triangle.resize(surface.triangles.size(), static_cast<int>(first_vertex_.size()) - 1);
-    rest.insert(rest.end(), topology.mesh.positions.begin(), topology.mesh.positions.end());
-    if (topology.grid) grids.push_back(*topology.grid);
-    const Proximity::Slack own = slack_of(topology, cloth.model->material.thickness);
-    slack = {std::min(slack.most, own.most), std::min(slack.least, own.least),
-             std::max(slack.narrow, own.narrow)};
-  }
-  const int num_cloth_vertices = surface.num_vertices;
-  const int num_cloth_triangles = static_cast<int>(surface.triangles.size());
-  first_vertex_.push_back(num_cloth_vertices);
-  for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
-    const MeshShape* shape = std::get_if<MeshShape>(&colliders[c].shape);
-    if (!shape) continue;
-    numbered_meshes_.push_back(shape->mesh);
-    bodies_.push_back({c, surface.num_vertices, surface.num_vertices + shape->mesh->num_vertices(),
-                       static_cast<int>(surface.triangles.size()),
-                       is_closed(count_surface_edges(*shape->mesh))});
-    collider_of_vertex.resize(collider_of_vertex.size() + shape->mesh->num_vertices(), c);
-    Body& body = bodies_.back();
-    body.min = body.max = shape->mesh->positions[0];
-    for (const Vec3& p : shape->mesh->positions) {
-      body.min = body.min.cwiseMin(p);
-      body.max = body.max.cwiseMax(p);
-    }
-    const int first_triangle = static_cast<int>(surface.triangles.size());
-    surface.add(shape->mesh->triangles, shape->mesh->num_vertices());
-    if (body.is_closed) {
-      closed_meshes_.push_back(
-          {body.first_vertex, body.end_vertex, first_triangle, static_cast<int>(surface.triangles.size())});
-    }
-    body_of_triangle.resize(surface.triangles.size(), static_cast<int>(cloths_.size()) + c);
-  }
-  surface.build_one_rings();
-  const Patches patches = build_patches(surface, rest);
-  measure_edges(surface, rest);
-  const int n = surface.num_vertices;
-  motion_.start.assign(n, Vec3::Zero());
-  motion_.end.assign(n, Vec3::Zero());
-  motion_.half_thickness.assign(n, 0.0);
-  inverse_mass_.assign(n, 0.0);
-  velocity_.assign(n, {});
-  slowed_.assign(n, {});
-  near_.reserve(n);
-  near_shape_.reserve(num_cloth_vertices);
-  is_touched_.assign(n, 0);
-  proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
-                   slack);
-  proximity_.set_bodies(std::move(body_of_triangle));
-  caught_.reset(num_cloth_vertices, std::move(collider_of_vertex));
-  has_grids_ = grids.size() == cloths_.size();
-  cloth_clearance_.reset(grids);
-  starts_.resize(cloths_.size());
-  ends_.resize(cloths_.size());
-  motions_.resize(cloths_.size());
-  is_clearance_known_ = false;
+void ContactSystem::recall_forces() {
+  memory_.begin_step(bodies_.num_cloth_vertices());
+  for (int c = 0; c < bodies_.num_cloths(); ++c)
+    memory_.read(bodies_.numbering.first_vertex[c], *bodies_.cloths[c].state);
 }
 
-/// Mean and longest edges at rest, of each cloth and of all.
-void ContactSystem::measure_edges(const Surface& surface, const std::vector<Vec3>& rest) {
-  rest_edges_.assign(cloths_.size(), {});
-  std::vector<int> count(cloths_.size(), 0);
-  for (const auto& [i, j] : surface.edges) {
-    if (i >= first_vertex_.back()) break;
-    const int cloth = mesh_of(first_vertex_, i);
-    const double length = (rest[j] - rest[i]).norm();
-    rest_edges_[cloth].longest = std::max(rest_edges_[cloth].longest, length);
-    rest_edges_[cloth].mean += length;
-    ++count[cloth];
-  }
-  longest_rest_edge_ = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    rest_edges_[c].mean /= std::max(count[c], 1);
-    longest_rest_edge_ = std::max(longest_rest_edge_, rest_edges_[c].longest);
-  }
-}
-
-Patches ContactSystem::build_patches(const Surface& surface, const std::vector<Vec3>& rest) const {
-  Patches patches;
-  int triangle = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    const ClothTopology& topology = *cloths_[c].model->topology;
-    const int end = triangle + topology.mesh.num_triangles();
-    if (topology.grid)
-      patches.add_grid(surface, *topology.grid, first_vertex_[c], triangle);
+void ContactSystem::store_forces() {
+  for (int c = 0; c < bodies_.num_cloths(); ++c) {
+    ClothState& state = *bodies_.cloths[c].state;
+    if (is_placed_ && is_predicted_)
+      memory_.store(bodies_.numbering.first_vertex[c], state);
     else
-      patches.add_mesh(surface, rest, triangle, end);
-    triangle = end;
-  }
-  patches.add_body(surface, triangle, static_cast<int>(surface.triangles.size()));
-  return patches;
-}
-
-void ContactSystem::place_bodies() {
-  for (const Body& body : bodies_) {
-    const MovingShape& shape = shapes_[body.collider];
-    const MeshShape &before = std::get<MeshShape>(shape.before), &after = std::get<MeshShape>(shape.after);
-    for (int v = body.first_vertex; v < body.end_vertex; ++v) {
-      motion_.start[v] = before.vertex(v - body.first_vertex);
-      motion_.end[v] = after.vertex(v - body.first_vertex);
-      velocity_[v] = to_quad((motion_.end[v] - motion_.start[v]) / step_.step);
-    }
+      state.history.pressed = {};
   }
 }
 
 void ContactSystem::read_ends() {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v)
-      motion_.end[v] = cloths_[c].state->position(i);
-  }
+  bodies_.for_particles(
+      [&](int c, int i, int v) { bodies_.motion.end[v] = bodies_.cloths[c].state->position(i); });
 }
 
-void ContactSystem::read_solution(std::span<const Contact> contacts) {
-  if (is_placed_) read_ends();
-  contact_forces_.clear();
-  memory_.restart();
-  is_solved_.assign(cloths_.size(), is_predicted_);
-  for (std::size_t n = 0; n < contacts.size(); ++n) {
-    const Contact& c = contacts[n];
-    for (const int v : {c.particle[0], c.particle[c.num_particles - 1]})
-      is_solved_[mesh_of(first_vertex_, v)] = c.is_solved;
-    add_contact_force(solved_for_[n], c.force);
-    memory_.add(solved_for_[n], c.push);
-    if (step_.clock && c.has_pushed) ++step_.clock->times.active;
-  }
+void ContactSystem::read_survey(Survey::Result result) {
+  is_clear_ = result == Survey::Result::clear;
+  has_few_ = result == Survey::Result::few;
 }
 
 void ContactSystem::predict(const Vec3& acceleration, std::span<const Vec3> pin_targets, JobSystem& jobs) {
-  is_predicted_ = is_for_solve_ = true;
+  is_predicted_ = true;
+  constraints_.clear();
+  expected_.clear();
   if (is_placed_) {
     recall_forces();
   } else {
-    constraints_.clear();
-    expected_.clear();
-    survey_expected(acceleration, pin_targets);
+    {
+      const WorkScope scope(step_.clock, &WorkTimes::lists);
+      read_survey(survey_.survey_expected(bodies_, starts_, acceleration, pin_targets));
+    }
     if (is_clear_) return;
     place();
   }
-  find_candidates(acceleration, pin_targets, jobs);
-  expected_.assign(motion_.end.begin(), motion_.end.begin() + first_vertex_.back());
+  expect_motion(acceleration, pin_targets);
+  find_candidates(acceleration, jobs);
+  expected_.assign(bodies_.motion.end.begin(), bodies_.motion.end.begin() + bodies_.num_cloth_vertices());
 }
 
-void ContactSystem::find_candidates(const Vec3& acceleration, std::span<const Vec3> pin_targets,
-                                    JobSystem& jobs) {
-  expect_motion(acceleration, pin_targets);
+/// Predicts the motion with the acceleration that acted in the last step, ballistic_ with all of it.
+void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
+  const double h = bodies_.step;
+  SurfaceMotion& motion = bodies_.motion;
+  ballistic_ = motion.end;
+  std::size_t pin = 0;
+  bodies_.for_particles([&](int c, int i, int v) {
+    if ((*bodies_.cloths[c].is_pinned)[i]) {
+      motion.end[v] = ballistic_[v] = pin_targets[pin++];
+      return;
+    }
+    const ClothState& state = *bodies_.cloths[c].state;
+    const Vec3 inertial = motion.start[v] + h * state.v.get(i);
+    motion.end[v] = inertial + h * h * felt_acceleration(state, i, acceleration);
+    ballistic_[v] = inertial + h * h * acceleration;
+  });
+}
+
+void ContactSystem::find_candidates(const Vec3& acceleration, JobSystem& jobs) {
   update_lists(jobs);
-  constraints_.clear();
   if (proximity_.diverged_vertex() >= 0) return;
   // Cloth on a shape is predicted to fall into it, and the solve lifts it out; cloth on cloth stays in place.
-  std::swap(motion_.end, ballistic_);
-  generate_shape_constraints(1.0, step_.step * step_.step * acceleration.norm());
-  std::swap(motion_.end, ballistic_);
-  generate_pair_constraints(jobs);
+  std::swap(bodies_.motion.end, ballistic_);
+  generate_shape_constraints(Purpose::solve, 1.0, bodies_.step * bodies_.step * acceleration.norm());
+  std::swap(bodies_.motion.end, ballistic_);
+  generate_pair_constraints(Purpose::solve, jobs);
   if (constraints_.empty()) return;
-  find_caught();
+  catch_cloth();
   // Cloth that is stopped far from its predicted end is hit by the cloth behind it: search pairs at the more
   // likely positions.
-  arrived_ = motion_.end;
   {
     const WorkScope scope(step_.clock, &WorkTimes::projection);
-    project_positions(inverse_mass_, kPassesAfterSolve, constraints_, motion_.end, near_);
+    if (!projection_.project_prediction(bodies_, constraints_)) return;
   }
-  mark_touched();
-  const bool is_far = has_left_reach();
-  std::fill(is_touched_.begin(), is_touched_.end(), char{0});
-  if (!is_far) return;
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
-  proximity_.update(motion_, jobs);
-  generate_pair_constraints(jobs);
+  proximity_.update(bodies_.motion, jobs);
+  generate_pair_constraints(Purpose::solve, jobs);
 }
 
-/// Predicts motion_.end with the acceleration that acted in the last step, ballistic_ with all of it.
-void ContactSystem::expect_motion(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
-  const double h = step_.step;
-  ballistic_ = motion_.end;
-  std::size_t pin = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    const ClothState& state = *cloths_[c].state;
-    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
-      if ((*cloths_[c].is_pinned)[i]) {
-        motion_.end[v] = ballistic_[v] = pin_targets[pin++];
-        continue;
-      }
-      const Vec3 inertial = motion_.start[v] + h * state.v.get(i);
-      motion_.end[v] = inertial + h * h * felt_acceleration(state, i, acceleration);
-      ballistic_[v] = inertial + h * h * acceleration;
-    }
-  }
+/// Updates the lists for the motion, which the last survey covered.
+void ContactSystem::update_lists(JobSystem& jobs) {
+  if (has_few_)
+    proximity_.update_among(bodies_.motion, survey_.uncertain(), Survey::kSlackOfFew * 2 * bodies_.thinnest,
+                            jobs);
+  else
+    proximity_.update(bodies_.motion, jobs);
 }
 
-/// The regular distance between a constraint's features [m].
-double ContactSystem::kept_gap(const Constraint& c) const {
-  if (c.shape >= 0) return clearance_of(c);
-  return motion_.half_thickness[c.vertex[0]] + motion_.half_thickness[c.vertex[3]];
+void ContactSystem::generate_pair_constraints(Purpose purpose, JobSystem& jobs) {
+  const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
+  if (step_.clock) step_.clock->add_look(proximity_.vertex_triangle().size() + proximity_.edge_edge().size());
+  weft::engine::generate_pair_constraints({bodies_, proximity_, caught_, memory_, purpose}, jobs, chunks_,
+                                          constraints_);
 }
 
-/// For contacts that carry the pressure of gas on the particles around them [N/m].
-double ContactSystem::pressure_stiffness(const Constraint& c) const {
-  double force = 0;
-  for (int k = 0; k < c.num_vertices; ++k) {
-    const int v = c.vertex[k];
-    if (v >= first_vertex_.back()) continue;
-    const int cloth = mesh_of(first_vertex_, v);
-    const double pressure = cloths_[cloth].pressure;
-    if (pressure > 0)
-      force +=
-          std::abs(c.weight[k]) * pressure * cloths_[cloth].model->topology->area[v - first_vertex_[cloth]];
-  }
-  return force / (kPressed * kept_gap(c));
+/// `stretch`: how much longer than in the lists an edge may be [m].
+void ContactSystem::generate_shape_constraints(Purpose purpose, double share_of_travel, double stretch) {
+  const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
+  add_caught_constraints(bodies_, caught_, constraints_);
+  is_near_shape_ =
+      bodies_.has_plain_shapes() &&
+      shape_constraints_.generate(
+          {bodies_, caught_, purpose, proximity_.longest_edge() + stretch, share_of_travel}, constraints_);
 }
 
-/// Whether the features are predicted to slide over other cells within the step.
-bool ContactSystem::slides_far(const Constraint& c) const {
-  Vec3 way = -step_.step * c.surface_velocity;
-  double edge = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < c.num_vertices; ++k) {
-    const int v = c.vertex[k];
-    way += c.weight[k] * (motion_.end[v] - motion_.start[v]);
-    if (v < first_vertex_.back()) edge = std::min(edge, rest_edges_[mesh_of(first_vertex_, v)].mean);
-  }
-  return (way - way.dot(c.normal) * c.normal).norm() > kFarSlide * edge;
+/// Finds newly caught cloth, and replaces its constraints.
+void ContactSystem::catch_cloth() {
+  if (!find_caught(bodies_, constraints_, caught_)) return;
+  std::erase_if(constraints_, [&](const Constraint& c) { return c.is_caught || caught_.replaces(c); });
+  add_caught_constraints(bodies_, caught_, constraints_);
 }
 
 void ContactSystem::find_contacts(std::vector<Contact>& contacts) {
   const WorkScope scope(step_.clock, &WorkTimes::rows);
+  std::erase_if(constraints_, [](const Constraint& c) { return c.inverse_mass == 0; });
+  solved_.set(constraints_);
   contacts.clear();
-  solved_for_.swap(constraints_);
-  std::erase_if(solved_for_, [](const Constraint& c) { return c.inverse_mass == 0; });
-  const double h = step_.step;
-  for (const Constraint& c : solved_for_) {
-    Contact& contact = contacts.emplace_back();
-    contact.num_particles = 0;
-    contact.normal = c.normal;
-    contact.offset = c.target;
-    contact.gap = kept_gap(c);
-    contact.depth_before = depth_at_start(c);
-    contact.stick_point = h * c.surface_velocity;
-    contact.friction = c.friction;
-    const double usual =
-        std::max((c.shape >= 0 ? kShapeStiffness : kPairStiffness) / (c.inverse_mass * h * h),
-                 has_pressure_ ? pressure_stiffness(c) : 0.0);
-    contact.stiffness = usual;
-    contact.lasting_force = slides_far(c) ? 0 : memory_.lasting_force(c);
-    if (contact.lasting_force > 0) {
-      contact.stiffness =
-          std::clamp(contact.lasting_force / (kPressed * contact.gap), usual, kMostStiff * usual);
-      contact.stiffened = contact.stiffness / usual;
-    }
-    for (int k = 0; k < c.num_vertices; ++k) {
-      const int v = c.vertex[k];
-      const double w = c.weight[k];
-      if (v < first_vertex_.back()) {
-        const Vec3& origin = cloths_[mesh_of(first_vertex_, v)].state->origin;
-        contact.particle[contact.num_particles] = v;
-        contact.weight[contact.num_particles++] = w;
-        contact.offset -= w * c.normal.dot(origin);
-        contact.stick_point += w * (motion_.start[v] - origin);
-      } else {
-        contact.offset -= w * c.normal.dot(motion_.end[v]);
-        contact.stick_point -= w * (motion_.end[v] - motion_.start[v]);
-      }
-    }
+  for (const Constraint& c : solved_.constraints()) contacts.push_back(make_contact(c, bodies_, memory_));
+}
+
+void ContactSystem::read_solution(std::span<const Contact> contacts) {
+  if (is_placed_) read_ends();
+  forces_.clear();
+  memory_.restart();
+  solved_.read(contacts, bodies_.numbering, is_predicted_);
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    const Contact& contact = contacts[n];
+    const Constraint& c = solved_.constraints()[n];
+    add_force(c, contact.force);
+    memory_.add(c, contact.push);
+    if (step_.clock && contact.has_pushed) ++step_.clock->times.active;
   }
 }
 
-/// Penetration of a collider, 0 for cloth. For a primitive shape relative to its start pose, because the
-/// constraint's plane moves in a straight line.
-double ContactSystem::depth_at_start(const Constraint& c) const {
-  if (c.is_caught) return 0;
-  if (c.shape < 0) return is_on_body(c) ? c.target - c.normal.dot(c.sum(motion_.start)) : 0;
-  return clearance_of(c) - find_nearest(shapes_[c.shape].before, c, motion_.start).distance;
-}
-
-int ContactSystem::diverged_cloth() const {
-  return is_clear_ || proximity_.diverged_vertex() < 0 ? -1
-                                                       : mesh_of(first_vertex_, proximity_.diverged_vertex());
-}
-
-void ContactSystem::store_forces() {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    if (is_placed_ && is_predicted_)
-      memory_.store(first_vertex_[c], *cloths_[c].state);
-    else
-      cloths_[c].state->history.pressed = {};
-  }
-}
-
-/// Whether the solve separated all cloths of a constraint.
-bool ContactSystem::is_solved(const Constraint& c) const {
-  for (int k = 0; k < c.num_vertices; ++k) {
-    const int v = c.vertex[k];
-    if (v < first_vertex_.back() && !is_solved_[mesh_of(first_vertex_, v)]) return false;
-  }
-  return true;
-}
-
-/// Marks the constraint's cloths as not separated. Returns whether this changed any of them.
-bool ContactSystem::mark_unsolved(const Constraint& c) {
-  bool has_changed = false;
-  for (int k = 0; k < c.num_vertices; ++k) {
-    if (c.vertex[k] >= first_vertex_.back()) continue;
-    char& is_solved = is_solved_[mesh_of(first_vertex_, c.vertex[k])];
-    has_changed |= is_solved != 0;
-    is_solved = 0;
-  }
-  return has_changed;
+void ContactSystem::add_force(const Constraint& c, const Vec3& force) {
+  if (step_.tracks) forces_.add(c, force);
 }
 
 /// Whether the solve separated all cloths, and each ended where contacts were searched.
 bool ContactSystem::matches_prediction() const {
-  if (expected_.empty()) return false;
-  if (std::any_of(is_solved_.begin(), is_solved_.end(), [](char is) { return is == 0; })) return false;
-  for (int v = 0; v < first_vertex_.back(); ++v) {
-    const double most = 0.5 * kMaxShortfall * motion_.half_thickness[v];
-    if ((motion_.end[v] - expected_[v]).squaredNorm() > most * most) return false;
+  if (expected_.empty() || !solved_.are_all_separated()) return false;
+  for (std::size_t v = 0; v < expected_.size(); ++v) {
+    const double most = 0.5 * kMaxShortfall * bodies_.motion.half_thickness[v];
+    if ((bodies_.motion.end[v] - expected_[v]).squaredNorm() > most * most) return false;
   }
   return true;
 }
 
-/// Drops the constraints of cloths that the solve separated and that touch only such cloths.
-void ContactSystem::leave_out_solved() {
-  if (!is_predicted_) return;
-  for (const Constraint& c : constraints_) {
-    if (is_short(c)) mark_unsolved(c);
-  }
-  for (bool is_spreading = true; is_spreading;) {
-    is_spreading = false;
-    for (const Constraint& c : constraints_) {
-      if (!is_solved(c)) is_spreading |= mark_unsolved(c);
-    }
-  }
-  std::erase_if(constraints_, [&](const Constraint& c) { return is_solved(c); });
-}
-
 void ContactSystem::find_violations(JobSystem& jobs) {
-  is_for_solve_ = is_clear_ = false;
-  pressed_in_ = is_predicted_ ? kPressedIn : 0;
+  is_clear_ = false;
   constraints_.clear();
-  if (is_surveyed_ || !is_placed_) {
-    survey_solved();
-    if (is_clear_) return;
+  if (has_few_ || !is_placed_) {
+    const WorkScope scope(step_.clock, &WorkTimes::lists);
+    read_survey(survey_.survey_solved(bodies_, starts_, is_predicted_));
   }
+  if (is_clear_) return;
   if (!is_placed_) {
     place();
     read_ends();
@@ -575,96 +353,101 @@ void ContactSystem::find_violations(JobSystem& jobs) {
   update_lists(jobs);
   if (proximity_.diverged_vertex() >= 0) return;
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
-  is_clear_ = lists_are_empty && !has_plain_shapes() && caught_.empty();
+  is_clear_ = lists_are_empty && !bodies_.has_plain_shapes() && caught_.empty();
   if (is_clear_ || matches_prediction()) return;
-  generate_pair_constraints(jobs);
-  generate_shape_constraints(0.0);
-  if (!is_predicted_) find_caught();
+  generate_pair_constraints(after(), jobs);
+  generate_shape_constraints(after(), 0.0);
+  if (!is_predicted_) catch_cloth();
   is_clear_ = lists_are_empty && !is_near_shape_ && caught_.empty();
-  leave_out_solved();
+  if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
 }
 
 bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSystem& jobs) {
   if (!is_predicted_ || constraints_.empty()) return false;
-  known_.clear();
-  for (const Constraint& c : solved_for_) known_.push_back(key_of(c));
-  std::sort(known_.begin(), known_.end());
-  const auto is_known = [&](const Constraint& c) {
-    return std::binary_search(known_.begin(), known_.end(), key_of(c));
-  };
+  solved_.sort_known();
+  const auto is_known = [&](const Constraint& c) { return solved_.is_known(c); };
   if (std::none_of(constraints_.begin(), constraints_.end(),
                    [&](const Constraint& c) { return has_passed(c) && !is_known(c); }))
     return false;
-  is_for_solve_ = true;
-  pressed_in_ = 0;
   constraints_.clear();
-  generate_pair_constraints(jobs);
-  generate_shape_constraints(0.0);
+  generate_pair_constraints(Purpose::solve, jobs);
+  generate_shape_constraints(Purpose::solve, 0.0);
   std::erase_if(constraints_, is_known);
-  constraints_.insert(constraints_.begin(), solved_for_.begin(), solved_for_.end());
-  expected_.assign(motion_.end.begin(), motion_.end.begin() + first_vertex_.back());
+  constraints_.insert(constraints_.begin(), solved_.constraints().begin(), solved_.constraints().end());
+  expected_.assign(bodies_.motion.end.begin(), bodies_.motion.end.begin() + bodies_.num_cloth_vertices());
   find_contacts(contacts);
   return true;
-}
-
-/// How far the features end beyond the constraint's plane; negative on the free side [m].
-double ContactSystem::depth_at_end(const Constraint& c) const {
-  return c.target - c.normal.dot(c.sum(motion_.end));
 }
 
 /// Whether features passed through each other, or cloth through a shape's surface. On round shapes the solve
 /// replaces triangles by edges: those do not count.
 bool ContactSystem::has_passed(const Constraint& c) const {
-  if (c.shape >= 0 && c.num_vertices == 3 && is_round(c.shape)) return false;
-  const double most = c.shape >= 0 ? motion_.half_thickness[c.vertex[0]] : kept_gap(c);
-  return depth_at_end(c) > most;
-}
-
-/// The features of a constraint.
-ContactSystem::FeatureKey ContactSystem::key_of(const Constraint& c) {
-  FeatureKey key{c.shape, -1, -1, -1, -1};
-  std::copy_n(c.vertex.begin(), c.num_vertices, key.begin() + 1);
-  return key;
-}
-
-/// Whether the features end nearer than the tolerance of a solve.
-bool ContactSystem::is_short(const Constraint& c) const {
-  return depth_at_end(c) > kMaxShortfall * kept_gap(c);
+  if (c.shape >= 0 && c.num_vertices == 3 && is_round(bodies_, c.shape)) return false;
+  const double most =
+      c.shape >= 0 ? bodies_.motion.half_thickness[c.vertex[0]] : bodies_.gap_of(c, Purpose::after_solve);
+  return bodies_.depth_at_end(c) > most;
 }
 
 void ContactSystem::project_contacts(JobSystem& jobs) {
   if (constraints_.empty()) return;
-  project(jobs);
-  store_touched();
+  const WorkScope scope(step_.clock, &WorkTimes::projection);
+  projection_.begin(bodies_);
+  projection_.settle(bodies_, after(), constraints_);
+  projection_.project_velocities(bodies_, constraints_);
+  for (const Constraint& c : constraints_) {
+    add_force(c, (c.impulse * c.normal + c.friction_impulse) / bodies_.step);
+    if (is_predicted_)
+      memory_.add(c, c.impulse / bodies_.step);
+    else if (step_.clock)
+      step_.clock->times.active += c.is_active;
+  }
+  projection_.settle(bodies_, after(), constraints_);
+  // Vertices that were moved far may now touch features beyond the search radius.
+  for (int search = 0; search < kSearches && projection_.has_left_reach(bodies_); ++search) {
+    projection_.search_again(bodies_);
+    proximity_.update(bodies_.motion, jobs);
+    constraints_.clear();
+    generate_pair_constraints(after(), jobs);
+    generate_shape_constraints(after(), 0.0);
+    if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
+    projection_.settle(bodies_, after(), constraints_);
+  }
+  projection_.store(bodies_);
 }
 
 CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
-  store_caught();
+  newly_caught_ = store_caught(bodies_, caught_);
   store_forces();
   if (is_clear_) return {};
   origins_.clear();
   read_ends();
-  for (const ContactCloth& cloth : cloths_) origins_.push_back(cloth.state->origin);
+  for (const ContactCloth& cloth : bodies_.cloths) origins_.push_back(cloth.state->origin);
   if (proximity_.diverged_vertex() >= 0 || !is_within_ccd_range()) return {};
   const WorkScope scope(step_.clock, &WorkTimes::ccd);
-  find_separations();
-  const CcdFailSafeReport report =
-      ccd_fail_safe_.resolve({&inverse_mass_, &shapes_, &first_vertex_, &origins_, &closed_meshes_,
-                              &non_colliding_, &clearance_, &caught_, thickest_, separations_, step_.clock},
-                             proximity_, motion_, jobs);
+  find_separations(constraints_, separations_);
+  const CcdFailSafeReport report = ccd_fail_safe_.resolve({.inverse_mass = &bodies_.inverse_mass,
+                                                           .shapes = &bodies_.shapes,
+                                                           .first_vertex = &bodies_.numbering.first_vertex,
+                                                           .origins = &origins_,
+                                                           .bodies = &bodies_.numbering.bodies,
+                                                           .non_colliding = &bodies_.pairs.non_colliding(),
+                                                           .clearance = &shape_constraints_.clearance(),
+                                                           .caught = &caught_,
+                                                           .thickest = bodies_.thickest,
+                                                           .separations = separations_,
+                                                           .clock = step_.clock},
+                                                          proximity_, bodies_.motion, jobs);
   if (report.hits == 0) return report;
   for (const Constraint& c : ccd_fail_safe_.pushes())
-    add_contact_force(c, c.push / (step_.step * step_.step) * c.normal);
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    ClothState& state = *cloths_[c].state;
-    for (int i = 0, v = first_vertex_[c]; v < first_vertex_[c + 1]; ++i, ++v) {
-      const Vec3 moved = motion_.end[v] - state.position(i);
-      if (moved.isZero(0)) continue;
-      state.history.had_contact = true;
-      state.set_position(i, motion_.end[v]);
-      state.v.set(i, state.v.get(i) + moved / step_.step);
-    }
-  }
+    add_force(c, c.push / (bodies_.step * bodies_.step) * c.normal);
+  bodies_.for_particles([&](int c, int i, int v) {
+    ClothState& state = *bodies_.cloths[c].state;
+    const Vec3 moved = bodies_.motion.end[v] - state.position(i);
+    if (moved.isZero(0)) return;
+    state.history.had_contact = true;
+    state.set_position(i, bodies_.motion.end[v]);
+    state.v.set(i, state.v.get(i) + moved / bodies_.step);
+  });
   return report;
 }
 
@@ -672,100 +455,41 @@ CcdFailSafeReport ContactSystem::run_ccd_fail_safe(JobSystem& jobs) {
 /// metres per step are no cloth motion.
 bool ContactSystem::is_within_ccd_range() const {
   constexpr double kLargest = 1e3, kFarthest = 30;  // [m]
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
-      const Vec3 offset = motion_.start[v] - origins_[c], way = motion_.end[v] - motion_.start[v];
-      if (!(offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest)) return false;
-    }
-  }
-  return true;
+  bool is_within = true;
+  bodies_.for_particles([&](int c, int, int v) {
+    const Vec3& start = bodies_.motion.start[v];
+    const Vec3 offset = start - origins_[c], way = bodies_.motion.end[v] - start;
+    is_within &= offset.cwiseAbs().maxCoeff() < kLargest && way.cwiseAbs().maxCoeff() < kFarthest;
+  });
+  return is_within;
 }
 
-void ContactSystem::settle_positions() {
-  const int rounds = is_predicted_ ? kRoundsAfterSolve : kRounds;
-  const int passes = is_predicted_ ? kPassesAfterSolve : kPasses;
-  for (int round = 0; round < rounds; ++round) {
-    const double moved = project_positions(inverse_mass_, passes, constraints_, motion_.end, near_);
-    if (moved < kSettled) return;
-    for (Constraint& c : constraints_) {
-      if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
-      Constraint updated = c;
-      update_plane(find_nearest(shapes_[c.shape].after, c, motion_.end), updated);
-      if (updated.inverse_mass > 0) c = updated;  // 0: at a pin
-      c.push = 0;
-    }
-  }
+int ContactSystem::diverged_cloth() const {
+  const int vertex = proximity_.diverged_vertex();
+  return is_clear_ || vertex < 0 ? -1 : bodies_.numbering.cloth_of(vertex);
 }
 
-void ContactSystem::project(JobSystem& jobs) {
-  const WorkScope scope(step_.clock, &WorkTimes::projection);
-  arrived_ = motion_.end;
-  settle_positions();
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
-      velocity_[v] = to_quad(cloths_[c].state->v.get(v - first_vertex_[c]));
-      slowed_[v] = {};
-    }
-  }
-  velocity_projection_.project(inverse_mass_, constraints_, velocity_, slowed_);
-  for (const Constraint& c : constraints_) {
-    add_contact_force(c, (c.impulse * c.normal + c.friction_impulse) / step_.step);
-    if (is_predicted_) memory_.add(c, c.impulse / step_.step);
-  }
-  if (step_.clock && !is_predicted_)
-    step_.clock->times.active += std::count_if(constraints_.begin(), constraints_.end(),
-                                               [](const Constraint& c) { return c.is_active; });
-  undo_slides();
-  settle_positions();
-  mark_touched();
-  // Vertices that were moved far may now touch features beyond the search radius.
-  for (int search = 0; search < kSearches && has_left_reach(); ++search) {
-    arrived_ = motion_.end;
-    proximity_.update(motion_, jobs);
-    constraints_.clear();
-    generate_pair_constraints(jobs);
-    generate_shape_constraints(0.0);
-    leave_out_solved();
-    settle_positions();
-    mark_touched();
-  }
+Intersections ContactSystem::find_intersections(std::span<const ContactCloth> cloths,
+                                                const std::vector<Collider>& colliders,
+                                                const ContactStep& now) {
+  begin_step(cloths, colliders, now);
+  if (!is_placed_) place();
+  return weft::engine::find_intersections(make_repair_input(bodies_), positions_now(bodies_));
 }
 
-/// Whether any vertex was moved so far that contacts must be searched again: by more than half of the search
-/// margin.
-bool ContactSystem::has_left_reach() const {
-  for (int v = 0; v < first_vertex_.back(); ++v) {
-    const double reach = std::max(kSettled, 0.5 * motion_.half_thickness[v]);
-    if (is_touched_[v] && (motion_.end[v] - arrived_[v]).squaredNorm() > reach * reach) return true;
-  }
-  return false;
-}
-
-/// Friction also removes this step's sliding displacement, so that sticking cloth does not creep.
-void ContactSystem::undo_slides() {
-  mark_touched();
-  for (int v = 0; v < first_vertex_.back(); ++v) {
-    if (is_touched_[v]) motion_.end[v] += step_.step * slowed_[v].to_vec3();
-  }
-}
-
-void ContactSystem::mark_touched() {
-  for (const Constraint& c : constraints_) {
-    if (!c.is_active) continue;
-    for (int k = 0; k < c.num_vertices; ++k) is_touched_[c.vertex[k]] = 1;
-  }
-}
-
-void ContactSystem::store_touched() {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    for (int v = first_vertex_[c]; v < first_vertex_[c + 1]; ++v) {
-      if (!is_touched_[v] || inverse_mass_[v] == 0) continue;
-      cloths_[c].state->history.had_contact = true;
-      cloths_[c].state->set_position(v - first_vertex_[c], motion_.end[v]);
-      cloths_[c].state->v.set(v - first_vertex_[c], velocity_[v].to_vec3());
-    }
-  }
-  std::fill(is_touched_.begin(), is_touched_.end(), char{0});
+UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
+                                       const std::vector<Collider>& colliders, const ContactStep& now) {
+  begin_step(cloths, colliders, now);
+  if (!is_placed_) place();
+  std::vector<Vec3> positions = positions_now(bodies_);
+  const UntangleResult result = weft::engine::untangle(make_repair_input(bodies_), positions);
+  bodies_.for_particles([&](int c, int i, int v) {
+    if (positions[v] == bodies_.motion.start[v]) return;
+    ClothState& state = *bodies_.cloths[c].state;
+    state.set_position(i, positions[v]);
+    state.history.step = 0;
+  });
+  return result;
 }
 
 }  // namespace weft::engine

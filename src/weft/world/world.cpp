@@ -522,8 +522,8 @@ void World::set_wind(const Wind& wind) {
   wind_ = wind;
 }
 
-ContactSystem::Place World::find_place(const std::string& name) const {
-  std::vector<ContactSystem::Place> found;
+BodyPlace World::find_place(const std::string& name) const {
+  std::vector<BodyPlace> found;
   for (int c = 0; c < num_cloths(); ++c) {
     if (cloths_[c].name == name) found.push_back({c, -1, 0});
   }
@@ -536,12 +536,12 @@ ContactSystem::Place World::find_place(const std::string& name) const {
   return found[0];
 }
 
-ContactSystem::Place World::place_of(const BodyId& id) const {
+BodyPlace World::place_of(const BodyId& id) const {
   if (const ClothId* cloth = std::get_if<ClothId>(&id)) return {static_cast<int>(index_of(*cloth)), -1, 0};
   return {-1, static_cast<int>(index_of(std::get<ColliderId>(id))), 0};
 }
 
-ContactRule& World::rule_for(ContactSystem::Place cloth, ContactSystem::Place other) {
+ContactRule& World::rule_for(BodyPlace cloth, BodyPlace other) {
   if (cloth.cloth < 0) std::swap(cloth, other);
   require(cloth.cloth >= 0,
           name_of(cloth) + " and " + name_of(other) +
@@ -564,7 +564,7 @@ void World::set_friction(BodyId a, BodyId b, double friction, double static_fric
   set_friction_at(place_of(a), place_of(b), friction, static_friction);
 }
 
-void World::set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
+void World::set_friction_at(BodyPlace a, BodyPlace b, double friction,
                             double static_friction) {
   for (const double number : {friction, static_friction})
     require(std::isfinite(number) && number >= 0,
@@ -740,13 +740,13 @@ bool World::is_attached(const InfeasiblePair& pair) const {
   });
 }
 
-std::string World::name_of(const ContactSystem::Place& place) const {
+std::string World::name_of(const BodyPlace& place) const {
   if (place.cloth < 0) return "collider \"" + colliders_[place.collider].name + '"';
   return "cloth \"" + cloths_[place.cloth].name + '"';
 }
 
 InfeasiblePair World::describe(const Infeasible& pair) const {
-  ContactSystem::Place a = contact_system_.place_of(pair.vertex), b{.collider = pair.shape};
+  BodyPlace a = contact_system_.place_of(pair.vertex), b{.collider = pair.shape};
   if (pair.shape < 0) b = contact_system_.place_of(pair.other);
   if (a.cloth < 0) std::swap(a, b);
   return {.cloth = a.cloth,
@@ -768,7 +768,7 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
   };
   for (const EdgeFaceIntersection& p : intersections.edge_face) {
     const auto [i, j] = contact_system_.surface().edges[p.edge];
-    const ContactSystem::Place edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
+    const BodyPlace edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
                                triangle = contact_system_.place_of_triangle(p.triangle);
     add("edges of " + name_of(edge) + " intersect triangles of " + name_of(triangle), [&] {
       return ", first edge " + std::to_string(edge.index) + "-" + std::to_string(other.index) +
@@ -776,7 +776,7 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
     });
   }
   for (const Inside& inside : intersections.inside) {
-    const ContactSystem::Place place = contact_system_.place_of(inside.vertex);
+    const BodyPlace place = contact_system_.place_of(inside.vertex);
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
         [&] { return ", first particle " + std::to_string(place.index); });
   }

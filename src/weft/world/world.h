@@ -311,11 +311,11 @@ class World {
   World make_stage() const;
   int thin_colliders(const Intersections& crossed, World& stage) const;
   void halt();
-  std::string name_of(const ContactSystem::Place& place) const;
-  ContactSystem::Place find_place(const std::string& name) const;
-  ContactSystem::Place place_of(const BodyId& id) const;
-  ContactRule& rule_for(ContactSystem::Place a, ContactSystem::Place b);
-  void set_friction_at(ContactSystem::Place a, ContactSystem::Place b, double friction,
+  std::string name_of(const BodyPlace& place) const;
+  BodyPlace find_place(const std::string& name) const;
+  BodyPlace place_of(const BodyId& id) const;
+  ContactRule& rule_for(BodyPlace a, BodyPlace b);
+  void set_friction_at(BodyPlace a, BodyPlace b, double friction,
                        double static_friction);
   void save(Snapshot& snapshot) const;
   void save_states(std::vector<ClothState>& states) const;

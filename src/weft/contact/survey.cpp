@@ -1,9 +1,9 @@
-/// ContactSystem's survey of a step: which cloth patches may meet, and whether colliders are near.
+#include "weft/contact/survey.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "weft/contact/contact_system.h"
+#include "weft/contact/shape_clearance.h"
 #include "weft/core/simd.h"
 #include "weft/geometry/shape_distance.h"
 
@@ -13,7 +13,7 @@ namespace {
 /// Distance that features outside the search keep, over the contact gap [1]. 1.25 is more than the solve
 /// counts as near, and more than the deviation from the prediction at which contact projection is a no-op.
 /// The rest is twice the slack of lists of few patches.
-constexpr double kSlackOfFew = 0.05, kRoom = 1.25 + 2 * kSlackOfFew;
+constexpr double kRoom = 1.25 + 2 * Survey::kSlackOfFew;
 
 /// Limit on uncertain pairs, over the number of patches, for searching only these [1].
 constexpr double kFew = 1;
@@ -53,9 +53,18 @@ WEFT_MULTIVERSION(find_felt,
 
 }  // namespace
 
-/// Whether to survey: all cloths are grids, the step's start is needed for positions only, and no recent
-/// survey was without benefit.
-bool ContactSystem::may_survey() {
+void Survey::reset(std::span<const ContactCloth> cloths) {
+  std::vector<Grid> grids;
+  for (const ContactCloth& cloth : cloths) {
+    if (cloth.model->topology->grid) grids.push_back(*cloth.model->topology->grid);
+  }
+  has_grids_ = grids.size() == cloths.size();
+  clearance_.reset(grids);
+  ends_.resize(cloths.size());
+  motions_.resize(cloths.size());
+}
+
+bool Survey::may_begin(const StepBodies& bodies, std::span<const ContactRule> rules) {
   if (num_without_ > 0) {
     --num_without_;
     return false;
@@ -63,17 +72,18 @@ bool ContactSystem::may_survey() {
   const auto has_static = [](const MovingShape& shape) { return shape.collider->static_friction > 0; };
   const auto sets_static = [](const ContactRule& rule) { return rule.static_friction.value_or(0) > 0; };
   const auto has_caught = [](const ContactCloth& cloth) { return !cloth.state->caught.empty(); };
-  return has_grids_ && std::none_of(cloths_.begin(), cloths_.end(), has_caught) &&
-         std::none_of(shapes_.begin(), shapes_.end(), has_static) &&
-         std::none_of(step_.rules.begin(), step_.rules.end(), sets_static);
+  return has_grids_ && std::none_of(bodies.cloths.begin(), bodies.cloths.end(), has_caught) &&
+         std::none_of(bodies.shapes.begin(), bodies.shapes.end(), has_static) &&
+         std::none_of(rules.begin(), rules.end(), sets_static);
 }
 
-/// As expect_motion(), but in floats.
-void ContactSystem::expect_ends(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
-  const double h = step_.step, size_sq = acceleration.squaredNorm();
+/// Ends as ContactSystem::expect_motion() predicts them, but in floats.
+void Survey::expect_ends(const StepBodies& bodies, const Vec3& acceleration,
+                         std::span<const Vec3> pin_targets) {
+  const double h = bodies.step, size_sq = acceleration.squaredNorm();
   std::size_t pin = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    const ClothState& state = *cloths_[c].state;
+  for (int c = 0; c < bodies.num_cloths(); ++c) {
+    const ClothState& state = *bodies.cloths[c].state;
     const int count = static_cast<int>(state.x.size());
     Vec3Array& ends = ends_[c];
     ends.resize(count);
@@ -90,89 +100,74 @@ void ContactSystem::expect_ends(const Vec3& acceleration, std::span<const Vec3> 
     for (int k = 0; k < 3; ++k)
       predict_ballistic(x[k], v[k], felt_.data(), static_cast<float>(h),
                         static_cast<float>(h * h * acceleration[k]), count, end[k]);
-    const std::vector<char>& is_pinned = *cloths_[c].is_pinned;
+    const std::vector<char>& is_pinned = *bodies.cloths[c].is_pinned;
     for (int i = 0; i < count && pin < pin_targets.size(); ++i) {
       if (is_pinned[i]) ends.set(i, pin_targets[pin++] - state.origin);
     }
   }
 }
 
-/// Surveys the straight motion to the prediction under inertia and `acceleration`; against colliders, to the
-/// ballistic prediction.
-void ContactSystem::survey_expected(const Vec3& acceleration, std::span<const Vec3> pin_targets) {
-  expect_ends(acceleration, pin_targets);
-  for (std::size_t c = 0; c < cloths_.size(); ++c) motions_[c].end = &ends_[c];
-  survey(step_.step * step_.step * acceleration.norm());
+Survey::Result Survey::survey_expected(const StepBodies& bodies, std::span<const Vec3Array> starts,
+                                       const Vec3& acceleration, std::span<const Vec3> pin_targets) {
+  expect_ends(bodies, acceleration, pin_targets);
+  for (int c = 0; c < bodies.num_cloths(); ++c) motions_[c].end = &ends_[c];
+  return survey(bodies, starts, bodies.step * bodies.step * acceleration.norm(), true);
 }
 
-/// Surveys the motion to the present positions.
-void ContactSystem::survey_solved() {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) motions_[c].end = &cloths_[c].state->x;
-  survey(0);
+Survey::Result Survey::survey_solved(const StepBodies& bodies, std::span<const Vec3Array> starts,
+                                     bool is_predicted) {
+  for (int c = 0; c < bodies.num_cloths(); ++c) motions_[c].end = &bodies.cloths[c].state->x;
+  return survey(bodies, starts, 0, is_predicted);
 }
 
 /// `fall`: how much farther cloth may move [m].
-void ContactSystem::survey(double fall) {
-  const WorkScope scope(step_.clock, &WorkTimes::lists);
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    motions_[c].start = &starts_[c];
-    motions_[c].origin = cloths_[c].state->origin;
-    motions_[c].thickness = cloths_[c].model->material.thickness;
+Survey::Result Survey::survey(const StepBodies& bodies, std::span<const Vec3Array> starts, double fall,
+                              bool is_predicted) {
+  for (int c = 0; c < bodies.num_cloths(); ++c) {
+    motions_[c].start = &starts[c];
+    motions_[c].origin = bodies.cloths[c].state->origin;
+    motions_[c].thickness = bodies.cloths[c].model->material.thickness;
   }
-  const auto most = static_cast<std::size_t>(kFew * cloth_clearance_.num_patches());
+  const auto most = static_cast<std::size_t>(kFew * clearance_.num_patches());
   const bool is_known =
-      cloth_clearance_.find_uncertain(motions_, kRoom, most, uncertain_) && are_bodies_far(fall);
-  is_clear_ = is_known && uncertain_.empty() && are_shapes_far(fall);
+      clearance_.find_uncertain(motions_, kRoom, most, uncertain_) && are_bodies_far(bodies, fall);
+  if (is_known && uncertain_.empty() && are_shapes_far(bodies, fall)) return Result::clear;
   // With many short steps, persistent lists are faster.
-  is_surveyed_ = is_clear_ || (is_known && is_predicted_);
-  if (!is_surveyed_) num_without_ = kStepsWithout;
-}
-
-/// Updates the lists for motion_, which the last survey covered.
-void ContactSystem::update_lists(JobSystem& jobs) {
-  if (is_surveyed_)
-    proximity_.update_among(motion_, uncertain_, kSlackOfFew * 2 * thinnest_, jobs);
-  else
-    proximity_.update(motion_, jobs);
+  if (is_known && is_predicted) return Result::few;
+  num_without_ = kStepsWithout;
+  return Result::no_result;
 }
 
 /// Bounds of cloth during the surveyed step, enlarged by `fall`.
-ContactSystem::Region ContactSystem::surveyed_region(double fall) const {
-  const SweptBox& bounds = cloth_clearance_.bounds();
+Survey::Region Survey::surveyed_region(const StepBodies& bodies, double fall) const {
+  const SweptBox& bounds = clearance_.bounds();
   const Float4 low = bounds.min + bounds.way_min.cwiseMin(0.0f),
                high = bounds.max + bounds.way_max.cwiseMax(0.0f);
-  const Vec3 origin = cloths_[0].state->origin, margin = Vec3::Constant(fall);
+  const Vec3 origin = bodies.cloths[0].state->origin, margin = Vec3::Constant(fall);
   const double way = bounds.way_min.cwiseAbs().cwiseMax(bounds.way_max.cwiseAbs()).norm() + fall;
   return {origin + low.head<3>().cast<double>() - margin, origin + high.head<3>().cast<double>() + margin,
-          2 * thickest_ + way + kRoomFromColliders};
+          2 * bodies.thickest + way + kRoomFromColliders};
 }
 
-bool ContactSystem::are_shapes_far(double fall) const {
-  if (!has_plain_shapes()) return true;
-  const Region region = surveyed_region(fall);
-  return std::all_of(shapes_.begin(), shapes_.end(), [&](const MovingShape& shape) {
+bool Survey::are_shapes_far(const StepBodies& bodies, double fall) const {
+  if (!bodies.has_plain_shapes()) return true;
+  const Region region = surveyed_region(bodies, fall);
+  return std::all_of(bodies.shapes.begin(), bodies.shapes.end(), [&](const MovingShape& shape) {
     return shape.is_mesh() || least_distance(shape, region.min, region.max) > region.reach;
   });
 }
 
-bool ContactSystem::are_bodies_far(double fall) const {
-  if (bodies_.empty()) return true;
-  const Region region = surveyed_region(fall);
-  return std::all_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
-    const MovingShape& shape = shapes_[body.collider];
+bool Survey::are_bodies_far(const StepBodies& bodies, double fall) const {
+  const std::vector<ColliderMesh>& meshes = bodies.numbering.bodies;
+  if (meshes.empty()) return true;
+  const Region region = surveyed_region(bodies, fall);
+  return std::all_of(meshes.begin(), meshes.end(), [&](const ColliderMesh& body) {
+    const MovingShape& shape = bodies.shapes[body.collider];
     const auto [before_min, before_max] = body.bounds_at(std::get<MeshShape>(shape.before));
     const auto [after_min, after_max] = body.bounds_at(std::get<MeshShape>(shape.after));
     return boxes_distance(before_min.cwiseMin(after_min), before_max.cwiseMax(after_max), region.min,
                           region.max) > region.reach;
   });
-}
-
-/// Bounds of a static mesh; infinite for a deforming one.
-std::pair<Vec3, Vec3> ContactSystem::Body::bounds_at(const MeshShape& shape) const {
-  const Vec3 middle = shape.rotation * (0.5 * (min + max)) + shape.translation;
-  Vec3 half = shape.rotation.cwiseAbs() * (0.5 * (max - min));
-  if (shape.source) half.setConstant(std::numeric_limits<double>::infinity());
-  return {middle - half, middle + half};
 }
 
 }  // namespace weft::engine

@@ -1,0 +1,54 @@
+#pragma once
+/// Narrow phase of primitive shapes: spheres, planes, capsules and boxes, against particles, edges and triangles.
+
+#include <vector>
+
+#include "weft/contact/caught_particles.h"
+#include "weft/contact/shape_clearance.h"
+#include "weft/contact/step_bodies.h"
+
+namespace weft::engine {
+
+/// Updates a constraint's plane: the tangent plane of its shape at the point nearest to the particle, edge or
+/// triangle at the end of the step.
+void update_plane(const StepBodies& bodies, Purpose purpose, Constraint& c);
+
+/// Distance of a constraint's feature from its shape at the start of the step [m].
+double distance_at_start(const StepBodies& bodies, const Constraint& c);
+
+/// Whether a shape's radius is so large, beside the cells of cloth, that cloth lies on it like on a plane.
+bool is_round(const StepBodies& bodies, int shape);
+
+class ShapeConstraints {
+ public:
+  struct Input {
+    const StepBodies& bodies;
+    const CaughtParticles& caught;  // have no constraints with what holds them
+    Purpose purpose;
+    double longest_edge;     // upper bound for cloth edges [m]
+    double share_of_travel;  // of a particle's motion: so much farther it may be than twice its gap [1]
+  };
+
+  /// Begins a step, in which vertices start within `travel` of where they started the one before (see
+  /// ShapeClearance::begin_step).
+  void begin_step(const StepBodies& bodies, double travel);
+
+  /// Appends constraints, shape after shape. Returns whether any vertex is near a shape.
+  bool generate(const Input& in, std::vector<Constraint>& constraints);
+
+  /// Of cloth from the shapes, as measured so far.
+  const ShapeClearance& clearance() const { return clearance_; }
+
+ private:
+  void generate_for(const Input& in, int shape, std::vector<Constraint>& constraints);
+  void generate_for_edges(const Input& in, int shape, std::vector<Constraint>& constraints) const;
+  void generate_for_triangles(const Input& in, int shape, std::vector<Constraint>& constraints) const;
+
+  ShapeClearance clearance_;
+
+  // Work space.
+  std::vector<int> near_;         // vertices that may come near to the shape
+  std::vector<double> distance_;  // (cloth vertices) from the shape [m]
+};
+
+}  // namespace weft::engine
