@@ -11,6 +11,14 @@ constexpr double kNear = 2;  // skip constraints with this much room, in largest
 
 }  // namespace
 
+void mark_alone(std::vector<Constraint>& constraints, std::size_t num_vertices, std::vector<int>& count) {
+  count.assign(num_vertices, 0);
+  for (const Constraint& c : constraints) {
+    for (int k = 0; k < c.num_vertices; ++k) ++count[c.vertex[k]];
+  }
+  for (Constraint& c : constraints) c.is_alone = c.num_vertices == 1 && count[c.vertex[0]] == 1;
+}
+
 double project_positions(const std::vector<double>& inverse_masses, int passes,
                          std::vector<Constraint>& constraints, std::vector<Vec3>& positions,
                          std::vector<int>& near) {
@@ -31,7 +39,7 @@ double project_positions(const std::vector<double>& inverse_masses, int passes,
     if (pass < 2) {
       for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
         Constraint& c = constraints[n];
-        if (c.inverse_mass == 0) continue;
+        if (c.inverse_mass == 0 || (pass == 1 && c.is_alone)) continue;
         const double shortfall = shortfall_of(c);
         if (pass == 1 && (c.push > 0 || shortfall > -kNear * first)) near.push_back(n);
         project(c, shortfall);

@@ -22,6 +22,7 @@ struct Constraint {
   int shape = -1;                               // primitive shape index, -1: a pair of features
   bool is_fixed = false;                        // the plane of a primitive shape is not updated
   bool is_caught = false;  // of a caught particle (caught_particles.h); `shape`: a collider
+  bool is_alone = false;   // its one vertex has no other constraint (mark_alone)
 
   double inverse_mass = 0;               // Σ w_i²/m_i [1/kg]
   bool is_active = false;                // the position projection pushed it
@@ -54,9 +55,13 @@ struct Constraint {
   }
 };
 
+/// Sets Constraint::is_alone; `count` is work space.
+void mark_alone(std::vector<Constraint>& constraints, std::size_t num_vertices, std::vector<int>& count);
+
 /// Contact projection of positions: Gauss–Seidel over the constraints in order, at most `passes` times. The
 /// accumulated push of each constraint stays >= 0, so later passes may reduce earlier pushes. From the third
-/// pass on, constraints with much room are skipped; `near` is work space for the numbers of the others.
+/// pass on, constraints with much room are skipped; `near` is work space for the numbers of the others. The
+/// first pass is exact for constraints that are alone.
 /// Returns the largest correction of the first pass [m].
 double project_positions(const std::vector<double>& inverse_masses, int passes,
                          std::vector<Constraint>& constraints, std::vector<Vec3>& positions,

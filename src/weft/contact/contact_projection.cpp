@@ -39,6 +39,7 @@ void ContactProjection::settle(StepBodies& bodies, Purpose purpose, std::vector<
   const bool is_after_solve = purpose == Purpose::after_solve;
   const int rounds = is_after_solve ? kRoundsAfterSolve : kRounds;
   const int passes = is_after_solve ? kPassesAfterSolve : kPasses;
+  mark_alone(constraints, bodies.inverse_mass.size(), count_);
   for (int round = 0; round < rounds; ++round) {
     const double moved =
         project_positions(bodies.inverse_mass, passes, constraints, bodies.motion.end, near_);

@@ -42,7 +42,7 @@ class ContactProjection {
   std::vector<Vec3> searched_;           // end positions of the last contact search [m]
   std::vector<char> is_touched_;         // (num_vertices) by a constraint
   std::vector<Quad> velocity_, slowed_;  // (num_vertices) [m/s]
-  std::vector<int> near_;                // work space of project_positions
+  std::vector<int> near_, count_;        // work space of project_positions and mark_alone
 };
 
 }  // namespace weft::engine

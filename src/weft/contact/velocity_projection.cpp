@@ -111,6 +111,27 @@ WEFT_ALWAYS_INLINE void relax_all_body(std::span<Row> rows, Quad* velocities, Qu
 WEFT_MULTIVERSION(relax_all, (std::span<Row> rows, Quad* velocities, Quad* slowed, double& largest_sq),
                   (rows, velocities, slowed, largest_sq))
 
+Row make_row(const Constraint& c, int number, const std::vector<double>& inverse_masses) {
+  Row row;
+  row.normal = to_quad(c.normal);
+  row.surface_velocity = to_quad(c.surface_velocity);
+  row.friction_impulse = to_quad(c.friction_impulse);
+  row.weight = c.weight;
+  row.vertex = c.vertex;
+  row.num_vertices = c.num_vertices;
+  row.constraint = number;
+  row.inverse_mass = c.inverse_mass;
+  row.friction = c.friction;
+  row.impulse = c.impulse;
+  for (int k = 0; k < c.num_vertices; ++k) row.response[k] = c.weight[k] * inverse_masses[c.vertex[k]];
+  return row;
+}
+
+void store(const Row& row, Constraint& c) {
+  c.impulse = row.impulse;
+  c.friction_impulse = row.friction_impulse.to_vec3();
+}
+
 }  // namespace
 
 void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
@@ -121,7 +142,7 @@ void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
   next_level_.resize(inverse_masses.size(), 0);
   for (int n = 0; n < static_cast<int>(constraints.size()); ++n) {
     const Constraint& c = constraints[n];
-    if (!c.is_active) continue;
+    if (!c.is_active || c.is_alone) continue;
     const std::span vertices(c.vertex.data(), c.num_vertices);
     int level = 0;
     for (const int v : vertices) level = std::max(level, next_level_[v]);
@@ -136,37 +157,27 @@ void VelocityProjection::schedule(const std::vector<double>& inverse_masses,
   rows_.resize(active_.size());
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const Constraint& c = constraints[active_[a]];
-    Row& row = rows_[level_begin_[level_[a]]++];
-    row.normal = to_quad(c.normal);
-    row.surface_velocity = to_quad(c.surface_velocity);
-    row.friction_impulse = to_quad(c.friction_impulse);
-    row.weight = c.weight;
-    row.vertex = c.vertex;
-    row.num_vertices = c.num_vertices;
-    row.constraint = active_[a];
-    row.inverse_mass = c.inverse_mass;
-    row.friction = c.friction;
-    row.impulse = c.impulse;
-    for (int k = 0; k < c.num_vertices; ++k) {
-      row.response[k] = c.weight[k] * inverse_masses[c.vertex[k]];
-      next_level_[c.vertex[k]] = 0;
-    }
+    rows_[level_begin_[level_[a]]++] = make_row(c, active_[a], inverse_masses);
+    for (int k = 0; k < c.num_vertices; ++k) next_level_[c.vertex[k]] = 0;
   }
 }
 
 void VelocityProjection::project(const std::vector<double>& inverse_masses,
                                  std::vector<Constraint>& constraints, std::vector<Quad>& velocities,
                                  std::vector<Quad>& slowed) {
+  for (Constraint& c : constraints) {
+    if (!c.is_active || !c.is_alone) continue;
+    Row row = make_row(c, 0, inverse_masses);
+    relax<1>(row, velocities.data(), slowed.data());
+    store(row, c);
+  }
   schedule(inverse_masses, constraints);
   for (int pass = 0; pass < kVelocityPasses; ++pass) {
     double largest_sq = 0;
     relax_all(rows_, velocities.data(), slowed.data(), largest_sq);
     if (largest_sq < kVelocityTolerance * kVelocityTolerance) break;
   }
-  for (const Row& row : rows_) {
-    constraints[row.constraint].impulse = row.impulse;
-    constraints[row.constraint].friction_impulse = row.friction_impulse.to_vec3();
-  }
+  for (const Row& row : rows_) store(row, constraints[row.constraint]);
 }
 
 }  // namespace weft::engine

@@ -5,7 +5,8 @@
 ///
 /// Projected Gauss–Seidel in the order of the constraints, with level scheduling: a row comes one level after
 /// the last earlier row that shares a vertex with it. Rows of one level are independent, so the processor
-/// overlaps them; the result is the same as in the given order.
+/// overlaps them; the result is the same as in the given order. A constraint that is alone is solved exactly, in
+/// one visit.
 
 #include <array>
 #include <vector>
