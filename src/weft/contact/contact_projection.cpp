@@ -24,7 +24,6 @@ bool ContactProjection::project_prediction(StepBodies& bodies, std::vector<Const
 }
 
 void ContactProjection::begin(const StepBodies& bodies) {
-  searched_ = bodies.motion.end;
   const std::size_t n = bodies.inverse_mass.size();
   is_touched_.assign(n, 0);
   slowed_.assign(n, {});
@@ -35,21 +34,26 @@ void ContactProjection::begin(const StepBodies& bodies) {
     velocity_[v] = to_quad(bodies.mean_velocity(static_cast<int>(v)));
 }
 
+void ContactProjection::take(const StepBodies& bodies, std::vector<Constraint>& constraints) {
+  searched_ = bodies.motion.end;
+  mark_alone(constraints, bodies.inverse_mass.size(), count_);
+}
+
 void ContactProjection::settle(StepBodies& bodies, Purpose purpose, std::vector<Constraint>& constraints) {
   const bool is_after_solve = purpose == Purpose::after_solve;
   const int rounds = is_after_solve ? kRoundsAfterSolve : kRounds;
   const int passes = is_after_solve ? kPassesAfterSolve : kPasses;
-  mark_alone(constraints, bodies.inverse_mass.size(), count_);
   for (int round = 0; round < rounds; ++round) {
     const double moved =
         project_positions(bodies.inverse_mass, passes, constraints, bodies.motion.end, near_);
     if (moved < kSettled) break;
     for (Constraint& c : constraints) {
       if (c.shape < 0 || c.is_fixed || !c.is_active) continue;
+      c.push = 0;
+      if (std::holds_alternative<Plane>(bodies.shapes[c.shape].after)) continue;
       Constraint updated = c;
       update_plane(bodies, purpose, updated);
       if (updated.inverse_mass > 0) c = updated;  // 0: at a pin
-      c.push = 0;
     }
   }
   mark_touched(constraints);

@@ -15,8 +15,11 @@ class ContactProjection {
   /// Projects predicted end positions, roughly. Returns whether a vertex left the reach of the contact search.
   bool project_prediction(StepBodies& bodies, std::vector<Constraint>& constraints);
 
-  /// Begins the projection of a step, whose contacts were searched at the present end positions.
+  /// Begins the projection of a step: reads velocities.
   void begin(const StepBodies& bodies);
+
+  /// Takes constraints from a contact search at the present end positions.
+  void take(const StepBodies& bodies, std::vector<Constraint>& constraints);
 
   /// Separates end positions. Planes of round shapes are updated in between.
   void settle(StepBodies& bodies, Purpose purpose, std::vector<Constraint>& constraints);
@@ -28,9 +31,6 @@ class ContactProjection {
   /// Whether a vertex was moved so far that contacts must be searched again: by more than half of the search
   /// margin.
   bool has_left_reach(const StepBodies& bodies) const;
-
-  /// Contacts are searched again, at the present end positions.
-  void search_again(const StepBodies& bodies) { searched_ = bodies.motion.end; }
 
   /// Stores positions and velocities in the cloths' states.
   void store(const StepBodies& bodies);

@@ -392,6 +392,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
   if (constraints_.empty()) return;
   const WorkScope scope(step_.clock, &WorkTimes::projection);
   projection_.begin(bodies_);
+  projection_.take(bodies_, constraints_);
   projection_.settle(bodies_, after(), constraints_);
   projection_.project_velocities(bodies_, constraints_);
   for (const Constraint& c : constraints_) {
@@ -404,12 +405,12 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
   projection_.settle(bodies_, after(), constraints_);
   // Vertices that were moved far may now touch features beyond the search radius.
   for (int search = 0; search < kSearches && projection_.has_left_reach(bodies_); ++search) {
-    projection_.search_again(bodies_);
     proximity_.update(bodies_.motion, jobs);
     constraints_.clear();
     generate_pair_constraints(after(), jobs);
     generate_shape_constraints(after(), 0.0);
     if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
+    projection_.take(bodies_, constraints_);
     projection_.settle(bodies_, after(), constraints_);
   }
   projection_.store(bodies_);
