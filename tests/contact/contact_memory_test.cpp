@@ -4,6 +4,9 @@
 
 #include <array>
 
+#include "tests/support.h"
+#include "weft/world/world.h"
+
 namespace weft::engine {
 namespace {
 
@@ -66,6 +69,21 @@ TEST(ContactMemory, TellsClothFromColliders) {
   EXPECT_NEAR(memory.lasting_force(on_body), 4, 1e-6);
   EXPECT_EQ(memory.lasting_force(on_cloth), 0);
   EXPECT_FALSE(memory.was_pressed(on_cloth));
+}
+
+TEST(ContactMemory, EndsWhileContactIsOff) {
+  World world;
+  world.add_collider({"floor", Plane{Vec3::Zero(), Vec3::UnitY()}, 0.4, {}});
+  const auto topology = build_grid_topology(test::square(8, 0.5), SpringModel::simplified);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : topology->mesh.positions) positions.push_back(p + Vec3(0, 6e-4, 0));
+  const ClothId sheet = world.add_cloth({.name = "sheet", .topology = topology, .positions = positions});
+  for (int s = 0; s < 20; ++s) world.step(1.0 / 60);
+  const auto& pressed = world.state(sheet).history.pressed;
+  EXPECT_FALSE(pressed[1].lasting.empty());
+  world.set_contact(false);
+  for (const MotionHistory::Pressed& forces : pressed)
+    EXPECT_TRUE(forces.last.empty() && forces.lasting.empty());
 }
 
 }  // namespace

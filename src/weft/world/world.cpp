@@ -790,6 +790,12 @@ std::vector<ContactPoint> World::contact_points() const {
   return contact_system_.contact_points();
 }
 
+void World::set_contact(bool enabled) {
+  contact_ = enabled;
+  if (enabled) return;
+  for (Cloth& cloth : cloths_) cloth.state.history.pressed = {};  // contact begins anew when it is on again
+}
+
 void World::set_division(const StepDivision& division) {
   require(std::isfinite(division.shortest) && division.shortest > 0,
           "the shortest part of a step must be more than 0 s");

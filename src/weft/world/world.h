@@ -127,7 +127,7 @@ class World {
   void set_gravity(const Vec3& gravity);           // throws InputError if it is not finite [m/s²]
   /// Throws InputError for invalid air or gusts, and for air with an integrator that does not support it.
   void set_wind(const Wind& wind);
-  void set_contact(bool enabled) { contact_ = enabled; }  // with colliders, itself and other cloths
+  void set_contact(bool enabled);  // with colliders, itself and other cloths
   /// Coulomb's coefficient of two bodies identified by name, in place of those of the bodies. At least one is
   /// a cloth (the same cloth twice: self contact). The static coefficient applies while they do not slide
   /// (slower than 1 cm/s), if it is larger. Throws InputError for unknown names, for names of several bodies,
