@@ -1,12 +1,12 @@
 #pragma once
-/// Contact forces that last: warm start of the solve by the forces of earlier steps.
+/// Contact forces of cloth on cloth that last: warm start of the solve by the forces of earlier steps.
 ///
 /// Stiff cloth in folds presses its particles with many times their weight, which neither their inertia nor
 /// their positions tell. A contact that bore a force in the last two steps is expected to bear it again; the
 /// force of a single step, as of an impact, does not count. Forces are kept per particle, because pairs change
-/// while cloth slides.
+/// while cloth slides. Contacts with colliders have no memory: skin that pinches cloth presses without limit, and
+/// cloth that then moves with a limb would be torn.
 
-#include <array>
 #include <vector>
 
 #include "weft/contact/constraint.h"
@@ -32,22 +32,20 @@ class ContactMemory {
   /// Whether cloth pressed both sides of a cloth–cloth pair in the last step.
   bool was_pressed(const Constraint& c) const;
 
-  /// The normal force that the constraint bore in both of the last two steps, about [N].
+  /// The normal force that the constraint bore in both of the last two steps, about; 0 with a collider [N].
   double lasting_force(const Constraint& c) const;
 
  private:
-  /// Forces of contacts on a particle, from cloth or from colliders.
+  /// Forces of contacts on a particle.
   struct Sum {
     float force = 0, weight = 0;  // Σ |w| N [N] and Σ |w| [1] over its contacts
     float mean() const { return weight > 0 ? force / weight : 0; }
   };
 
-  static constexpr int kByCloth = 0, kByColliders = 1;
-  int size() const { return static_cast<int>(sums_[0].size()); }
-  int kind_of(const Constraint& c) const;
+  bool is_of_cloths(const Constraint& c) const;
 
-  std::array<std::vector<float>, 2> last_, lasting_;  // (num_particles) [N]
-  std::array<std::vector<Sum>, 2> sums_;              // (num_particles) of this step
+  std::vector<float> last_, lasting_;  // (num_particles) [N]
+  std::vector<Sum> sums_;              // (num_particles) of this step
 };
 
 }  // namespace weft::engine

@@ -186,8 +186,8 @@ void describe(Archive& archive, MotionHistory::Pressed& p) {
 template <class Archive>
 void describe(Archive& archive, ClothState& s) {
   members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
-          s.history.velocity, s.history.pressed[0], s.history.pressed[1], s.precise.x, s.precise.v,
-          s.precise.displacement, s.precise.velocity, s.caught);
+          s.history.velocity, s.history.pressed, s.precise.x, s.precise.v, s.precise.displacement,
+          s.precise.velocity, s.caught);
 }
 template <class Archive>
 void describe(Archive& archive, RigidMotion::Passage& p) {
@@ -257,7 +257,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 5;         // of the format
+constexpr std::uint32_t kVersion = 6;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -326,11 +326,9 @@ void check(const engine::ClothState& state, std::size_t count) {
   check(state.v, count);
   for (const auto* values : {&state.history.displacement, &state.history.velocity})
     check(*values, values->size() == 0 && state.history.step == 0 ? 0 : count);
-  for (const auto& pressed : state.history.pressed) {
-    for (const std::vector<float>* forces : {&pressed.last, &pressed.lasting})
-      require(forces->empty() || (forces->size() == count &&
-                                  std::ranges::all_of(*forces, [](float f) { return std::isfinite(f); })));
-  }
+  for (const std::vector<float>* forces : {&state.history.pressed.last, &state.history.pressed.lasting})
+    require(forces->empty() || (forces->size() == count &&
+                                std::ranges::all_of(*forces, [](float f) { return std::isfinite(f); })));
   for (const auto* values :
        {&state.precise.x, &state.precise.v, &state.precise.displacement, &state.precise.velocity})
     check(*values, values->empty() ? 0 : count);

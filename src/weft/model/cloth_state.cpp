@@ -90,10 +90,8 @@ void add_to_hash(const ClothState& state, Hash& hash) {
   hash.add(history.had_contact ? 1.0 : 0.0);
   add(history.displacement);
   add(history.velocity);
-  for (const MotionHistory::Pressed& pressed : history.pressed) {
-    hash.add(std::span<const float>(pressed.last));
-    hash.add(std::span<const float>(pressed.lasting));
-  }
+  hash.add(std::span<const float>(history.pressed.last));
+  hash.add(std::span<const float>(history.pressed.lasting));
 }
 
 }  // namespace weft::engine

@@ -12,7 +12,7 @@ namespace weft::engine {
 
 /// History of the previous step, for second-order integrators and for contact. Others may ignore it.
 struct MotionHistory {
-  /// Normal forces of contacts on the particles, of each the mean over its contacts; in the last step, and the
+  /// Normal forces of cloth on the particles, of each the mean over its contacts; in the last step, and the
   /// smaller ones of the last two (num_particles; empty: none) [N].
   struct Pressed {
     std::vector<float> last, lasting;
@@ -23,7 +23,7 @@ struct MotionHistory {
   bool is_held = false;      // a grab acts in the next step, which then uses the balance of implicit Euler
   Vec3Array displacement;    // x now − x before it (num_particles) [m]
   Vec3Array velocity;        // v before it (num_particles) [m/s]
-  std::array<Pressed, 2> pressed;  // by cloth, by colliders; only after solves with contacts
+  Pressed pressed;           // only after solves with contacts
 };
 
 /// ClothState and its history in doubles, for integrators that work in double precision (num_particles each;
