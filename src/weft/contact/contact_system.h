@@ -81,7 +81,7 @@ class ContactSystem {
   bool add_missed_contacts(std::vector<Contact>& contacts, JobSystem& jobs);
 
   /// Contact projection of what find_violations() found: separates positions that are too close, removes
-  /// approaching velocities, and applies friction to sliding ones (see constraint.h).
+  /// approaching velocities, and applies friction to sliding ones (see contact_projection.h).
   void project_contacts(JobSystem& jobs);
 
   /// CCD fail-safe: stops all penetrations since begin_step. Call it last.

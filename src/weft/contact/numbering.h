@@ -1,6 +1,7 @@
 #pragma once
 /// The common numbering of vertices and triangles: those of cloths in their order, then those of collider meshes.
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <utility>
