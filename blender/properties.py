@@ -10,6 +10,7 @@ from .units import metres
 # Numbers of a fabric: by the engine's name, with the size of the panel's unit in SI.
 NUMBERS = {
     "density": 1.0, "c11": 1.0, "c22": 1.0, "c12": 1.0, "g": 1.0, "bend_warp": 1e-6, "bend_weft": 1e-6, "bend_bias": 1e-6,
+    "bend_hysteresis_warp": 1e-3, "bend_hysteresis_weft": 1e-3, "bend_set": 1.0,
     "damping": 1.0, "friction": 1.0, "strain_limit": 1.0,
 }  # fmt: skip
 _TEXTS = {entry["key"]: entry["description"] for entry in weft.parameters() if entry["form"] == "fabric"}
@@ -56,6 +57,9 @@ class WeftObject(bpy.types.PropertyGroup):
     bend_warp: _number("bend_warp", "Bending along warp", "µN·m", precision=2)
     bend_weft: _number("bend_weft", "Bending along weft", "µN·m", precision=2)
     bend_bias: _number("bend_bias", "Bending at 45°", "µN·m", precision=2)
+    bend_hysteresis_warp: _number("bend_hysteresis_warp", "Hysteresis of bending along warp", "mN", precision=2)
+    bend_hysteresis_weft: _number("bend_hysteresis_weft", "Hysteresis of bending along weft", "mN", precision=2)
+    bend_set: _number("bend_set", "Creases from", "1/m", precision=0)
     damping: _number("damping", "Damping", "s", precision=4)
     friction: _number("friction", "Friction", "", precision=2, default=0.3)
     strain_limit: _number("strain_limit", "Strain limit", "", precision=3)

@@ -31,6 +31,11 @@ std::vector<Row> rows(const FabricPreset& preset) {
                            {"damping", f.damping, "s", &s.damping},
                            {"thickness", f.thickness, "m", &s.thickness},
                            {"friction", f.friction, "1", &s.friction}};
+  if (f.bend_hysteresis_warp > 0)
+    rows.push_back({"bend_hysteresis_warp", f.bend_hysteresis_warp, "N", &s.bending});
+  if (f.bend_hysteresis_weft > 0)
+    rows.push_back({"bend_hysteresis_weft", f.bend_hysteresis_weft, "N", &s.bending});
+  if (f.bend_set > 0) rows.push_back({"bend_set", f.bend_set, "1/m", &s.bending});
   if (f.strain_limit > 0) rows.push_back({"strain_limit", f.strain_limit, "1", &s.stretch});
   return rows;
 }

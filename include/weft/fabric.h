@@ -9,7 +9,7 @@
 ///     | shear     |   |  0   0   G | | shear angle γ |      γ: warp–weft angle's change from 90° [rad]
 ///
 /// Bending about any axis costs ½ D(ψ) κ² per area, κ the curvature [1/m] of a cylinder rolled in the
-/// direction ψ from warp (see bending_rigidity()).
+/// direction ψ from warp (see bending_rigidity()). With hysteresis it also costs work that is lost.
 
 #include <string>
 #include <string_view>
@@ -59,6 +59,18 @@ struct Fabric {
   /// Along the bias, at 45°. At least (√bend_warp − √bend_weft)²/4: below that, some bending would release
   /// energy [N·m].
   double bend_bias = 6e-6;
+
+  /// Hysteresis of bending along warp, 2HB of KES-F: threads rub, and the moment per width is this much larger
+  /// while cloth bends than while it unbends. Typical: 1e-4 (silk) to 5e-3 (coating). Higher: stiffer, fewer
+  /// folds, which stay; 0: none. Needs `newton` or `implicit_euler`. >= 0 [N].
+  double bend_hysteresis_warp = 0;
+
+  /// Along weft: as bend_hysteresis_warp [N].
+  double bend_hysteresis_weft = 0;
+
+  /// Curvature of threads beyond which bending stays: cloth that was bent more sharply is flat no more. Typical:
+  /// 500 (a crease of 2 mm radius) to 2000. Lower: creases sooner; 0: never. Integrators as above. >= 0 [1/m].
+  double bend_set = 0;
 
   /// Time constant τ of internal damping (Kelvin–Voigt): every elastic stress σ(e) has a viscous companion τ
   /// dσ/dt, in stretching, shearing and bending alike. A vibration of angular frequency ω then has the

@@ -21,10 +21,13 @@ struct KesSheet {
   double shear = 0;                     // G [gf/(cm·degree)]
   double bend_warp = 0;                 // B [gf·cm²/cm]
   double bend_weft = 0;                 // [gf·cm²/cm]
+  double hysteresis_warp = 0;           // 2HB, at a curvature of 1/cm [gf·cm/cm]
+  double hysteresis_weft = 0;           // [gf·cm/cm]
   double friction = Fabric().friction;  // MIU, against the steel feeler [1]
 };
 
-/// density = 0.01 W; bending = 9.80665e-5 B; g = 56.19 G (1 gf/cm = 0.980665 N/m, 1° = π/180 rad).
+/// density = 0.01 W; bending = 9.80665e-5 B; its hysteresis = 9.80665e-3 2HB; g = 56.19 G (1 gf/cm = 0.980665 N/m,
+/// 1° = π/180 rad).
 ///
 /// Stretching stiffens: the curve is taken as T = T_max (ε/EMT)ⁿ, whose linearity is LT = 2/(n + 1). c11 and
 /// c22 are the secants at 20 gf/cm = 19.6 N/m, about the load of cloth under its own weight and in wear (FAST

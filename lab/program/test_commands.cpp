@@ -59,6 +59,7 @@ void write_shape(const fs::path& file, const AnimatedCloth& mesh) {
 void write_files(const fs::path& folder, const Json& json, const Findings& result) {
   write_file(folder / "study.json", dump(json));
   for (const ReportPicture& picture : result.pictures) {
+    if (!picture.svg.empty()) write_file(folder / picture.file, picture.svg);
     if (!picture.animation) continue;
     const std::string& file = picture.file;
     write_shape(folder / (file + ".obj"), picture.animation->cloths.at(0));
@@ -104,6 +105,15 @@ void add_membrane_option(CLI::App& command, StudyOptions& options) {
       ->transform(CLI::CheckedTransformer(membranes));
 }
 
+void add_direction_option(CLI::App& command, StudyOptions& options) {
+  static const std::map<std::string, StripDirection> directions = {
+      {"warp", StripDirection::warp}, {"weft", StripDirection::weft}, {"bias", StripDirection::bias}};
+  command
+      .add_option("--direction", options.direction,
+                  "Direction in which the strip is cut: warp (default), weft or bias")
+      ->transform(CLI::CheckedTransformer(directions));
+}
+
 std::shared_ptr<StudyOptions> make_options() { return std::make_shared<StudyOptions>(); }
 
 CLI::App* add(CLI::App& studies, const std::string& name, const std::string& about,
@@ -133,17 +143,17 @@ void add_study_command(CLI::App& app) {
       app.add_subcommand("study", "A laboratory's standard tests of a fabric, and studies of Weft itself");
   studies->require_subcommand(1);
   add_section_commands(*studies);
-  const auto strip = make_options();
+  const auto strip = make_options(), bent = make_options();
   CLI::App* cantilever = add(*studies, "cantilever", "Bending length: a strip bends under its own weight",
                              strip, [](const Fabric& fabric, const StudyOptions& options) {
                                return test_cantilever(fabric, options.specimen, options.direction);
                              });
-  static const std::map<std::string, StripDirection> directions = {
-      {"warp", StripDirection::warp}, {"weft", StripDirection::weft}, {"bias", StripDirection::bias}};
-  cantilever
-      ->add_option("--direction", strip->direction,
-                   "Direction in which the strip is cut: warp (default), weft or bias")
-      ->transform(CLI::CheckedTransformer(directions));
+  add_direction_option(*cantilever, *strip);
+  CLI::App* bending = add(*studies, "bending", "B and 2HB of KES-F: a strip is bent to an arc and back", bent,
+                          [](const Fabric& fabric, const StudyOptions& options) {
+                            return test_bending(fabric, options.specimen, options.direction);
+                          });
+  add_direction_option(*bending, *bent);
   const auto pulled = make_options(), sheared = make_options();
   CLI::App* tensile = add(*studies, "tensile", "c11, c22 and c12: stretching between clamps", pulled,
                           [](const Fabric& fabric, const StudyOptions& options) {

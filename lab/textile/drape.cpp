@@ -19,7 +19,8 @@ constexpr double kFps = 960,
                  kMaxSeconds = 8;    // short steps, because the formation of folds determines the final shape
 constexpr double kAirRate = 10;      // damping rate by air drag: about half of critical [1/s]
 constexpr double kRestSpeed = 1e-3;  // [m/s]
-constexpr double kPixel = 5e-4;      // of the shadow [m]
+constexpr double kLoweringTime = 3, kLowering = 0.1;  // of the support [s], [m]
+constexpr double kPixel = 5e-4;                       // of the shadow [m]
 
 /// A specimen on its plates. Bending stencils of the last held ring extend half a ring beyond it. Therefore
 /// the edge of the plates is half a ring further in.
@@ -48,6 +49,15 @@ Disc make_disc(const SpecimenSettings& settings) {
   for (int i = num_held; i < disc.mesh.num_vertices() - disc.num_hem; ++i)  // the plates' edge stays round
     disc.mesh.positions[i] += Vec3(random.uniform(-size, size), 0, random.uniform(-size, size));
   return disc;
+}
+
+/// A table under the specimen that sinks away from it. A fabric with memory would keep the folds of a free fall.
+Collider make_support(const Fabric& fabric) {
+  const double below = kCrease + fabric.thickness;
+  return {.name = "support",
+          .shape = Plane{.point = {0, -below, 0}, .normal = Vec3::UnitY()},
+          .friction = 0,
+          .motion = RigidMotion({{.time = 0}, {.time = kLoweringTime, .translation = {0, -kLowering, 0}}})};
 }
 
 World make_world(const Fabric& fabric, const Disc& disc, double warp_deg, std::uint64_t seed, int threads) {
@@ -80,6 +90,7 @@ World make_world(const Fabric& fabric, const Disc& disc, double warp_deg, std::u
                        .elements = build_mesh_elements(mesh, warp_from_direction(mesh, warp), fabric),
                        .positions = positions});
   world.set_pins(cloth, {plates});
+  if (has_bending_memory(fabric)) world.add_collider(make_support(fabric));
   return world;
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/report/plot.h"
 #include "lab/textile/drape.h"
+#include "weft/world/cloth_forces.h"
 
 namespace weft::engine::lab {
 namespace {
@@ -116,7 +118,117 @@ std::array<double, 2> stretch(const Fabric& fabric, const SpecimenSettings& sett
   return {pull(specimen, axis)[axis] / ((1 + kStrain) * green), pull(specimen, across)[across] / green};
 }
 
+constexpr double kBendLength = 0.01;                      // between the clamps [m]
+constexpr double kMostCurvature = 250, kBendStep = 12.5;  // [1/m]
+constexpr double kBendTime = 0.01;       // per step of the integrator, so long that nothing swings [s]
+constexpr double kBendTolerance = 1e-6;  // [m/s]
+constexpr int kBendCells = 20, kBendCellsAcross = 8, kBendStepsEach = 3, kBendClampCells = 2;
+
+/// A strip with its middle at x = 0 on a circular arc, and its clamps.
+struct BendingTester {
+  Specimen specimen;
+  double clamp_edge = 0, width = 0;  // [m]
+
+  /// Clamps at a curvature [1/m].
+  void bend(double curvature) {
+    const std::vector<Vec3>& rest = specimen.rest();
+    const double middle = 0.5 * kBendLength + (clamp_edge - kBendLength);
+    for (std::size_t k = 0; k < specimen.environment.pins.particle.size(); ++k) {
+      const Vec3& p = rest[specimen.environment.pins.particle[k]];
+      const double along = p.x() - middle, angle = curvature * along;
+      specimen.environment.pins.position[k] =
+          curvature == 0 ? Vec3(along, 0, p.z())
+                         : Vec3(std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature, p.z());
+    }
+  }
+
+  /// Moment per width of the forces on the far clamp, about its edge; positive for positive curvature [N].
+  double moment(double curvature) const {
+    const double angle = 0.5 * curvature * kBendLength;
+    const Vec3 edge = curvature == 0
+                          ? Vec3(0.5 * kBendLength, 0, 0)
+                          : Vec3(std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature, 0);
+    const std::vector<Vec3> force = compute_elastic_forces(*specimen.model, specimen.state);
+    double sum = 0;
+    for (const int i : specimen.environment.pins.particle) {
+      if (specimen.rest()[i].x() < clamp_edge - 1e-9) continue;
+      sum -= (specimen.state.position(i) - edge).cross(force[i]).z();
+    }
+    return sum / width;
+  }
+};
+
+BendingTester make_bending_tester(const Fabric& fabric, const SpecimenSettings& settings, double warp_deg) {
+  const int cells = or_default(settings.resolution, kBendCells);
+  const double cell = kBendLength / cells;
+  const Grid grid{.size_x = kBendLength + 2 * kBendClampCells * cell,
+                  .size_z = kBendCellsAcross * cell,
+                  .cells_x = cells + 2 * kBendClampCells,
+                  .cells_z = kBendCellsAcross};
+  BendingTester tester;
+  tester.specimen =
+      make_rectangle(fabric, grid, settings.mesh, {.warp_deg = warp_deg, .straight_column = kBendClampCells});
+  tester.clamp_edge = kBendLength + kBendClampCells * cell;
+  tester.width = grid.size_z;
+  clamp(tester.specimen, [&](const Vec3& p) -> std::optional<Vec3> {
+    const bool is_held = p.x() < kBendClampCells * cell + 1e-9 || p.x() > tester.clamp_edge - 1e-9;
+    return is_held ? std::optional(p) : std::nullopt;
+  });
+  for (int i = 0; i < tester.specimen.model->num_particles(); ++i)
+    tester.specimen.state.set_position(i, tester.specimen.rest()[i] - Vec3(grid.size_x / 2, 0, 0));
+  return tester;
+}
+
+/// The moment at a curvature, between the points of a branch.
+double moment_at(const std::vector<PlotPoint>& branch, double curvature) {
+  for (std::size_t k = 1; k < branch.size(); ++k) {
+    const PlotPoint &a = branch[k - 1], &b = branch[k];
+    if (curvature <= b.x) return a.y + (curvature - a.x) / (b.x - a.x) * (b.y - a.y);
+  }
+  return branch.back().y;
+}
+
 }  // namespace
+
+Findings test_bending(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction) {
+  BendingTester tester = make_bending_tester(fabric, settings, warp_angle(direction));
+  const auto integrator = make_implicit_euler_in_double({.tolerance = kBendTolerance});
+  const auto jobs = make_serial_jobs();
+  const auto bend_to = [&](double from, double to) {
+    std::vector<PlotPoint> branch;
+    const int steps = static_cast<int>(std::lround(std::abs(to - from) / kBendStep));
+    for (int s = 1; s <= steps; ++s) {
+      const double curvature = from + (to - from) * s / steps;
+      tester.bend(curvature);
+      for (int k = 0; k < kBendStepsEach; ++k) {
+        integrator->advance(*tester.specimen.model, tester.specimen.environment, kBendTime, *jobs,
+                            tester.specimen.state);
+      }
+      branch.push_back({curvature, tester.moment(curvature), ""});
+    }
+    return branch;
+  };
+  bend_to(0, kMostCurvature);
+  std::vector<PlotPoint> back = bend_to(kMostCurvature, -kMostCurvature);
+  std::reverse(back.begin(), back.end());
+  const std::vector<PlotPoint> forth = bend_to(-kMostCurvature, kMostCurvature);
+  const double slope =
+      (moment_at(forth, 150) - moment_at(forth, 50) + moment_at(back, -50) - moment_at(back, -150)) / 200;
+  const double width =
+      (moment_at(forth, 100) - moment_at(back, 100) + moment_at(forth, -100) - moment_at(back, -100)) / 2;
+  Findings result;
+  result.metrics = {{"bending_rigidity", slope, "N·m"}, {"hysteresis", width, "N"}};
+  const Plot plot{.x_title = "curvature [1/m]",
+                  .y_title = "moment per width [N]",
+                  .mark_y = 0.0,
+                  .panels = {{"", {{"bending", forth}, {"bending back", back}}}},
+                  .x_scale = PlotScale::linear,
+                  .y_scale = PlotScale::linear,
+                  .line = PlotLine::through_all};
+  result.pictures = {picture_of(show_specimen(*tester.specimen.model, tester.specimen.state)),
+                     {.file = "loop.svg", .caption = "Moment and curvature.", .svg = to_svg(plot)}};
+  return result;
+}
 
 Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction) {
   Strip strip = make_strip(fabric, settings, warp_angle(direction));

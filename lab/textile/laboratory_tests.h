@@ -25,6 +25,15 @@ enum class StripDirection { warp, weft, bias };
 /// The elastica has H/W = 0.88473 at this angle. Specimen: 25 cells along, 4 across.
 Findings test_cantilever(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction);
 
+/// The pure bending test of KES-F (Kawabata 1980): a strip of 1 cm between two clamps that hold it on a circular arc,
+/// slowly bent to 2.5/cm, to −2.5/cm and to 2.5/cm again.
+///
+///     bending_rigidity  B, the slope of the moment from 0.5 to 1.5/cm, mean of both sides [N·m]
+///     hysteresis        2HB, the distance of the branches at 1/cm, mean of both sides [N]
+///
+/// Moments are those of the forces on a clamp. Specimen: 20 cells along, 8 across. Picture: the loop as a plot.
+Findings test_bending(const Fabric& fabric, const SpecimenSettings& settings, StripDirection direction);
+
 /// Biaxial tensile test: stretching along warp and along weft by 0.1 %, all sides clamped. c11, c22, c12 from
 /// the forces at the clamps [N/m]. Specimen: 10 cm, 10 × 10 cells.
 Findings test_tensile(const Fabric& fabric, const SpecimenSettings& settings);
@@ -48,6 +57,7 @@ Findings test_buckling(const Fabric& fabric, const SpecimenSettings& settings);
 ///     drape_coefficient_spread  standard deviation over five specimens with initial creases of 0.2 mm [%]
 ///     drape_nodes               mean number of folds [1]
 ///
+/// Under a fabric with hysteresis of bending a support is lowered in 3 s, as the standard says; others are let go.
 /// Specimen: 30 rings, with self-contact; `settings.mesh` = `random` moves its vertices.
 Findings test_drape(const Fabric& fabric, const SpecimenSettings& settings, int threads);
 

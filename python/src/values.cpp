@@ -212,6 +212,9 @@ void bind_fabrics(nb::module_& m) {
   number("bend_warp", &Fabric::bend_warp);
   number("bend_weft", &Fabric::bend_weft);
   number("bend_bias", &Fabric::bend_bias);
+  number("bend_hysteresis_warp", &Fabric::bend_hysteresis_warp);
+  number("bend_hysteresis_weft", &Fabric::bend_hysteresis_weft);
+  number("bend_set", &Fabric::bend_set);
   number("damping", &Fabric::damping);
   number("thickness", &Fabric::thickness);
   number("friction", &Fabric::friction);
@@ -283,7 +286,7 @@ void bind_sheets(nb::module_& m) {
       m, "KesSheet",
       "A sheet of the Kawabata Evaluation System (KES-F), in its printed units: weight [mg/cm²], "
       "thickness [mm], extension at 500 gf/cm [%], linearity LT [1], shear G [gf/(cm·degree)], bending "
-      "B [gf·cm²/cm], friction MIU [1].",
+      "B [gf·cm²/cm], its hysteresis 2HB [gf·cm/cm], friction MIU [1].",
       {{"weight", &KesSheet::weight},
        {"thickness", &KesSheet::thickness},
        {"extension_warp", &KesSheet::extension_warp},
@@ -293,6 +296,8 @@ void bind_sheets(nb::module_& m) {
        {"shear", &KesSheet::shear},
        {"bend_warp", &KesSheet::bend_warp},
        {"bend_weft", &KesSheet::bend_weft},
+       {"hysteresis_warp", &KesSheet::hysteresis_warp},
+       {"hysteresis_weft", &KesSheet::hysteresis_weft},
        {"friction", &KesSheet::friction}});
   bind_sheet<FastSheet>(
       m, "FastSheet",

@@ -19,7 +19,7 @@ class Fabric:
     A fabric in SI units, independent of the mesh; the defaults are those of cotton shirting.
     """
 
-    def __init__(self, *, density: float = 0.12, c11: float = 2800.0, c22: float = 1400.0, c12: float = 0.0, g: float = 45.0, bend_warp: float = 7e-06, bend_weft: float = 6e-06, bend_bias: float = 6e-06, damping: float = 0.002, thickness: float = 0.0005, friction: float = 0.3, strain_limit: float = 0.0, stretch_warp: Sequence[tuple[float, float]] = [], stretch_weft: Sequence[tuple[float, float]] = []) -> None: ...
+    def __init__(self, *, density: float = 0.12, c11: float = 2800.0, c22: float = 1400.0, c12: float = 0.0, g: float = 45.0, bend_warp: float = 7e-06, bend_weft: float = 6e-06, bend_bias: float = 6e-06, bend_hysteresis_warp: float = 0.0, bend_hysteresis_weft: float = 0.0, bend_set: float = 0.0, damping: float = 0.002, thickness: float = 0.0005, friction: float = 0.3, strain_limit: float = 0.0, stretch_warp: Sequence[tuple[float, float]] = [], stretch_weft: Sequence[tuple[float, float]] = []) -> None: ...
 
     @property
     def density(self) -> float:
@@ -92,6 +92,33 @@ class Fabric:
 
     @bend_bias.setter
     def bend_bias(self, value: float, /) -> None: ...
+
+    @property
+    def bend_hysteresis_warp(self) -> float:
+        """
+        Hysteresis of bending along warp by friction between threads, 2HB of KES-F. Typical: 1e-4 (silk) to 5e-3 (coating); 0: none. Higher: fewer folds, which stay. [N]
+        """
+
+    @bend_hysteresis_warp.setter
+    def bend_hysteresis_warp(self, value: float, /) -> None: ...
+
+    @property
+    def bend_hysteresis_weft(self) -> float:
+        """
+        Hysteresis of bending along weft. Typical values as along warp. Higher: folds across weft stay. [N]
+        """
+
+    @bend_hysteresis_weft.setter
+    def bend_hysteresis_weft(self, value: float, /) -> None: ...
+
+    @property
+    def bend_set(self) -> float:
+        """
+        Curvature of threads beyond which bending stays, as in creases. Typical: 500 to 2000; 0: none. Lower: creases sooner. [1/m]
+        """
+
+    @bend_set.setter
+    def bend_set(self, value: float, /) -> None: ...
 
     @property
     def damping(self) -> float:
@@ -267,10 +294,10 @@ def fabric_sources(name: str) -> dict[str, str]:
 
 class KesSheet:
     """
-    A sheet of the Kawabata Evaluation System (KES-F), in its printed units: weight [mg/cm²], thickness [mm], extension at 500 gf/cm [%], linearity LT [1], shear G [gf/(cm·degree)], bending B [gf·cm²/cm], friction MIU [1].
+    A sheet of the Kawabata Evaluation System (KES-F), in its printed units: weight [mg/cm²], thickness [mm], extension at 500 gf/cm [%], linearity LT [1], shear G [gf/(cm·degree)], bending B [gf·cm²/cm], its hysteresis 2HB [gf·cm/cm], friction MIU [1].
     """
 
-    def __init__(self, *, weight: float = 0.0, thickness: float = 0.0, extension_warp: float = 0.0, extension_weft: float = 0.0, linearity_warp: float = 1.0, linearity_weft: float = 1.0, shear: float = 0.0, bend_warp: float = 0.0, bend_weft: float = 0.0, friction: float = 0.3) -> None: ...
+    def __init__(self, *, weight: float = 0.0, thickness: float = 0.0, extension_warp: float = 0.0, extension_weft: float = 0.0, linearity_warp: float = 1.0, linearity_weft: float = 1.0, shear: float = 0.0, bend_warp: float = 0.0, bend_weft: float = 0.0, hysteresis_warp: float = 0.0, hysteresis_weft: float = 0.0, friction: float = 0.3) -> None: ...
 
     @property
     def weight(self) -> float: ...
@@ -325,6 +352,18 @@ class KesSheet:
 
     @bend_weft.setter
     def bend_weft(self, value: float, /) -> None: ...
+
+    @property
+    def hysteresis_warp(self) -> float: ...
+
+    @hysteresis_warp.setter
+    def hysteresis_warp(self, value: float, /) -> None: ...
+
+    @property
+    def hysteresis_weft(self) -> float: ...
+
+    @hysteresis_weft.setter
+    def hysteresis_weft(self, value: float, /) -> None: ...
 
     @property
     def friction(self) -> float: ...

@@ -17,7 +17,9 @@ const KesSheet kKes{.weight = 20,
                     .extension_weft = 8,
                     .shear = 1,
                     .bend_warp = 0.1,
-                    .bend_weft = 0.05};
+                    .bend_weft = 0.05,
+                    .hysteresis_warp = 0.1,
+                    .hysteresis_weft = 0.03};
 
 /// The wool of the published FAST report: it prints 5.56 and 5.02 µN·m, 26.17 N/m, and formabilities of 0.45
 /// and 0.50 mm².
@@ -47,6 +49,8 @@ TEST(KesSheet, UnitsBecomeSi) {
   EXPECT_NEAR(f.thickness, 0.5e-3, 1e-12);
   EXPECT_NEAR(f.bend_warp, 0.1 * 9.80665e-5, 1e-15);
   EXPECT_NEAR(f.bend_weft, 0.05 * 9.80665e-5, 1e-15);
+  EXPECT_NEAR(f.bend_hysteresis_warp, 0.1 * 9.80665e-3, 1e-12);
+  EXPECT_NEAR(f.bend_hysteresis_weft, 0.03 * 9.80665e-3, 1e-12);
   EXPECT_NEAR(f.g, 56.19, 0.005) << "as tables of units round it";
 }
 

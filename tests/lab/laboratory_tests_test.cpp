@@ -71,6 +71,26 @@ TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
   }
 }
 
+TEST(Studies, TheBendingTesterGivesRigidityAndHysteresisBack) {
+  Fabric fabric = find_fabric("denim");
+  fabric.bend_warp = 1.687e-5;
+  fabric.bend_weft = 1.2e-5;
+  fabric.bend_bias = 1.4e-5;
+  const Findings elastic = test_bending(fabric, {}, StripDirection::warp);
+  EXPECT_NEAR(figure(elastic, "bending_rigidity"), 1.687e-5, 0.01 * 1.687e-5);
+  EXPECT_NEAR(figure(elastic, "hysteresis"), 0, 1e-5);
+  fabric.bend_hysteresis_warp = 1.363e-3;
+  fabric.bend_hysteresis_weft = 6e-4;
+  for (const SpecimenMesh mesh : kMeshes) {
+    const Findings warp = test_bending(fabric, {.mesh = mesh}, StripDirection::warp);
+    EXPECT_NEAR(figure(warp, "bending_rigidity"), 1.687e-5, 0.03 * 1.687e-5);
+    EXPECT_NEAR(figure(warp, "hysteresis"), 1.363e-3, 0.03 * 1.363e-3);
+    const Findings weft = test_bending(fabric, {.mesh = mesh}, StripDirection::weft);
+    EXPECT_NEAR(figure(weft, "bending_rigidity"), 1.2e-5, 0.03 * 1.2e-5);
+    EXPECT_NEAR(figure(weft, "hysteresis"), 6e-4, 0.03 * 6e-4);
+  }
+}
+
 TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
   const SpecimenSettings settings{.mesh = SpecimenMesh::random, .resolution = 10};
   for (const StripDirection direction : {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {

@@ -331,7 +331,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: weft.World.load(hanging(2).save()[:-1]), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(damaged()), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(of_version(99)),
-     "the saved world has format version 99; this library reads version 6"),
+     "the saved world has format version 99; this library reads version 7"),
     # Pictures.
     (lambda: weft.Camera(position=(0, 0, 0)).render(empty(), color=False),
      "a camera's position and target: expected two different points"),

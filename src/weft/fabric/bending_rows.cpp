@@ -24,26 +24,30 @@ void add_row(BendingRows& rows, double stiffness, std::initializer_list<std::pai
   rows.stiffness.push_back(stiffness);
 }
 
-/// Second derivatives x,11 x,22 x,12 at a vertex, each a linear combination of vertices.
+/// Linear combination of vertices.
 using Combination = std::map<int, double>;
-struct CurvatureStencil {
-  std::array<Combination, 3> derivative;  // [1/m²]
-  Mat3 form = Mat3::Zero();               // energy ½ kᵀ form k of the three, area included [N·m³]
-};
 
-/// Splits the form into independent rows: form = Σ_c d_c l_c l_cᵀ (square-root-free Cholesky).
-void add_stencil(BendingRows& rows, const CurvatureStencil& stencil) {
-  Mat3 rest = stencil.form;
+/// Second derivatives x,11 x,22 x,12 at a vertex [1/m²].
+using SecondDerivatives = std::array<Combination, 3>;
+
+Combination combine(const SecondDerivatives& derivatives, const Vec3& factors) {
+  Combination sum;
+  for (int k = 0; k < 3; ++k) {
+    for (const auto& [vertex, weight] : derivatives[k]) sum[vertex] += factors[k] * weight;
+  }
+  return sum;
+}
+
+/// Splits an energy ½ kᵀ form k of the three into independent rows: form = Σ_c d_c l_c l_cᵀ (square-root-free
+/// Cholesky). The form includes the area [N·m³].
+void add_form(BendingRows& rows, const SecondDerivatives& derivatives, const Mat3& form) {
+  Mat3 rest = form;
   for (int c = 0; c < 3; ++c) {
     const double pivot = rest(c, c);
-    if (pivot <= 1e-14 * stencil.form.diagonal().maxCoeff()) continue;
+    if (pivot <= 1e-14 * form.diagonal().maxCoeff()) continue;
     const Vec3 l = rest.col(c) / pivot;
     rest -= pivot * l * l.transpose();
-    Combination row;
-    for (int k = 0; k < 3; ++k) {
-      for (const auto& [vertex, weight] : stencil.derivative[k]) row[vertex] += l[k] * weight;
-    }
-    for (const auto& [vertex, weight] : row) {
+    for (const auto& [vertex, weight] : combine(derivatives, l)) {
       rows.vertex.push_back(vertex);
       rows.weight.push_back(weight);
     }
@@ -154,15 +158,15 @@ double warp_angle(const TriangleMesh& mesh, int center, const Ring& ring, const 
 }
 
 /// −Σ_j (∫ ∂a φ_i ∂b φ_j) x_j / A_i over the flat ring, with warp as the first axis; A_i in `area`.
-std::array<Combination, 3> second_derivatives(int center, const Ring& ring, const FlatRing& flat,
-                                              double warp_at, double& area) {
+SecondDerivatives second_derivatives(int center, const Ring& ring, const FlatRing& flat, double warp_at,
+                                     double& area) {
   const std::size_t n = ring.vertices.size();
   std::vector<Vec2> place;
   for (std::size_t k = 0; k < n; ++k) {
     const double at = flat.angle[k] - warp_at;
     place.push_back(flat.length[k] * Vec2(std::cos(at), std::sin(at)));
   }
-  std::array<Combination, 3> derivative;
+  SecondDerivatives derivative;
   area = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const RestTriangle rest = make_rest_triangle(Vec2::Zero(), place[k], place[(k + 1) % n]);
@@ -210,48 +214,144 @@ std::vector<BorderVertex> find_border(const TriangleMesh& mesh, const std::vecto
   return border;
 }
 
-CurvatureStencil make_stencil(const TriangleMesh& mesh, int center, const Ring& ring, const WarpField& warp,
-                              const Fabric& fabric, const std::vector<BorderVertex>& border) {
+/// Curvatures at an inner vertex: of its own area, and along the border at vertices next to it.
+struct VertexCurvature {
+  struct AlongBorder {
+    double cosine, sine;  // of the border to warp
+    double area;          // [m²]
+    Vec3 factors() const { return {cosine * cosine, sine * sine, 2 * cosine * sine}; }  // of the derivatives
+  };
+
+  SecondDerivatives derivatives;
+  double area = 0;  // [m²]
+  std::vector<AlongBorder> borders;
+};
+
+VertexCurvature find_curvature(const TriangleMesh& mesh, int center, const Ring& ring, const WarpField& warp,
+                               const std::vector<BorderVertex>& border) {
   const FlatRing flat = lay_flat(mesh, center, ring);
   const double warp_at = warp_angle(mesh, center, ring, flat, warp);
-  CurvatureStencil stencil;
-  double area = 0;
-  stencil.derivative = second_derivatives(center, ring, flat, warp_at, area);
-  stencil.form.diagonal() =
-      (1 - kHingeShare) * area * Vec3(fabric.bend_warp, fabric.bend_weft, twist_rigidity(fabric));
+  VertexCurvature curvature;
+  curvature.derivatives = second_derivatives(center, ring, flat, warp_at, curvature.area);
   for (const int v : ring.vertices) {
     if (border[v].area == 0) continue;
     const double at = std::atan2(border[v].tangent.dot(flat.across), border[v].tangent.dot(flat.axis));
-    const double c = std::cos(at - warp_at), s = std::sin(at - warp_at);
-    const Vec3 along(c * c, s * s, 2 * c * s);  // κ along the border = along · (x,11 x,22 x,12)
-    stencil.form +=
-        (1 - kHingeShare) * border[v].area * bending_rigidity(fabric, c, s) * along * along.transpose();
+    curvature.borders.push_back({std::cos(at - warp_at), std::sin(at - warp_at), border[v].area});
   }
-  return stencil;
+  return curvature;
+}
+
+void add_stencil(BendingRows& rows, const VertexCurvature& curvature, const Fabric& fabric) {
+  Mat3 form = Mat3::Zero();
+  form.diagonal() =
+      (1 - kHingeShare) * curvature.area * Vec3(fabric.bend_warp, fabric.bend_weft, twist_rigidity(fabric));
+  for (const VertexCurvature::AlongBorder& b : curvature.borders) {
+    const Vec3 along = b.factors();
+    form +=
+        (1 - kHingeShare) * b.area * bending_rigidity(fabric, b.cosine, b.sine) * along * along.transpose();
+  }
+  add_form(rows, curvature.derivatives, form);
+}
+
+/// The angle of a hinge of flat triangles.
+struct LinearHinge {
+  std::array<double, 4> weight;  // of its vertices [1/m]
+  double length = 0;             // of its edge [m]
+  double area = 0;               // of its triangles [m²]
+};
+
+LinearHinge linearise(const HingeElement& hinge, const TriangleMesh& mesh) {
+  LinearHinge linear{.weight = {0, 0, 0, 0}};
+  const auto& [a, b, p, q] = hinge.vertices;
+  const Vec3 origin = mesh.positions[a], edge = mesh.positions[b] - origin;
+  linear.length = edge.norm();
+  for (const int side : {2, 3}) {
+    const Vec3 tip = mesh.positions[hinge.vertices[side]] - origin;
+    const double along = tip.dot(edge) / edge.squaredNorm();
+    const double height = (tip - along * edge).norm();
+    linear.weight[side] = 1 / height;
+    linear.weight[0] -= (1 - along) * linear.weight[side];
+    linear.weight[1] -= along * linear.weight[side];
+    linear.area += 0.5 * linear.length * height;
+  }
+  return linear;
+}
+
+/// Whether stencils reach each vertex (num_vertices).
+std::vector<char> find_reached(const std::vector<Ring>& rings) {
+  std::vector<char> is_reached(rings.size(), 0);
+  for (std::size_t v = 0; v < rings.size(); ++v) {
+    if (rings[v].triangles.empty()) continue;
+    is_reached[v] = 1;
+    for (const int other : rings[v].vertices) is_reached[other] = 1;
+  }
+  return is_reached;
+}
+
+/// Hinges of full rigidity: no stencil reaches a vertex next to the edge.
+bool is_full(const HingeElement& hinge, const std::vector<char>& is_reached) {
+  return !is_reached[hinge.vertices[2]] || !is_reached[hinge.vertices[3]];
 }
 
 /// Hinges, linearised at rest: with full rigidity if no stencil reaches a vertex next to the edge, else with
 /// a small share, so that small or narrow meshes have no bending mode of zero energy.
-void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
-  std::vector<char> is_reached(mesh.positions.size(), 0);
-  for (const int v : rows.vertex) is_reached[v] = 1;
+void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+                const std::vector<char>& is_reached) {
   for (const HingeElement& hinge : build_hinges(mesh, warp, fabric)) {
+    const double share = is_full(hinge, is_reached) ? 1.0 : kHingeShare;
+    const auto& [weight, length, area] = linearise(hinge, mesh);
     const auto& [a, b, p, q] = hinge.vertices;
-    const double share = is_reached[p] && is_reached[q] ? kHingeShare : 1.0;
-    const Vec3 origin = mesh.positions[a], edge = mesh.positions[b] - origin;
-    double weight[4] = {0, 0, 0, 0};
-    for (const int side : {2, 3}) {
-      const Vec3 tip = mesh.positions[hinge.vertices[side]] - origin;
-      const double along = tip.dot(edge) / edge.squaredNorm();
-      weight[side] = 1 / (tip - along * edge).norm();
-      weight[0] -= (1 - along) * weight[side];
-      weight[1] -= along * weight[side];
-    }
     // A row is the angle per edge length, like a curvature; the stiffness compensates.
-    const double length = edge.norm();
     add_row(
         rows, share * hinge.stiffness * length * length,
         {{a, weight[0] / length}, {b, weight[1] / length}, {p, weight[2] / length}, {q, weight[3] / length}});
+  }
+}
+
+std::vector<Ring> find_rings(const TriangleMesh& mesh) {
+  const Neighbourhood neighbourhood(mesh);
+  std::vector<Ring> rings;
+  for (int v = 0; v < mesh.num_vertices(); ++v) rings.push_back(neighbourhood.ring(v));
+  return rings;
+}
+
+/// A fabric whose bending rigidities are the moments of friction; at an angle ψ from warp c² times that of warp
+/// threads and s² times that of weft threads [N].
+Fabric friction_as_rigidity(const Fabric& f) {
+  Fabric friction;
+  friction.bend_warp = 0.5 * f.bend_hysteresis_warp;
+  friction.bend_weft = 0.5 * f.bend_hysteresis_weft;
+  friction.bend_bias = 0.5 * (friction.bend_warp + friction.bend_weft);
+  return friction;
+}
+
+template <class Weights>
+void add_thread_row(ThreadBends& rows, int center, double friction, double stiffness,
+                    const Weights& weights) {
+  for (const auto& [vertex, weight] : weights) {
+    rows.vertex.push_back(vertex);
+    rows.weight.push_back(weight);
+  }
+  rows.begin.push_back(static_cast<int>(rows.vertex.size()));
+  rows.center.push_back(center);
+  rows.friction.push_back(friction);
+  rows.stiffness.push_back(stiffness);
+}
+
+void add_thread_hinges(ThreadBends& rows, const TriangleMesh& mesh, const WarpField& warp,
+                       const Fabric& fabric, const std::vector<char>& is_reached) {
+  const std::vector<HingeElement> elastic = build_hinges(mesh, warp, fabric);
+  const std::vector<HingeElement> friction = build_hinges(mesh, warp, friction_as_rigidity(fabric));
+  for (std::size_t h = 0; h < elastic.size(); ++h) {
+    if (!is_full(elastic[h], is_reached)) continue;
+    const auto& [weight, length, area] = linearise(elastic[h], mesh);
+    // A hinge's curvature is the angle times length over area, its stiffness rigidity times length² over area.
+    const double per_area = area / length;
+    Combination row;
+    for (int c = 0; c < 4; ++c) row[elastic[h].vertices[c]] = weight[c] / per_area;
+    const double square = per_area * per_area;
+    add_thread_row(rows, elastic[h].vertices[0], friction[h].stiffness * square,
+                   elastic[h].stiffness * square, row);
   }
 }
 
@@ -289,16 +389,65 @@ BendingRows build_grid_bending(const Grid& grid, GridWarp warp, const Fabric& fa
 }
 
 BendingRows build_mesh_bending(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
-  const Neighbourhood neighbourhood(mesh);
-  std::vector<Ring> rings;
-  for (int v = 0; v < mesh.num_vertices(); ++v) rings.push_back(neighbourhood.ring(v));
+  const std::vector<Ring> rings = find_rings(mesh);
   const std::vector<BorderVertex> border = find_border(mesh, rings);
   BendingRows rows;
   for (int v = 0; v < mesh.num_vertices(); ++v) {
     if (rings[v].triangles.empty()) continue;
-    add_stencil(rows, make_stencil(mesh, v, rings[v], warp, fabric, border));
+    add_stencil(rows, find_curvature(mesh, v, rings[v], warp, border), fabric);
   }
-  add_hinges(rows, mesh, warp, fabric);
+  add_hinges(rows, mesh, warp, fabric, find_reached(rings));
+  return rows;
+}
+
+bool has_bending_memory(const Fabric& f) {
+  return f.bend_hysteresis_warp > 0 || f.bend_hysteresis_weft > 0 || f.bend_set > 0;
+}
+
+ThreadBends build_grid_thread_bends(const Grid& grid, GridWarp warp, const Fabric& fabric) {
+  ThreadBends rows{.set = fabric.bend_set};
+  if (!has_bending_memory(fabric)) return rows;
+  const bool is_first = warp == GridWarp::first_axis;
+  const Fabric friction = friction_as_rigidity(fabric);
+  const double dx = grid.spacing_x(), dz = grid.spacing_z(), wx = 1 / (dx * dx), wz = 1 / (dz * dz);
+  using Row = std::array<std::pair<int, double>, 3>;
+  for (int j = 0; j < grid.num_rows(); ++j) {
+    for (int i = 0; i < grid.num_columns(); ++i) {
+      const int at = grid.index(i, j);
+      if (i > 0 && i < grid.cells_x) {
+        const double area = (j == 0 || j == grid.cells_z ? 0.5 : 1.0) * dx * dz;
+        add_thread_row(rows, at, area * (is_first ? friction.bend_warp : friction.bend_weft),
+                       area * (is_first ? fabric.bend_warp : fabric.bend_weft),
+                       Row{{{grid.index(i - 1, j), wx}, {at, -2 * wx}, {grid.index(i + 1, j), wx}}});
+      }
+      if (j > 0 && j < grid.cells_z) {
+        const double area = (i == 0 || i == grid.cells_x ? 0.5 : 1.0) * dx * dz;
+        add_thread_row(rows, at, area * (is_first ? friction.bend_weft : friction.bend_warp),
+                       area * (is_first ? fabric.bend_weft : fabric.bend_warp),
+                       Row{{{grid.index(i, j - 1), wz}, {at, -2 * wz}, {grid.index(i, j + 1), wz}}});
+      }
+    }
+  }
+  return rows;
+}
+
+ThreadBends build_mesh_thread_bends(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
+  ThreadBends rows{.set = fabric.bend_set};
+  if (!has_bending_memory(fabric)) return rows;
+  const Fabric friction = friction_as_rigidity(fabric);
+  const std::vector<Ring> rings = find_rings(mesh);
+  const std::vector<BorderVertex> border = find_border(mesh, rings);
+  for (int v = 0; v < mesh.num_vertices(); ++v) {
+    if (rings[v].triangles.empty()) continue;
+    const VertexCurvature c = find_curvature(mesh, v, rings[v], warp, border);
+    add_thread_row(rows, v, friction.bend_warp * c.area, fabric.bend_warp * c.area, c.derivatives[0]);
+    add_thread_row(rows, v, friction.bend_weft * c.area, fabric.bend_weft * c.area, c.derivatives[1]);
+    for (const VertexCurvature::AlongBorder& b : c.borders)
+      add_thread_row(rows, v, bending_rigidity(friction, b.cosine, b.sine) * b.area,
+                     bending_rigidity(fabric, b.cosine, b.sine) * b.area,
+                     combine(c.derivatives, b.factors()));
+  }
+  add_thread_hinges(rows, mesh, warp, fabric, find_reached(rings));
   return rows;
 }
 

@@ -54,6 +54,31 @@ BendingRows build_grid_bending(const Grid& grid, GridWarp warp, const Fabric& fa
 /// (ears, ribbons of one cell). Non-manifold vertices count as border.
 BendingRows build_mesh_bending(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
 
+/// Curvatures of warp and weft threads, for friction between threads and creases (forces/thread_bends.h). A row is a
+/// curvature with sign, n·Σ_k weight_k x_{vertex_k}, n the normal of the cloth at vertex `center`.
+struct ThreadBends {
+  std::vector<int> begin = {0};   // (num_rows + 1)
+  std::vector<int> vertex;        // (begin.back())
+  std::vector<double> weight;     // (begin.back()), sum zero per row [1/m²]
+  std::vector<int> center;        // (num_rows)
+  std::vector<double> friction;   // (num_rows) moment per width at which threads slip, times area [N·m²]
+  std::vector<double> stiffness;  // (num_rows) elastic rigidity times area, as in BendingRows [N·m³]
+  double set = 0;                 // curvature that stays; 0: none [1/m]
+
+  int num_rows() const { return static_cast<int>(center.size()); }
+  bool empty() const { return center.empty(); }
+};
+
+/// Whether a fabric has hysteresis of bending, or a set.
+bool has_bending_memory(const Fabric& fabric);
+
+/// Empty for a fabric without them. Otherwise the rows depend on mesh and warp alone.
+ThreadBends build_grid_thread_bends(const Grid& grid, GridWarp warp, const Fabric& fabric);
+
+/// Of the curvatures of BendingRows along warp and weft, along borders, and across the edges that have a hinge of
+/// full rigidity.
+ThreadBends build_mesh_thread_bends(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
+
 /// Hessian of the rows: the same scalars for x, y and z, in CSR format, columns ascending.
 struct BendingMatrix {
   std::vector<int> begin;     // (num_vertices + 1)

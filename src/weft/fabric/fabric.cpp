@@ -49,6 +49,11 @@ void check_ranges(const Fabric& f, FabricChecker& checker) {
   checker.require(f.bend_warp >= 0, "bend_warp", f.bend_warp, "0 N·m or above");
   checker.require(f.bend_weft >= 0, "bend_weft", f.bend_weft, "0 N·m or above");
   checker.require(f.bend_bias >= 0, "bend_bias", f.bend_bias, "0 N·m or above");
+  checker.require(f.bend_hysteresis_warp >= 0, "bend_hysteresis_warp", f.bend_hysteresis_warp,
+                  "0 N or above");
+  checker.require(f.bend_hysteresis_weft >= 0, "bend_hysteresis_weft", f.bend_hysteresis_weft,
+                  "0 N or above");
+  checker.require(f.bend_set >= 0, "bend_set", f.bend_set, "0 (none) or above, in 1/m");
   checker.require_range(engine::kDampingRange, "damping", f.damping);
   checker.require_range(engine::kThicknessRange, "thickness", f.thickness);
   checker.require_range(engine::kFrictionRange, "friction", f.friction);

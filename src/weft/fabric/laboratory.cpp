@@ -58,6 +58,8 @@ Fabric fabric_from(const KesSheet& sheet) {
   fabric.bend_warp = kBending * sheet.bend_warp;
   fabric.bend_weft = kBending * sheet.bend_weft;
   fabric.bend_bias = std::sqrt(fabric.bend_warp * fabric.bend_weft);
+  fabric.bend_hysteresis_warp = kGramForce * sheet.hysteresis_warp;  // 1 gf·cm/cm = 1 gf
+  fabric.bend_hysteresis_weft = kGramForce * sheet.hysteresis_weft;
   fabric.friction = sheet.friction;
   fabric.stretch_warp = kes_curve(warp, sheet.linearity_warp);
   fabric.stretch_weft = kes_curve(weft, sheet.linearity_weft);

@@ -75,8 +75,9 @@ void describe(Archive& archive, StretchPoint& p) {
 }
 template <class Archive>
 void describe(Archive& archive, Fabric& f) {
-  members(archive, f.density, f.c11, f.c22, f.c12, f.g, f.bend_warp, f.bend_weft, f.bend_bias, f.damping,
-          f.thickness, f.friction, f.strain_limit, f.stretch_warp, f.stretch_weft);
+  members(archive, f.density, f.c11, f.c22, f.c12, f.g, f.bend_warp, f.bend_weft, f.bend_bias,
+          f.bend_hysteresis_warp, f.bend_hysteresis_weft, f.bend_set, f.damping, f.thickness, f.friction,
+          f.strain_limit, f.stretch_warp, f.stretch_weft);
 }
 template <class Archive>
 void describe(Archive& archive, Springs& s) {
@@ -187,7 +188,7 @@ template <class Archive>
 void describe(Archive& archive, ClothState& s) {
   members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
           s.history.velocity, s.history.pressed, s.precise.x, s.precise.v, s.precise.displacement,
-          s.precise.velocity, s.caught);
+          s.precise.velocity, s.bending.slip, s.bending.set, s.caught);
 }
 template <class Archive>
 void describe(Archive& archive, RigidMotion::Passage& p) {
@@ -257,7 +258,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 6;         // of the format
+constexpr std::uint32_t kVersion = 7;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -329,6 +330,10 @@ void check(const engine::ClothState& state, std::size_t count) {
   for (const std::vector<float>* forces : {&state.history.pressed.last, &state.history.pressed.lasting})
     require(forces->empty() || (forces->size() == count &&
                                 std::ranges::all_of(*forces, [](float f) { return std::isfinite(f); })));
+  for (const std::vector<float>* curvatures : {&state.bending.slip, &state.bending.set}) {
+    require(curvatures->size() == state.bending.slip.size());
+    require(std::ranges::all_of(*curvatures, [](float c) { return std::isfinite(c); }));
+  }
   for (const auto* values :
        {&state.precise.x, &state.precise.v, &state.precise.displacement, &state.precise.velocity})
     check(*values, values->empty() ? 0 : count);

@@ -161,10 +161,12 @@ std::vector<std::pair<int, int>> ElementTerms::find_pairs(const ClothElements& e
   };
   for (const MembranePatch& patch : elements.patches) add_all(patch.vertices.data(), patch.num_vertices());
   for (const HingeElement& h : elements.hinges) add_all(h.vertices.data(), 4);
-  const BendingRows& rows = elements.bending;
-  for (int r = 0; r < rows.num_rows(); ++r) {
-    add_all(rows.vertex.data() + rows.begin[r], rows.begin[r + 1] - rows.begin[r]);
-  }
+  const auto add_rows = [&](const auto& rows) {
+    for (int r = 0; r < rows.num_rows(); ++r)
+      add_all(rows.vertex.data() + rows.begin[r], rows.begin[r + 1] - rows.begin[r]);
+  };
+  add_rows(elements.bending);
+  add_rows(elements.thread_bends);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;

@@ -29,6 +29,7 @@ void ImplicitCloth::begin(const Body& body, double step, Order order, Keeps keep
   collapse_law_ = make_collapse_law(*model_);
   is_pinned_.assign(model_->num_particles(), 0);
   for (const int p : pinned()) is_pinned_[p] = 1;
+  thread_bends_ = begin_thread_bends(thread_bends_of(*model_), model_->topology->mesh, *state_);
   load();
   start_from(before_.x, before_.v, step);
   if (order_ == Order::second && state_->history.step == 0) synthesize_history();
@@ -135,7 +136,13 @@ double ImplicitCloth::energy(const std::vector<Vec3>& x) const {
   }
   for (const MembraneElement& t : triangles_)
     energy += collapse_energy(t.rest, collapse_law_, corners_of(t, x));
+  for (int r = 0; r < thread_bends_.rows->num_rows(); ++r) energy += thread_response(r, x).energy;
   return model_->gas.is_active() ? energy + gas_energy(model_->gas, volume(x)) : energy;
+}
+
+ThreadBendResponse ImplicitCloth::thread_response(int row, const std::vector<Vec3>& x) const {
+  return thread_bend_response(thread_bends_, row,
+                              thread_curvature(thread_bends_, row, [&](int v) { return x[v]; }));
 }
 
 double ImplicitCloth::volume(const std::vector<Vec3>& x) const {
@@ -219,6 +226,12 @@ void ImplicitCloth::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& 
     const TriangleCorners force = collapse_force(t.rest, collapse_law_, corners_of(t, x));
     for (int c = 0; c < 3; ++c) gradient[t.vertices[c]] -= force[c];
   }
+  const ThreadBends& bends = *thread_bends_.rows;
+  for (int r = 0; r < bends.num_rows(); ++r) {
+    const Vec3 moment = thread_response(r, x).moment * thread_bends_.normal[r];
+    for (int k = bends.begin[r]; k < bends.begin[r + 1]; ++k)
+      gradient[bends.vertex[k]] += bends.weight[k] * moment;
+  }
   if (!model_->gas.is_active()) return;
   const double excess = model_->gas.orientation * gas_excess(model_->gas, volume(x));
   add_volume_gradient(
@@ -254,6 +267,16 @@ void ImplicitCloth::add_hessian(const std::vector<Vec3>& x, bool is_true, const 
     if (hessian.num_modes == 0) continue;
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b <= a; ++b) add(t.vertices[a], t.vertices[b], collapse_block(hessian, a, b));
+    }
+  }
+  const ThreadBends& bends = *thread_bends_.rows;
+  for (int r = 0; r < bends.num_rows(); ++r) {
+    const ThreadBendResponse response = thread_response(r, x);
+    const Vec3& n = thread_bends_.normal[r];
+    const Mat3 block = (is_true ? response.tangent : response.stiffness) * n * n.transpose();
+    for (int a = bends.begin[r]; a < bends.begin[r + 1]; ++a) {
+      for (int b = bends.begin[r]; b <= a; ++b)
+        add(bends.vertex[a], bends.vertex[b], bends.weight[a] * bends.weight[b] * block);
     }
   }
 }

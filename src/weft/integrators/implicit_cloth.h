@@ -9,6 +9,7 @@
 
 #include "weft/forces/collapse.h"
 #include "weft/forces/pressure.h"
+#include "weft/forces/thread_bends.h"
 #include "weft/integrators/air_terms.h"
 #include "weft/integrators/element_terms.h"
 #include "weft/integrators/integrator.h"
@@ -84,6 +85,7 @@ class ImplicitCloth {
   bool is_limited(const Spring& s) const;
   LimitResponse limit_of(const Spring& s, const std::vector<Vec3>& x) const;
   Mat3 limit_jacobian(const Spring& s, const std::vector<Vec3>& x) const;
+  ThreadBendResponse thread_response(int row, const std::vector<Vec3>& x) const;
   double volume(const std::vector<Vec3>& x) const;
   void add_spring_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;
 
@@ -95,6 +97,7 @@ class ImplicitCloth {
   std::shared_ptr<const ClothTopology> topology_;  // of triangles_
   std::vector<MembraneElement> triangles_;         // all
   StrainLimit collapse_law_;
+  ThreadBendStep thread_bends_;
   ElementTerms elements_;
   AirTerms air_;
   double whole_step_ = 0;  // h [s]

@@ -37,6 +37,10 @@ bool supports_elements(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton" || integrator == "xpbd";
 }
 
+bool supports_bending_memory(std::string_view integrator) {
+  return integrator == "newton" || integrator == "implicit_euler";
+}
+
 bool supports_pressure(std::string_view integrator) {
   return integrator == "newton" || integrator == "implicit_euler";
 }

@@ -107,6 +107,9 @@ class Integrator {
 /// springs only.
 bool supports_elements(std::string_view integrator);
 
+/// Whether it supports the memory of bending (ClothElements::thread_bends).
+bool supports_bending_memory(std::string_view integrator);
+
 /// Whether it supports gas inside closed cloth (ClothModel::gas).
 bool supports_pressure(std::string_view integrator);
 

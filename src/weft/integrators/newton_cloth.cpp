@@ -107,6 +107,7 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   air_.begin(*model_, *environment_, *state_);
   collapse_.begin(*model_, rows_);
   pressure_.begin(*model_, rows_, *state_);
+  thread_bends_.begin(*model_, rows_, *state_);
   noise_ = energy_noise();
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
@@ -174,7 +175,8 @@ void NewtonCloth::start_inertial(bool accelerates) {
 double NewtonCloth::energy_at(const Vec3Array& offset, JobSystem& jobs) {
   const double energy = potential_.energy(offset, jobs);
   const Vec3Array& x = potential_.positions();
-  return energy + air_.energy(rows_, offset) + collapse_.energy(x) + pressure_.energy(x);
+  return energy + air_.energy(rows_, offset) + collapse_.energy(x) + pressure_.energy(x) +
+         thread_bends_.energy(x, jobs);
 }
 
 /// Rounding error of the energy of springs at rest: their ends are accurate to half a unit in the last place
@@ -199,6 +201,7 @@ double NewtonCloth::linearise(JobSystem& jobs) {
   energy += air_.linearise(rows_, correction_, force_);
   energy += collapse_.linearise(potential_.positions(), jobs, force_);
   energy += pressure_.linearise(potential_.positions(), force_);
+  energy += thread_bends_.linearise(potential_.positions(), jobs, force_);
   return energy;
 }
 
@@ -262,6 +265,7 @@ double NewtonCloth::multiply(JobSystem& jobs) {
   dot += air_.add_product(rows_, p, q);
   dot += collapse_.add_product(p, q);
   dot += pressure_.add_product(p, q);
+  dot += thread_bends_.add_product(p, jobs, q);
   return dot;
 }
 

@@ -13,6 +13,7 @@
 #include "weft/integrators/newton_kernels.h"
 #include "weft/integrators/pressure_terms.h"
 #include "weft/integrators/scalar_preconditioner.h"
+#include "weft/integrators/thread_bend_terms.h"
 #include "weft/solvers/conjugate_gradients.h"
 
 namespace weft::engine {
@@ -131,6 +132,7 @@ class NewtonCloth {
   AirTerms air_;
   CollapseTerms collapse_;
   PressureTerms pressure_;
+  ThreadBendTerms thread_bends_;
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
   std::vector<float> least_weight_;               // D for the largest memory [N/m]
   std::vector<double> stiffer_couplings_,

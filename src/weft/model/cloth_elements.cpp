@@ -46,6 +46,17 @@ ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, con
   return elements;
 }
 
+void bend_by_stencils(const Grid& grid, GridWarp warp, const Fabric& fabric, ClothElements& elements) {
+  elements.bending = build_grid_bending(grid, warp, fabric);
+  elements.thread_bends = build_grid_thread_bends(grid, warp, fabric);
+}
+
+void bend_by_stencils(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+                      ClothElements& elements) {
+  elements.bending = build_mesh_bending(mesh, warp, fabric);
+  elements.thread_bends = build_mesh_thread_bends(mesh, warp, fabric);
+}
+
 }  // namespace
 
 std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
@@ -54,7 +65,7 @@ std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const
   const Vec3 direction = warp == GridWarp::first_axis ? Vec3::UnitX() : Vec3::UnitZ();
   ClothElements elements = make_elements(mesh, warp_from_direction(mesh, direction), fabric, bending);
   elements.grid_warp = warp;
-  if (bending == BendingModel::stencils) elements.bending = build_grid_bending(grid, warp, fabric);
+  if (bending == BendingModel::stencils) bend_by_stencils(grid, warp, fabric, elements);
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
@@ -63,7 +74,7 @@ std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& gri
   ClothElements elements;
   // Per unit of length, so that a tension per width is the force of one edge.
   elements.spring_limit = make_strain_limit(fabric, grid.size_x * grid.size_z, 1);
-  elements.bending = build_grid_bending(grid, warp, fabric);
+  bend_by_stencils(grid, warp, fabric, elements);
   elements.damping = fabric.damping;
   elements.grid_warp = warp;
   return std::make_shared<ClothElements>(std::move(elements));
@@ -73,7 +84,7 @@ std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleM
                                                                  const WarpField& warp,
                                                                  const Fabric& fabric) {
   ClothElements elements;
-  elements.bending = build_mesh_bending(mesh, warp, fabric);
+  bend_by_stencils(mesh, warp, fabric, elements);
   elements.damping = fabric.damping;
   return std::make_shared<ClothElements>(std::move(elements));
 }
@@ -82,7 +93,7 @@ std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mes
                                                          const Fabric& fabric, BendingModel bending) {
   ClothElements elements = make_elements(mesh, warp, fabric, bending);
   elements.patches = pair_triangles(mesh, warp, elements.membranes);
-  if (bending == BendingModel::stencils) elements.bending = build_mesh_bending(mesh, warp, fabric);
+  if (bending == BendingModel::stencils) bend_by_stencils(mesh, warp, fabric, elements);
   return std::make_shared<ClothElements>(std::move(elements));
 }
 

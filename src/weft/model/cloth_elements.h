@@ -26,7 +26,8 @@ struct ClothElements {
   PatchDifference difference;                           // of every pair
   BendingRows bending;                                  // curvature stencils; empty with hinges
   std::vector<HingeElement> hinges;                     // flat at rest; empty with stencils
-  double damping = 0;                                   // time constant τ of all of them [s]
+  ThreadBends thread_bends;           // beside the stencils: hysteresis and set; may be empty
+  double damping = 0;                 // time constant τ of all of them [s]
   std::optional<GridWarp> grid_warp;  // set: triangles of a grid, with warp along one of its axes
   /// Approximation of the membranes' Hessian at rest, the counterpart of the paper's constant spring matrix
   /// (Eq. 11): the positive cotangent weights times (C11 + C22)/2, by ascending i and j.

@@ -77,6 +77,8 @@ void add_to_hash(const ClothState& state, Hash& hash) {
       for (const double component : value) hash.add(component);
     }
   }
+  hash.add(std::span<const float>(state.bending.slip));
+  hash.add(std::span<const float>(state.bending.set));
   for (const CaughtParticle& p : state.caught) {
     hash.add(static_cast<double>(p.particle));
     for (const HoldingSide& side : p.sides) {

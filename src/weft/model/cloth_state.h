@@ -33,6 +33,12 @@ struct PreciseState {
   std::vector<Vec3> x, v, displacement, velocity;
 };
 
+/// Bending of the threads until now, of each row of ThreadBends; empty: straight from the beginning.
+struct BendingMemory {
+  std::vector<float> slip;  // curvature at which friction is zero [1/m]
+  std::vector<float> set;   // curvature at rest [1/m]
+};
+
 /// A surface that holds a caught particle.
 struct HoldingSide {
   int collider = 0;      // number
@@ -54,6 +60,7 @@ struct ClothState {
   Vec3Array v;                 // velocity (num_particles) [m/s]
   MotionHistory history;       // reset (step = 0) when positions or velocities are set from outside
   PreciseState precise;
+  BendingMemory bending;
   std::vector<CaughtParticle> caught;  // in ascending order of particles
 
   Vec3 position(std::size_t i) const { return origin + x.get(i); }

@@ -75,9 +75,19 @@ std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std:
 }
 
 constexpr std::array kSpringKeys = {"spring_structural", "spring_shear", "spring_bend", "damping_kind"};
-constexpr std::array kSiKeys = {"c11",          "c22",         "c12",       "g",
-                                "bend_warp",    "bend_weft",   "bend_bias", "strain_limit",
-                                "stretch_warp", "stretch_weft"};
+constexpr std::array kSiKeys = {"c11",
+                                "c22",
+                                "c12",
+                                "g",
+                                "bend_warp",
+                                "bend_weft",
+                                "bend_bias",
+                                "bend_hysteresis_warp",
+                                "bend_hysteresis_weft",
+                                "bend_set",
+                                "strain_limit",
+                                "stretch_warp",
+                                "stretch_weft"};
 
 ClothMaterial read_springs(TomlTable& fabric) {
   ClothMaterial material;

@@ -76,6 +76,9 @@ Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base)
   read("bend_warp", f.bend_warp, not_negative("N·m"));
   read("bend_weft", f.bend_weft, not_negative("N·m"));
   read("bend_bias", f.bend_bias, not_negative("N·m"));
+  table.read("bend_hysteresis_warp", f.bend_hysteresis_warp, not_negative("N"));
+  table.read("bend_hysteresis_weft", f.bend_hysteresis_weft, not_negative("N"));
+  table.read("bend_set", f.bend_set, not_negative("1/m"));
   // check_fabric() refuses numbers out of the range, with its own message.
   const auto read_within = [&](const char* key, double& target, const NumberRule& rule,
                                const FabricRange& range) {

@@ -103,6 +103,16 @@ constexpr ParameterText kTexts[] = {
     {"cloth.fabric.bend_bias", "fabric",
      "Bending rigidity at 45° to warp, at least (√bend_warp − √bend_weft)²/4. Higher: larger diagonal "
      "folds."},
+    {"cloth.fabric.bend_hysteresis_warp", "fabric",
+     "Hysteresis of bending along warp by friction between threads, 2HB of KES-F. Typical: 1e-4 (silk) to "
+     "5e-3 "
+     "(coating); 0: none. Higher: fewer folds, which stay."},
+    {"cloth.fabric.bend_hysteresis_weft", "fabric",
+     "Hysteresis of bending along weft. Typical values as along warp. Higher: folds across weft stay."},
+    {"cloth.fabric.bend_set", "fabric",
+     "Curvature of threads beyond which bending stays, as in creases. Typical: 500 to 2000; 0: none. Lower: "
+     "creases "
+     "sooner."},
     {"cloth.fabric.damping", "fabric",
      "Time constant of internal damping, in stretching, shearing and bending. Typical: 0.001 to 0.03. "
      "Higher: "

@@ -9,6 +9,7 @@
 #include "weft/forces/membrane_patch.h"
 #include "weft/forces/pressure.h"
 #include "weft/forces/spring.h"
+#include "weft/forces/thread_bends.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -108,6 +109,7 @@ void add_air_forces(const ClothModel& model, const ClothState& before, const Clo
 std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state) {
   std::vector<Vec3> force(state.x.size(), Vec3::Zero());
   if (model.elements) add_elastic_forces(*model.elements, to_vectors(state.x), force);
+  add_thread_bend_force(model, state, force);
   const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
   for (int s = 0; s < static_cast<int>(model.topology->springs.size()); ++s) {
     const auto& [i, j, kind, rest_length] = model.topology->springs[s];

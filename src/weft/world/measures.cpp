@@ -11,6 +11,7 @@
 #include "weft/forces/membrane_patch.h"
 #include "weft/forces/pressure.h"
 #include "weft/forces/spring.h"
+#include "weft/forces/thread_bends.h"
 
 namespace weft::engine {
 
@@ -56,6 +57,7 @@ double compute_collapse_energy(const ClothModel& model, const ClothState& state)
 template <class Add>
 void visit_energies(const ClothModel& model, const ClothState& state, const Add& add) {
   if (model.elements) visit_energies(*model.elements, state, add);
+  add(ElasticKind::bending, thread_bend_energy(model, state));
   const std::vector<Spring>& springs = model.topology->springs;
   const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
   for (std::size_t s = 0; s < springs.size(); ++s) {

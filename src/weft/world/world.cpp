@@ -146,7 +146,7 @@ ClothId World::add_cloth(const ClothParts& given) {
               " particles but " + std::to_string(positions.size()) + " positions");
   Cloth cloth;
   cloth.name = desc.name;
-  if (desc.elements) require_elements_supported(integrator_settings_.integrator, desc.name);
+  if (desc.elements) require_elements_supported(integrator_settings_.integrator, *desc.elements, desc.name);
   cloth.model = build_cloth_model(desc.topology, desc.material, desc.elements);
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
@@ -476,7 +476,7 @@ void World::set_material(ClothId id, const ClothMaterial& material,
                          std::shared_ptr<const ClothElements> elements) {
   Cloth& cloth = at(id);
   require_valid(material, cloth.name);
-  if (elements) require_elements_supported(integrator_settings_.integrator, cloth.name);
+  if (elements) require_elements_supported(integrator_settings_.integrator, *elements, cloth.name);
   const Gas gas = cloth.model->gas;
   cloth.model = build_cloth_model(cloth.model->topology, material, std::move(elements));
   set_gas(cloth, gas);
@@ -564,8 +564,7 @@ void World::set_friction(BodyId a, BodyId b, double friction, double static_fric
   set_friction_at(place_of(a), place_of(b), friction, static_friction);
 }
 
-void World::set_friction_at(BodyPlace a, BodyPlace b, double friction,
-                            double static_friction) {
+void World::set_friction_at(BodyPlace a, BodyPlace b, double friction, double static_friction) {
   for (const double number : {friction, static_friction})
     require(std::isfinite(number) && number >= 0,
             "the friction of " + name_of(a) + " and " + name_of(b) + " must be 0 or more");
@@ -596,7 +595,8 @@ void World::set_integrator(const IntegratorSettings& settings) {
   std::unique_ptr<Integrator> integrator = make_integrator(settings);  // throws before anything has changed
   require_valid(settings);
   for (const Cloth& cloth : cloths_) {
-    if (cloth.model->elements) require_elements_supported(settings.integrator, cloth.name);
+    if (cloth.model->elements)
+      require_elements_supported(settings.integrator, *cloth.model->elements, cloth.name);
     if (cloth.model->gas.is_active()) require_pressure_supported(settings.integrator, cloth.name);
   }
   require_valid(wind_, settings.integrator);
@@ -769,7 +769,7 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
   for (const EdgeFaceIntersection& p : intersections.edge_face) {
     const auto [i, j] = contact_system_.surface().edges[p.edge];
     const BodyPlace edge = contact_system_.place_of(i), other = contact_system_.place_of(j),
-                               triangle = contact_system_.place_of_triangle(p.triangle);
+                    triangle = contact_system_.place_of_triangle(p.triangle);
     add("edges of " + name_of(edge) + " intersect triangles of " + name_of(triangle), [&] {
       return ", first edge " + std::to_string(edge.index) + "-" + std::to_string(other.index) +
              " with triangle " + std::to_string(triangle.index);

@@ -161,12 +161,16 @@ void require_valid(const IntegratorSettings& s) {
   require(s.xpbd.substeps >= 1, "xpbd: substeps must be at least 1");
 }
 
-void require_elements_supported(const std::string& integrator, const std::string& cloth) {
+void require_elements_supported(const std::string& integrator, const ClothElements& elements,
+                                const std::string& cloth) {
   require(supports_elements(integrator),
           "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
               " supports springs only; use newton, "
               "implicit_euler or xpbd, or set spring_structural, spring_shear and "
               "spring_bend instead of the fabric");
+  require(elements.thread_bends.empty() || supports_bending_memory(integrator),
+          "cloth \"" + cloth + "\" has a bend_hysteresis or bend_set, but " + integrator +
+              " does not support it; use newton or implicit_euler");
 }
 
 void require_pressure_supported(const std::string& integrator, const std::string& cloth) {

@@ -33,7 +33,8 @@ void require_valid(const IntegratorSettings& settings);
 void require_valid(const Wind& wind, const std::string& integrator);
 
 /// An integrator that supports elements.
-void require_elements_supported(const std::string& integrator, const std::string& cloth);
+void require_elements_supported(const std::string& integrator, const ClothElements& elements,
+                                const std::string& cloth);
 void require_pressure_supported(const std::string& integrator, const std::string& cloth);
 
 /// For gas inside the cloth: every edge joins two triangles that face the same way.

@@ -1,0 +1,46 @@
+#pragma once
+/// Private to integrators/: bending with memory (forces/thread_bends.h) in the potential of `newton`.
+
+#include <vector>
+
+#include "weft/core/job_system.h"
+#include "weft/core/padded_rows.h"
+#include "weft/core/vec3_array.h"
+#include "weft/forces/thread_bends.h"
+
+namespace weft::engine {
+
+/// The rows of a step, each n·Σ w x. Positions are floats, laid out by the padded rows. The Hessian takes a row's
+/// stiffness, not its tangent: sliding threads keep a part that guides Newton steps (a majoriser: the energy decreases).
+/// The preconditioner needs no change: like elastic bending, friction is small beside inertia and stretching.
+class ThreadBendTerms {
+ public:
+  /// `state` is the state at the start of the step; its memory of bending moves to its positions.
+  void begin(const ClothModel& model, const PaddedRows& padded, ClothState& state);
+
+  /// The value [J]; adds the forces, and stores the Hessian.
+  double linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force);
+
+  double energy(const Vec3Array& x, JobSystem& jobs);
+
+  /// q += H p, and p·Hp [J].
+  double add_product(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
+
+ private:
+  int num_rows() const { return step_.rows ? step_.rows->num_rows() : 0; }
+  void transpose(int num_particles);
+  double curvature(int row, const Vec3Array& x) const;
+  double sum_parts() const;
+  void scatter(JobSystem& jobs, double sign, Vec3Array& to) const;
+
+  std::uint64_t model_id_ = 0;
+  ThreadBendStep step_;  // refers to the model, which outlives the step
+  std::vector<int> at_;  // index of each entry's vertex in padded arrays
+  // The entries of each particle, in ascending order of rows.
+  std::vector<int> first_entry_;  // (num_particles + 1)
+  std::vector<int> entry_row_, padded_;
+  std::vector<double> entry_weight_;
+  std::vector<double> stiffness_, moment_, part_;  // (num_rows)
+};
+
+}  // namespace weft::engine
