@@ -53,13 +53,13 @@ double thread_curvature(const ThreadBendStep& step, int row, const Position& pos
   return step.normal[row].dot(sum);
 }
 
-/// What a row adds to elastic bending at a curvature.
+/// What a row adds to elastic bending at a curvature. `stiffness` is the moment of friction over κ − κ_slip: the parabola
+/// with it is nowhere below the energy.
 struct ThreadBendResponse {
-  double energy = 0;  // at zero set and at rest 0; may be negative [J]
-  double moment = 0;  // ∂energy/∂κ [N·m²]
-  double stiffness =
-      0;  // moment of friction over κ − κ_slip: a bound of ∂moment/∂κ with the same minimum [N·m³]
-  double tangent = 0;  // ∂moment/∂κ [N·m³]
+  double energy = 0;     // negative where elastic bending counts too much, at κ near κ_set [J]
+  double moment = 0;     // ∂energy/∂κ [N·m²]
+  double stiffness = 0;  // [N·m³]
+  double tangent = 0;    // ∂moment/∂κ [N·m³]
 };
 ThreadBendResponse thread_bend_response(const ThreadBendStep& step, int row, double curvature);
 

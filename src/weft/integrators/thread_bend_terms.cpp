@@ -11,8 +11,6 @@ void ThreadBendTerms::begin(const ClothModel& model, const PaddedRows& padded, C
   step_ = begin_thread_bends(thread_bends_of(model), model.topology->mesh, state);
   if (num_rows() == 0 || model.id == model_id_) return;
   model_id_ = model.id;
-  at_.clear();
-  for (const int v : step_.rows->vertex) at_.push_back(padded.index(v));
   padded_.clear();
   for (int i = 0; i < model.num_particles(); ++i) padded_.push_back(padded.index(i));
   for (std::vector<double>* values : {&stiffness_, &moment_, &part_}) values->assign(num_rows(), 0.0);
@@ -42,14 +40,8 @@ double ThreadBendTerms::sum_parts() const {
   return sum;
 }
 
-/// n·Σ w x of a row.
 double ThreadBendTerms::curvature(int row, const Vec3Array& x) const {
-  const ThreadBends& rows = *step_.rows;
-  const Vec3 first = x.get(at_[rows.begin[row]]);
-  Vec3 sum = Vec3::Zero();
-  for (int k = rows.begin[row] + 1; k < rows.begin[row + 1]; ++k)
-    sum += rows.weight[k] * (x.get(at_[k]) - first);
-  return step_.normal[row].dot(sum);
+  return thread_curvature(step_, row, [&](int v) { return x.get(padded_[v]); });
 }
 
 /// to += sign · Σ moment w n over the rows of each particle.

@@ -34,11 +34,11 @@ class ThreadBendTerms {
   void scatter(JobSystem& jobs, double sign, Vec3Array& to) const;
 
   std::uint64_t model_id_ = 0;
-  ThreadBendStep step_;  // refers to the model, which outlives the step
-  std::vector<int> at_;  // index of each entry's vertex in padded arrays
+  ThreadBendStep step_;      // refers to the model, which outlives the step
+  std::vector<int> padded_;  // (num_particles) index in padded arrays
   // The entries of each particle, in ascending order of rows.
   std::vector<int> first_entry_;  // (num_particles + 1)
-  std::vector<int> entry_row_, padded_;
+  std::vector<int> entry_row_;
   std::vector<double> entry_weight_;
   std::vector<double> stiffness_, moment_, part_;  // (num_rows)
 };
