@@ -124,6 +124,13 @@ constexpr double kBendTime = 0.01;       // per step of the integrator, so long 
 constexpr double kBendTolerance = 1e-6;  // [m/s]
 constexpr int kBendCells = 20, kBendCellsAcross = 8, kBendStepsEach = 3, kBendClampCells = 2;
 
+/// A point of a circular arc, at a distance along it from its middle [m].
+Vec3 on_arc(double curvature, double along, double z) {
+  const double angle = curvature * along;
+  return curvature == 0 ? Vec3(along, 0, z)
+                        : Vec3(std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature, z);
+}
+
 /// A strip with its middle at x = 0 on a circular arc, and its clamps.
 struct BendingTester {
   Specimen specimen;
@@ -131,23 +138,16 @@ struct BendingTester {
 
   /// Clamps at a curvature [1/m].
   void bend(double curvature) {
-    const std::vector<Vec3>& rest = specimen.rest();
-    const double middle = 0.5 * kBendLength + (clamp_edge - kBendLength);
-    for (std::size_t k = 0; k < specimen.environment.pins.particle.size(); ++k) {
-      const Vec3& p = rest[specimen.environment.pins.particle[k]];
-      const double along = p.x() - middle, angle = curvature * along;
-      specimen.environment.pins.position[k] =
-          curvature == 0 ? Vec3(along, 0, p.z())
-                         : Vec3(std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature, p.z());
+    PinTargets& pins = specimen.environment.pins;
+    for (std::size_t k = 0; k < pins.particle.size(); ++k) {
+      const Vec3& p = specimen.rest()[pins.particle[k]];
+      pins.position[k] = on_arc(curvature, p.x() - (clamp_edge - 0.5 * kBendLength), p.z());
     }
   }
 
   /// Moment per width of the forces on the far clamp, about its edge; positive for positive curvature [N].
   double moment(double curvature) const {
-    const double angle = 0.5 * curvature * kBendLength;
-    const Vec3 edge = curvature == 0
-                          ? Vec3(0.5 * kBendLength, 0, 0)
-                          : Vec3(std::sin(angle) / curvature, (1 - std::cos(angle)) / curvature, 0);
+    const Vec3 edge = on_arc(curvature, 0.5 * kBendLength, 0);
     const std::vector<Vec3> force = compute_elastic_forces(*specimen.model, specimen.state);
     double sum = 0;
     for (const int i : specimen.environment.pins.particle) {

@@ -308,6 +308,29 @@ void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& wa
   }
 }
 
+/// Second derivative along an axis of a grid.
+struct ThreadStencil {
+  bool is_along_x;
+  double area;                                    // [m²]
+  std::array<std::pair<int, double>, 3> entries;  // particles with weights [1/m²]
+};
+
+/// Calls visit(stencil) for those around a particle: none at the ends of a thread; along a border of half the area.
+template <class Visit>
+void visit_thread_stencils(const Grid& grid, int i, int j, const Visit& visit) {
+  const double dx = grid.spacing_x(), dz = grid.spacing_z(), area = dx * dz;
+  const double wx = 1 / (dx * dx), wz = 1 / (dz * dz);
+  const double share_z = j == 0 || j == grid.cells_z ? 0.5 : 1.0;
+  const double share_x = i == 0 || i == grid.cells_x ? 0.5 : 1.0;
+  const int at = grid.index(i, j);
+  if (i > 0 && i < grid.cells_x)
+    visit(ThreadStencil{
+        true, area * share_z, {{{grid.index(i - 1, j), wx}, {at, -2 * wx}, {grid.index(i + 1, j), wx}}}});
+  if (j > 0 && j < grid.cells_z)
+    visit(ThreadStencil{
+        false, area * share_x, {{{grid.index(i, j - 1), wz}, {at, -2 * wz}, {grid.index(i, j + 1), wz}}}});
+}
+
 std::vector<Ring> find_rings(const TriangleMesh& mesh) {
   const Neighbourhood neighbourhood(mesh);
   std::vector<Ring> rings;
@@ -362,20 +385,13 @@ BendingRows build_grid_bending(const Grid& grid, GridWarp warp, const Fabric& fa
   const bool is_first = warp == GridWarp::first_axis;
   const double along_x = is_first ? fabric.bend_warp : fabric.bend_weft;
   const double along_z = is_first ? fabric.bend_weft : fabric.bend_warp;
-  const double dx = grid.spacing_x(), dz = grid.spacing_z(), area = dx * dz;
-  const double wx = 1 / (dx * dx), wz = 1 / (dz * dz), wt = 1 / area;
+  const double area = grid.spacing_x() * grid.spacing_z(), wt = 1 / area;
   for (int j = 0; j < grid.num_rows(); ++j) {
     for (int i = 0; i < grid.num_columns(); ++i) {
-      const double share_z = j == 0 || j == grid.cells_z ? 0.5 : 1.0;
-      const double share_x = i == 0 || i == grid.cells_x ? 0.5 : 1.0;
-      if (i > 0 && i < grid.cells_x) {
-        add_row(rows, along_x * area * share_z,
-                {{grid.index(i - 1, j), wx}, {grid.index(i, j), -2 * wx}, {grid.index(i + 1, j), wx}});
-      }
-      if (j > 0 && j < grid.cells_z) {
-        add_row(rows, along_z * area * share_x,
-                {{grid.index(i, j - 1), wz}, {grid.index(i, j), -2 * wz}, {grid.index(i, j + 1), wz}});
-      }
+      visit_thread_stencils(grid, i, j, [&](const ThreadStencil& stencil) {
+        add_row(rows, (stencil.is_along_x ? along_x : along_z) * stencil.area,
+                {stencil.entries[0], stencil.entries[1], stencil.entries[2]});
+      });
       if (i < grid.cells_x && j < grid.cells_z) {
         add_row(rows, twist_rigidity(fabric) * area,
                 {{grid.index(i, j), wt},
@@ -409,23 +425,14 @@ ThreadBends build_grid_thread_bends(const Grid& grid, GridWarp warp, const Fabri
   if (!has_bending_memory(fabric)) return rows;
   const bool is_first = warp == GridWarp::first_axis;
   const Fabric friction = friction_as_rigidity(fabric);
-  const double dx = grid.spacing_x(), dz = grid.spacing_z(), wx = 1 / (dx * dx), wz = 1 / (dz * dz);
-  using Row = std::array<std::pair<int, double>, 3>;
   for (int j = 0; j < grid.num_rows(); ++j) {
     for (int i = 0; i < grid.num_columns(); ++i) {
-      const int at = grid.index(i, j);
-      if (i > 0 && i < grid.cells_x) {
-        const double area = (j == 0 || j == grid.cells_z ? 0.5 : 1.0) * dx * dz;
-        add_thread_row(rows, at, area * (is_first ? friction.bend_warp : friction.bend_weft),
-                       area * (is_first ? fabric.bend_warp : fabric.bend_weft),
-                       Row{{{grid.index(i - 1, j), wx}, {at, -2 * wx}, {grid.index(i + 1, j), wx}}});
-      }
-      if (j > 0 && j < grid.cells_z) {
-        const double area = (i == 0 || i == grid.cells_x ? 0.5 : 1.0) * dx * dz;
-        add_thread_row(rows, at, area * (is_first ? friction.bend_weft : friction.bend_warp),
-                       area * (is_first ? fabric.bend_weft : fabric.bend_warp),
-                       Row{{{grid.index(i, j - 1), wz}, {at, -2 * wz}, {grid.index(i, j + 1), wz}}});
-      }
+      visit_thread_stencils(grid, i, j, [&](const ThreadStencil& stencil) {
+        const bool is_warp = stencil.is_along_x == is_first;
+        add_thread_row(rows, grid.index(i, j),
+                       stencil.area * (is_warp ? friction.bend_warp : friction.bend_weft),
+                       stencil.area * (is_warp ? fabric.bend_warp : fabric.bend_weft), stencil.entries);
+      });
     }
   }
   return rows;

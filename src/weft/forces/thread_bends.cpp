@@ -4,17 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "weft/mesh/vertex_normals.h"
+
 namespace weft::engine {
 namespace {
 
 /// Unit normals of the vertices; zero where the triangles around a vertex have none.
 std::vector<Vec3> find_normals(const TriangleMesh& mesh, const ClothState& state) {
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 corner = state.x.get(a);
-    const Vec3 normal = (state.x.get(b) - corner).cross(state.x.get(c) - corner);
-    for (const int v : {a, b, c}) normals[v] += normal;
-  }
+  std::vector<Vec3> normals =
+      sum_triangle_normals(mesh.triangles, mesh.positions.size(), [&](int v) { return state.x.get(v); });
   for (Vec3& normal : normals) {
     const double length = normal.norm();
     if (length > 0) normal /= length;

@@ -15,6 +15,13 @@ const std::vector<std::string_view>& integrator_names() {
 }  // namespace weft
 
 namespace weft::engine {
+namespace {
+
+bool solves_implicitly(std::string_view integrator) {
+  return integrator == "newton" || integrator == "implicit_euler";
+}
+
+}  // namespace
 
 void add_count(const std::optional<int>& count, std::optional<int>& sum) {
   if (count) sum = sum.value_or(0) + *count;
@@ -37,23 +44,15 @@ bool supports_elements(std::string_view integrator) {
   return integrator == "implicit_euler" || integrator == "newton" || integrator == "xpbd";
 }
 
-bool supports_bending_memory(std::string_view integrator) {
-  return integrator == "newton" || integrator == "implicit_euler";
-}
+bool supports_bending_memory(std::string_view integrator) { return solves_implicitly(integrator); }
 
-bool supports_pressure(std::string_view integrator) {
-  return integrator == "newton" || integrator == "implicit_euler";
-}
+bool supports_pressure(std::string_view integrator) { return solves_implicitly(integrator); }
 
-bool supports_aerodynamics(std::string_view integrator) {
-  return integrator == "implicit_euler" || integrator == "newton";
-}
+bool supports_aerodynamics(std::string_view integrator) { return solves_implicitly(integrator); }
 
-bool supports_step_division(std::string_view integrator) {
-  return integrator == "newton" || integrator == "implicit_euler";
-}
+bool supports_step_division(std::string_view integrator) { return solves_implicitly(integrator); }
 
-bool supports_double_precision(std::string_view integrator) { return supports_aerodynamics(integrator); }
+bool supports_double_precision(std::string_view integrator) { return solves_implicitly(integrator); }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.integrator;

@@ -5,21 +5,16 @@
 namespace weft::engine {
 namespace {
 
-Eigen::Vector3f vertex(std::span<const float> positions, int v) {
-  return Eigen::Map<const Eigen::Vector3f>(positions.data() + 3 * static_cast<size_t>(v));
+Vec3 vertex(std::span<const float> positions, int v) {
+  return Eigen::Map<const Eigen::Vector3f>(positions.data() + 3 * static_cast<size_t>(v)).cast<double>();
 }
 
 }  // namespace
 
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions) {
-  std::vector<Vec3> sums(positions.size() / 3, Vec3::Zero());
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3 x = vertex(positions, a).cast<double>();
-    const Vec3 area =
-        (vertex(positions, b).cast<double>() - x).cross(vertex(positions, c).cast<double>() - x);
-    for (const int v : {a, b, c}) sums[v] += area;
-  }
+  const std::vector<Vec3> sums =
+      sum_triangle_normals(triangles, positions.size() / 3, [&](int v) { return vertex(positions, v); });
   std::vector<float> normals;
   normals.reserve(positions.size());
   for (const Vec3& sum : sums) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Vertex normals for rendering.
+/// Vertex normals.
 
 #include <span>
 #include <vector>
@@ -8,8 +8,21 @@
 
 namespace weft::engine {
 
-/// Area-weighted unit normals of the vertices (num_vertices x 3): sums of the cross products of the triangles
-/// around. Up if the sum is too short. `positions` are (num_vertices x 3) [m].
+/// Of each vertex, the sum of the cross products of the triangles around it (num_vertices) [m²]. `position(vertex)` is a
+/// Vec3.
+template <class Position>
+std::vector<Vec3> sum_triangle_normals(const std::vector<Triangle>& triangles, std::size_t num_vertices,
+                                       const Position& position) {
+  std::vector<Vec3> sums(num_vertices, Vec3::Zero());
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3 x = position(a);
+    const Vec3 area = (position(b) - x).cross(position(c) - x);
+    for (const int v : {a, b, c}) sums[v] += area;
+  }
+  return sums;
+}
+
+/// Area-weighted unit normals of the vertices (num_vertices x 3). Up if the sum is too short. `positions` are (num_vertices x 3) [m].
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions);
 

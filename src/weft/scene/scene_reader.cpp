@@ -152,15 +152,12 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
       solver.get("integrator")
           .mistake("does not support the pressure of cloth \"" + cloth.name +
                    "\"; use \"newton\" or \"implicit_euler\"");
+    if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) &&
+        !supports_bending_memory(scene.solver.integrator))
+      solver.get("integrator")
+          .mistake("does not support bend_hysteresis and bend_set of cloth \"" + cloth.name +
+                   "\"; use \"newton\" or \"implicit_euler\"");
   }
-  const auto remembers = [](const ClothSceneDesc& cloth) {
-    return cloth.fabric && has_bending_memory(cloth.fabric->numbers);
-  };
-  const auto remembering = std::ranges::find_if(scene.cloths, remembers);
-  if (remembering != scene.cloths.end() && !supports_bending_memory(scene.solver.integrator))
-    solver.get("integrator")
-        .mistake("does not support bend_hysteresis and bend_set of cloth \"" + remembering->name +
-                 "\"; use \"newton\" or \"implicit_euler\"");
   if (supports_elements(scene.solver.integrator)) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;
