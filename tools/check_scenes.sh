@@ -29,6 +29,9 @@ check contact/funnel 0.000001 120
 check contact/twisted_tube 0.000001 100
 check contact/stack 0.000001 15
 
+# Flat panels that are sewn on a walking body.
+check garments/sewn_dress 0.000001 45
+
 # A skinned body and cloth that holds on to it. A run of it that is killed five times ends with the same bytes.
 check garments/walk 0.000001 150
 "$weft" run garments/walk --frames 90 --out "$out/whole"

@@ -24,6 +24,10 @@ done
   --out "$images/crease.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
+# Flat panels that become a dress.
+"$weft" render garments/sewn_dress --frames 0,10,24,170 --columns 4 --size 400x560 --look-at 0,0.95,0.1 --distance 3 \
+  --out "$images/sewn_dress.jpg"
+
 # Gas in closed cloth.
 "$weft" render pressure/cushion --frame 25 --camera 25,8 --look-at 0,0.2,0 --distance 1.2 --size 960x540 --out "$images/pressure.jpg"
 

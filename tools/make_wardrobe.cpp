@@ -1,5 +1,6 @@
 // Makes garments, a moving figure and scenes of both: make_wardrobe FOLDER [CELL]
-// Makes the meshes of scene garments/walk: make_wardrobe --walk FOLDER
+// Makes the meshes of scenes garments/walk and garments/sewn_dress, and prints the seams of the latter:
+// make_wardrobe --walk FOLDER
 //
 // `weft bench garments` runs the first scenes (tools/wardrobe/wardrobe.h).
 
@@ -13,7 +14,7 @@
 
 int main(int argc, char** argv) try {
   if (argc == 3 && std::strcmp(argv[1], "--walk") == 0) {
-    weft::engine::wardrobe::write_walk(argv[2]);
+    std::printf("%s", weft::engine::wardrobe::write_walk(argv[2]).c_str());
     return 0;
   }
   const double cell = argc == 3 ? std::atof(argv[2]) : 0.009;

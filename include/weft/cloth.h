@@ -42,6 +42,16 @@ enum class Membrane {
   springs,   // springs fitted to the fabric, with bending elements; for the same integrators
 };
 
+/// Two stretches of border that are sewn together: the first vertex of `a` to the first of `b`, the last to the
+/// last, and between them points at equal shares of the two lengths, at vertices or not.
+struct Seam {
+  /// Vertices of the shape on its borders, in order, at least two each; from one to the next the shorter way
+  /// along the border. Around a whole border: four, of which the last is the first.
+  std::vector<int> a = {}, b = {};
+
+  bool operator==(const Seam&) const = default;
+};
+
 struct ClothDesc {
   std::string name = {};  // for reports; empty: "cloth", "cloth 2", …
 
@@ -69,6 +79,13 @@ struct ClothDesc {
   /// Joins borders of a mesh's pieces within this distance, at vertices or between them; layers, such as a
   /// lining, stay separate; 0: none [m].
   double sew = 0;
+
+  /// Seams of panels, which draw together within `seam_time`, and then hold, with borders 1.2 thicknesses apart. For `newton` and `implicit_euler`; not on grids of springs.
+  std::vector<Seam> seams = {};
+  double seam_time = 1;  // from the start distance to closed, >= 0 [s]
+
+  /// Tension per opening of the seams, >= 0; empty: that of the cloth's edges beside them [N/m²].
+  std::optional<double> seam_stiffness = {};
 
   /// Whether to reduce the thickness to half the mean edge length where it is larger, so that few neighbours
   /// on coarse meshes are nearer than the thickness.

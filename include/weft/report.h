@@ -32,6 +32,7 @@ enum class WarningCode {
   crossings,        // pairs of triangles intersect at the end; `value` is their number [1]
   passages,         // features passed through each other between frames; `value` is their number [1]
   infeasible,       // prescribed motions left no room for pairs of features; `value` is their number [1]
+  open_seam,        // a seam is open after its time; `value` is how far, at `particle` [m]
 };
 
 struct StepWarning {

@@ -128,9 +128,9 @@ struct Names<StepFault> {
 template <>
 struct Names<WarningCode> {
   static constexpr std::string_view what = "code";
-  static constexpr std::array<std::string_view, 10> names = {
-      "not_converged", "contact_skipped", "non_finite", "cap_reached", "yarn_strain",
-      "flat_triangle", "energy_rise",     "crossings",  "passages",    "infeasible"};
+  static constexpr std::array<std::string_view, 11> names = {
+      "not_converged", "contact_skipped", "non_finite", "cap_reached", "yarn_strain", "flat_triangle",
+      "energy_rise",   "crossings",       "passages",   "infeasible",  "open_seam"};
 };
 
 template <class Enum>

@@ -143,7 +143,9 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
         [](LockedWorld& own, const std::string& name, nb::handle shape, const std::string& source,
            nb::handle fabric, const std::string& fabric_name, const std::string& membrane,
            std::optional<Vec3> warp, const std::string& model, const Vec3& position, const Matrix& rotation,
-           const Vec3& velocity, std::optional<double> weld, double sew, bool fits_thickness) {
+           const Vec3& velocity, std::optional<double> weld, double sew,
+           const std::vector<std::pair<Indices, Indices>>& seams, double seam_time,
+           std::optional<double> seam_stiffness, bool fits_thickness) {
           ClothDesc desc{.name = name,
                          .source = source,
                          .fabric = to_substance(fabric),
@@ -155,7 +157,10 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
                          .velocity = velocity,
                          .weld = weld,
                          .sew = sew,
+                         .seam_time = seam_time,
+                         .seam_stiffness = seam_stiffness,
                          .fits_thickness = fits_thickness};
+          for (const auto& [a, b] : seams) desc.seams.push_back({to_indices(a), to_indices(b)});
           if (nb::isinstance<Grid>(shape)) {
             desc.shape = nb::cast<Grid>(shape);
           } else {

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arguments import choose, indices, output, real, rotation, vector, vectors, whole
+from ._arguments import choose, indices, output, real, rotation, vector, vectors, whole, whole_numbers
 from ._errors import tell
 from ._mesh import Mesh, as_mesh
 
@@ -486,6 +486,9 @@ class World:
         model: SpringModel = "alternating",
         weld: float | None = None,
         sew: float = 0.0,
+        seams: Sequence[tuple[Sequence[int], Sequence[int]]] = (),
+        seam_time: float = 1.0,
+        seam_stiffness: float | None = None,
         fits_thickness: bool = True,
     ) -> Cloth:
         """Adds a cloth: a `grid`, a `Mesh`, or any object with `vertices` and `faces`, its rest shape.
@@ -494,7 +497,10 @@ class World:
         matrix, a quaternion (w, x, y, z), 3 angles in degrees about fixed x, then y, then z, or SciPy's Rotation.
         velocity: of all particles [m/s]. membrane: elements on triangles, or springs fitted to the fabric. warp: its
         direction in the cloth's own coordinates. model: springs of a grid, and how its cells are cut. weld: merges
-        vertices within this distance. sew: joins borders within this distance [m]. fits_thickness: reduces the
+        vertices within this distance. sew: joins borders within this distance [m]. seams: pairs of
+        stretches of border that draw together within seam_time [s], and hold; each stretch is a list of vertices on a
+        border, in order, from each to the next the shorter way; the first of one is sewn to the first of the other.
+        seam_stiffness: tension per opening [N/m²]; None: that of the cloth's edges. fits_thickness: reduces the
         thickness to half of a mean edge where it is larger.
 
         Raises InputError for an invalid mesh or fabric.
@@ -507,7 +513,9 @@ class World:
             str(name), shape, "", material, fabric_name, str(membrane),
             None if warp is None else vector(warp, "warp"), str(model), vector(position, "position"),
             _rotation(rotation), vector(velocity, "velocity"), None if weld is None else real(weld, "weld"),
-            real(sew, "sew"), bool(fits_thickness),
+            real(sew, "sew"), _seams(seams),
+            real(seam_time, "seam_time"), None if seam_stiffness is None else real(seam_stiffness, "seam_stiffness"),
+            bool(fits_thickness),
         )  # fmt: skip
         return Cloth(self, id)
 
@@ -779,6 +787,16 @@ class World:
 
 
 _rotation = rotation  # the function, where an argument has its name
+
+
+def _seams(seams: Any) -> list[tuple[Any, Any]]:
+    choose(seams, "seams", Sequence, "a list of pairs of lists of vertices")
+    pairs = []
+    for seam in seams:
+        if not isinstance(seam, Sequence) or len(seam) != 2:
+            raise _core.InputError(f"seams: expected pairs of lists of vertices, found {seam!r:.60}")
+        pairs.append((whole_numbers(seam[0], "seams"), whole_numbers(seam[1], "seams")))
+    return pairs
 
 
 def _read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -37,6 +37,9 @@ fabric = { g = 45 }
 [[cloth.pin]]
 select = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
 motion = [{ time = 0 }]
+[[cloth.seam]]
+a = [0, 4]
+b = [20, 24]
 [[collider]]
 shape = "sphere"
 radius = 1

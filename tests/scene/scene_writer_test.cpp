@@ -108,7 +108,12 @@ sew = 0.002
 fabric = { base = "denim", friction = 0.77 }
 membrane = "springs"
 warp = [1, 0, 0.5]
+seam_time = 0.5
+seam_stiffness = 1e5
 pins = ['group:left "cuff"', { group = "waist", follow = "dancer", stiffness = 50, damping = 0.1 }]
+[[cloth.seam]]
+a = [0, 4, 9]
+b = [17, 12]
 [[cloth]]
 grid = { size = [1, 1], cells = [2, 2] }
 fabric = { name = "mine", density = 0.2, c11 = 500, c22 = 400, g = 30, stretch_warp = [[0.01, 5], [0.02, 12]], strain_limit = 0.2, bend_hysteresis_warp = 0.001, bend_hysteresis_weft = 0.002, bend_set = 500 }

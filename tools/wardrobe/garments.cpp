@@ -132,7 +132,57 @@ TriangleMesh make_pleats(double cell, int sixth) {
   return weave(static_cast<int>(0.42 / cell), static_cast<int>(0.52 / cell), place);
 }
 
+// The dress's panels, in the plane: x across, y up [m].
+constexpr double kNeck = 0.085, kShoulder = 0.185;  // half widths
+constexpr double kNeckHeight = 1.60, kShoulderHeight = 1.555, kHem = 0.72;
+constexpr double kArmhole = 0.23;  // height of the armholes
+
+/// Half the width of a panel, below the shoulder by `depth`.
+double panel_width(double depth) {
+  const double u = depth / kArmhole;
+  if (u < 1) return kShoulder - 0.03 * std::sin(kPi * u) * (1 - u) + 0.045 * u * u;
+  return 0.23 + 0.12 * std::pow((depth - kArmhole) / (kShoulderHeight - kHem - kArmhole), 1.2);
+}
+
+/// The point of a panel at (0 to 1 across, 0 to 1 down).
+Eigen::Vector2d panel_point(double across, double down, double neckline) {
+  const double x = (2 * across - 1) * kShoulder, beside = std::abs(x) / kNeck;
+  const double top = beside < 1 ? kNeckHeight - neckline * (1 - beside * beside)
+                                : kNeckHeight + (kShoulderHeight - kNeckHeight) * (std::abs(x) - kNeck) /
+                                                    (kShoulder - kNeck);
+  return {(2 * across - 1) * panel_width(down * (kShoulderHeight - kHem)), top + (kHem - top) * down};
+}
+
 }  // namespace
+
+Pattern make_dress_pattern(double cell) {
+  const int columns = 2 * static_cast<int>(0.275 / cell), rows = static_cast<int>(0.86 / cell);
+  const int neck = static_cast<int>(columns * (kShoulder - kNeck) / (2 * kShoulder));
+  const int armhole = static_cast<int>(rows * kArmhole / (kShoulderHeight - kHem));
+  Pattern pattern;
+  for (const int side : {1, -1}) {
+    const auto place = [&](double across, double down) {
+      const Eigen::Vector2d p = panel_point(across, down, side > 0 ? 0.09 : 0.03);
+      return Vec3(p.x(), p.y(), 0.01 + 0.17 * side);
+    };
+    TriangleMesh panel = weave(columns, rows, place);
+    if (side < 0) {
+      for (Triangle& t : panel.triangles) std::swap(t[1], t[2]);
+    }
+    for (const Triangle& t : panel.triangles) {
+      CornerUv& uv = pattern.uv.emplace_back();
+      for (int c = 0; c < 3; ++c) uv[c] = {panel.positions[t[c]].y(), -side * panel.positions[t[c]].x()};
+    }
+    append(pattern.mesh, panel);
+  }
+  const int width = columns + 1, back = width * (rows + 1);
+  const auto sew = [&](int from, int to) { pattern.seams.push_back({{from, to}, {back + from, back + to}}); };
+  sew(0, neck);
+  sew(columns - neck, columns);
+  sew(width * armhole, width * rows);
+  sew(width * armhole + columns, width * rows + columns);
+  return pattern;
+}
 
 TriangleMesh make_tshirt(double cell) {
   const Field field = offset(body_field(kTop, 0.06), 0.009);

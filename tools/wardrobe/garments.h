@@ -2,7 +2,10 @@
 /// Garments for the figure at rest, with typical defects of user meshes: no texture coordinates, slivers,
 /// gaps between borders, linings, pleats.
 
+#include <vector>
+
 #include "tools/wardrobe/figure.h"
+#include "weft/cloth.h"
 
 namespace weft::engine::wardrobe {
 
@@ -21,6 +24,15 @@ TriangleMesh make_coat(double cell);
 TriangleMesh make_scarf(double cell);
 /// A bodice of four panels and a pleated skirt of six, with borders 0.2 to 2 mm apart.
 TriangleMesh make_pleated_dress(double cell);
+/// Flat panels, and the seams that make a garment of them.
+struct Pattern {
+  TriangleMesh mesh;
+  std::vector<CornerUv> uv;  // (triangles) along warp, across the panels' height [m]
+  std::vector<Seam> seams;
+};
+/// A sleeveless dress of two panels, before and behind the figure, with seams at shoulders and sides.
+Pattern make_dress_pattern(double cell);
+
 /// Level, above the head.
 TriangleMesh make_sheet(double side, int num_cells);
 

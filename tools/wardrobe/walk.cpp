@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kFigureCell = 0.0155, kGarmentCell = 0.020;  // [m]
-constexpr double kDuration = 5;                              // of the clip [s]
+constexpr double kDuration = 5;                               // of the clip [s]
 constexpr int kKeysPerSecond = 20;
 constexpr double kWaist = 1.012;  // cloth above belongs to the waistband [m]
 constexpr int kJointsPerVertex = 4;
@@ -186,13 +186,27 @@ void write_skirt(const std::filesystem::path& file) {
   write_obj(file, skirt.positions, faces);
 }
 
+std::string write_pattern(const std::filesystem::path& file) {
+  const Pattern dress = make_dress_pattern(kGarmentCell);
+  write_obj(file, dress.mesh.positions, make_faces(dress.mesh.triangles, dress.uv));
+  std::string seams;
+  for (const Seam& seam : dress.seams) {
+    seams += "\n[[cloth.seam]]\n";
+    for (const auto& [key, side] : {std::pair("a", &seam.a), std::pair("b", &seam.b)})
+      seams +=
+          std::string(key) + " = [" + std::to_string((*side)[0]) + ", " + std::to_string((*side)[1]) + "]\n";
+  }
+  return seams;
+}
+
 }  // namespace
 
-void write_walk(const std::filesystem::path& folder) {
+std::string write_walk(const std::filesystem::path& folder) {
   const std::string figure = figure_bytes();
   write_file(folder / "figure.glb", figure);
   write_skirt(folder / "walk_skirt.obj");
   write_obj(folder / "walk_shirt.obj", clean(make_shirt_over_skirt(kGarmentCell)));
+  return write_pattern(folder / "dress_pattern.obj");
 }
 
 }  // namespace weft::engine::wardrobe

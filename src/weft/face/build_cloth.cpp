@@ -6,6 +6,7 @@
 
 #include "weft/error.h"
 #include "weft/face/convert.h"
+#include "weft/mesh/border_path.h"
 #include "weft/mesh/clean.h"
 #include "weft/model/fabric_springs.h"
 
@@ -95,7 +96,7 @@ ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const R
   const auto warn = [&](const std::vector<std::string>& messages) {
     for (const std::string& message : messages) warnings.push_back(who + message);
   };
-  if (const Grid* grid = std::get_if<Grid>(&desc.shape)) {
+  if (const Grid* grid = std::get_if<Grid>(&desc.shape); grid && desc.seams.empty()) {
     const std::optional<GridWarp> warp = grid_warp(desc);
     if (!warp)
       throw InputError(who +
@@ -133,15 +134,58 @@ double fit_thickness(double thickness, const TriangleMesh& mesh) {
   return std::min(thickness, kShareOfEdge * sum / static_cast<double>(edges.size()));
 }
 
+/// The particles of a seam's vertices.
+std::vector<int> find_particles(const std::vector<int>& vertices,
+                                const std::vector<int>& particle_of_vertex) {
+  std::vector<int> particles;
+  for (const int v : vertices) {
+    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
+      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
+                       std::to_string(particle_of_vertex.size()));
+    particles.push_back(particle_of_vertex[v]);
+    if (particles.back() < 0)
+      throw InputError("vertex " + std::to_string(v) + " was dropped with the triangles around it");
+  }
+  return particles;
+}
+
+/// Tension per strain of the cloth's edges, per length of border [N/m].
+double edge_stiffness(const ClothDesc& desc) {
+  const Fabric* fabric = std::get_if<Fabric>(&desc.fabric);
+  return fabric ? (fabric->c11 + fabric->c22) / 2 : std::get<Springs>(desc.fabric).structural;
+}
+
+/// `mesh` is that of the particles; notes.particle_of_vertex is known.
+Seams build_seams(const ClothDesc& desc, const TriangleMesh& mesh, const ClothNotes& notes) {
+  Seams seams{.springs = {}, .time = desc.seam_time};
+  for (std::size_t s = 0; s < desc.seams.size(); ++s) {
+    try {
+      const std::vector<int> a = find_border_path(mesh,
+                                                  find_particles(desc.seams[s].a, notes.particle_of_vertex)),
+                             b = find_border_path(mesh,
+                                                  find_particles(desc.seams[s].b, notes.particle_of_vertex));
+      const double stiffness = desc.seam_stiffness.value_or(edge_stiffness(desc) / mean_edge(mesh, a, b));
+      const std::vector<SeamSpring> springs = make_seam_springs(mesh, a, b, stiffness);
+      if (springs.empty()) throw InputError("its two stretches of border are the same");
+      seams.springs.insert(seams.springs.end(), springs.begin(), springs.end());
+    } catch (const InputError& error) {
+      throw InputError("seam " + std::to_string(s) + ": " + error.what());
+    }
+  }
+  return seams;
+}
+
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
-  // A grid with warp along neither axis is treated as a mesh.
-  const bool is_mesh = std::holds_alternative<Fabric>(desc.fabric) && !grid_warp(desc);
-  RestShape rest{is_mesh ? build_mesh_topology(build_grid_mesh(grid, diagonals_of(desc.model)))
-                         : build_grid_topology(grid, desc.model),
-                 {},
-                 {}};
   for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
-  return rest;
+  // A grid with warp along neither axis, or with seams, is treated as a mesh.
+  const bool has_fabric = std::holds_alternative<Fabric>(desc.fabric);
+  if (!has_fabric && !desc.seams.empty())
+    throw InputError("a grid of springs has no seams; give it a fabric");
+  if (desc.seams.empty() && (!has_fabric || grid_warp(desc)))
+    return {build_grid_topology(grid, desc.model), {}, {}};
+  TriangleMesh mesh = build_grid_mesh(grid, diagonals_of(desc.model));
+  Seams seams = build_seams(desc, mesh, notes);
+  return {build_mesh_topology(std::move(mesh), std::move(seams)), {}, {}};
 }
 
 /// The given vertices at the corners of the cleaned triangles, -1: none. `mesh` is the given one.
@@ -191,8 +235,9 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
     rest.uv.push_back(interpolate(uv[clean.source_triangle[t]], clean.corner_weights[t]));
   rest.added = find_added(mesh, clean);
   rest.vertices = find_vertices(mesh, clean);
-  rest.topology = build_mesh_topology(std::move(clean.mesh));
   notes.particle_of_vertex = std::move(clean.vertex_of_source);
+  Seams seams = build_seams(desc, clean.mesh, notes);
+  rest.topology = build_mesh_topology(std::move(clean.mesh), std::move(seams));
   notes.warnings = std::move(clean.warnings);
   notes.done = std::move(clean.notes);
   return rest;
@@ -203,11 +248,13 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
 RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes) {
   const std::string mesh_who =
       desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";
-  const auto at_least_zero = [&](double value, const char* name) {
-    if (!std::isfinite(value) || value < 0) throw InputError(who + name + " must be 0 m or more");
+  const auto at_least_zero = [&](double value, const char* name, const char* unit) {
+    if (!std::isfinite(value) || value < 0) throw InputError(who + name + " must be 0 " + unit + " or more");
   };
-  at_least_zero(desc.weld.value_or(0), "weld");
-  at_least_zero(desc.sew, "sew");
+  at_least_zero(desc.weld.value_or(0), "weld", "m");
+  at_least_zero(desc.sew, "sew", "m");
+  at_least_zero(desc.seam_time, "seam_time", "s");
+  at_least_zero(desc.seam_stiffness.value_or(0), "seam_stiffness", "N/m²");
   if (desc.warp && !(std::isfinite(length(*desc.warp)) && length(*desc.warp) > 0))
     throw InputError(who + "warp must be a direction, finite and not zero");
   try {

@@ -85,9 +85,13 @@ void describe(Archive& archive, Springs& s) {
           s.friction);
 }
 template <class Archive>
+void describe(Archive& archive, weft::Seam& s) {
+  members(archive, s.a, s.b);
+}
+template <class Archive>
 void describe(Archive& archive, ClothDesc& d) {
   members(archive, d.name, d.shape, d.source, d.fabric, d.fabric_name, d.membrane, d.warp, d.model, d.pose,
-          d.velocity, d.weld, d.sew, d.fits_thickness);
+          d.velocity, d.weld, d.sew, d.seams, d.seam_time, d.seam_stiffness, d.fits_thickness);
 }
 template <class Archive>
 void describe(Archive& archive, weft::Sphere& s) {
@@ -188,7 +192,7 @@ template <class Archive>
 void describe(Archive& archive, ClothState& s) {
   members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
           s.history.velocity, s.history.pressed, s.precise.x, s.precise.v, s.precise.displacement,
-          s.precise.velocity, s.bending.slip, s.bending.set, s.caught);
+          s.precise.velocity, s.bending.slip, s.bending.set, s.seam_time, s.caught);
 }
 template <class Archive>
 void describe(Archive& archive, RigidMotion::Passage& p) {
@@ -258,7 +262,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 7;         // of the format
+constexpr std::uint32_t kVersion = 8;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -323,6 +327,7 @@ void check(const std::vector<engine::Vec3>& values, std::size_t count) {
 
 void check(const engine::ClothState& state, std::size_t count) {
   require(state.origin.allFinite() && std::isfinite(state.history.step) && state.history.step >= 0);
+  require(std::isfinite(state.seam_time) && state.seam_time >= 0);
   check(state.x, count);
   check(state.v, count);
   for (const auto* values : {&state.history.displacement, &state.history.velocity})

@@ -22,6 +22,9 @@ void FloatingComponents::find(const ClothModel& model, const std::vector<int>& p
       for (const int c : {1, 2}) parent[root(m.vertices[0])] = root(m.vertices[c]);
     }
   }
+  for (const SeamSpring& seam : model.topology->seams.springs) {
+    for (const int k : {1, 2}) parent[root(seam.particles[0])] = root(seam.particles[k]);
+  }
   std::vector<int> number(n, 0);
   for (const int p : pinned) number[root(p)] = -1;
   int count = 0;

@@ -11,7 +11,7 @@
 
 namespace weft::engine {
 
-/// Floating components: pieces of a cloth connected by springs or elements, without a pinned particle.
+/// Floating components: pieces of a cloth connected by springs, elements or seams, without a pinned particle.
 class FloatingComponents {
  public:
   void find(const ClothModel& model, const std::vector<int>& pinned);

@@ -30,6 +30,7 @@ void ImplicitCloth::begin(const Body& body, double step, Order order, Keeps keep
   is_pinned_.assign(model_->num_particles(), 0);
   for (const int p : pinned()) is_pinned_[p] = 1;
   thread_bends_ = begin_thread_bends(thread_bends_of(*model_), model_->topology->mesh, *state_);
+  advance_seams(*model_, step, *state_);
   load();
   start_from(before_.x, before_.v, step);
   if (order_ == Order::second && state_->history.step == 0) synthesize_history();
@@ -137,6 +138,7 @@ double ImplicitCloth::energy(const std::vector<Vec3>& x) const {
   for (const MembraneElement& t : triangles_)
     energy += collapse_energy(t.rest, collapse_law_, corners_of(t, x));
   for (int r = 0; r < thread_bends_.rows->num_rows(); ++r) energy += thread_response(r, x).energy;
+  visit_seams(x, [&](const SeamSpring&, const SeamPull& pull) { energy += pull.energy; });
   return model_->gas.is_active() ? energy + gas_energy(model_->gas, volume(x)) : energy;
 }
 
@@ -232,6 +234,10 @@ void ImplicitCloth::add_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& 
     for (int k = bends.begin[r]; k < bends.begin[r + 1]; ++k)
       gradient[bends.vertex[k]] += bends.weight[k] * moment;
   }
+  visit_seams(x, [&](const SeamSpring& spring, const SeamPull& pull) {
+    const auto weights = spring.weights();
+    for (int k = 0; k < 3; ++k) gradient[spring.particles[k]] -= weights[k] * pull.force;
+  });
   if (!model_->gas.is_active()) return;
   const double excess = model_->gas.orientation * gas_excess(model_->gas, volume(x));
   add_volume_gradient(
@@ -279,11 +285,25 @@ void ImplicitCloth::add_hessian(const std::vector<Vec3>& x, bool is_true, const 
         add(bends.vertex[a], bends.vertex[b], bends.weight[a] * bends.weight[b] * block);
     }
   }
+  visit_seams(x, [&](const SeamSpring& spring, const SeamPull& pull) {
+    const auto weights = spring.weights();
+    const Mat3 hessian = pull.hessian();
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b <= a; ++b)
+        add(spring.particles[a], spring.particles[b], weights[a] * weights[b] * hessian);
+    }
+  });
 }
 
 std::vector<std::pair<int, int>> ImplicitCloth::find_element_pairs() const {
-  if (!model_->elements) return {};
-  return ElementTerms::find_pairs(*model_->elements);
+  std::vector<std::pair<int, int>> pairs;
+  if (model_->elements) pairs = ElementTerms::find_pairs(*model_->elements);
+  for (const SeamSpring& seam : model_->topology->seams.springs) {
+    for (const int k : {1, 2}) pairs.push_back(std::minmax(seam.particles[0], seam.particles[k]));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 bool ImplicitCloth::is_beyond_limit(const std::vector<Vec3>& x) const {

@@ -9,6 +9,7 @@
 
 #include "weft/forces/collapse.h"
 #include "weft/forces/pressure.h"
+#include "weft/forces/seam_springs.h"
 #include "weft/forces/thread_bends.h"
 #include "weft/integrators/air_terms.h"
 #include "weft/integrators/element_terms.h"
@@ -85,6 +86,12 @@ class ImplicitCloth {
   bool is_limited(const Spring& s) const;
   LimitResponse limit_of(const Spring& s, const std::vector<Vec3>& x) const;
   Mat3 limit_jacobian(const Spring& s, const std::vector<Vec3>& x) const;
+  /// Calls visit(spring, pull) for each seam spring that is not slack.
+  template <class Visit>
+  void visit_seams(const std::vector<Vec3>& x, const Visit& visit) const {
+    visit_seam_pulls(
+        *model_, seam_opening(*model_, *state_), [&](int v) { return x[v]; }, visit);
+  }
   ThreadBendResponse thread_response(int row, const std::vector<Vec3>& x) const;
   double volume(const std::vector<Vec3>& x) const;
   void add_spring_gradient(const std::vector<Vec3>& x, std::vector<Vec3>& gradient) const;

@@ -48,6 +48,8 @@ bool supports_bending_memory(std::string_view integrator) { return solves_implic
 
 bool supports_pressure(std::string_view integrator) { return solves_implicitly(integrator); }
 
+bool supports_seams(std::string_view integrator) { return solves_implicitly(integrator); }
+
 bool supports_aerodynamics(std::string_view integrator) { return solves_implicitly(integrator); }
 
 bool supports_step_division(std::string_view integrator) { return solves_implicitly(integrator); }

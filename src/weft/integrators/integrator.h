@@ -113,6 +113,9 @@ bool supports_bending_memory(std::string_view integrator);
 /// Whether it supports gas inside closed cloth (ClothModel::gas).
 bool supports_pressure(std::string_view integrator);
 
+/// Whether it supports seams (ClothTopology::seams).
+bool supports_seams(std::string_view integrator);
+
 /// Whether it supports aerodynamic drag and lift (Wind::air); the others support the paper's wind only.
 bool supports_aerodynamics(std::string_view integrator);
 

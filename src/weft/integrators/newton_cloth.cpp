@@ -108,6 +108,7 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   collapse_.begin(*model_, rows_);
   pressure_.begin(*model_, rows_, *state_);
   thread_bends_.begin(*model_, rows_, *state_);
+  seams_.begin(*model_, rows_, step_, *state_);
   noise_ = energy_noise();
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
@@ -176,7 +177,7 @@ double NewtonCloth::energy_at(const Vec3Array& offset, JobSystem& jobs) {
   const double energy = potential_.energy(offset, jobs);
   const Vec3Array& x = potential_.positions();
   return energy + air_.energy(rows_, offset) + collapse_.energy(x) + pressure_.energy(x) +
-         thread_bends_.energy(x, jobs);
+         thread_bends_.energy(x, jobs) + seams_.energy(x);
 }
 
 /// Rounding error of the energy of springs at rest: their ends are accurate to half a unit in the last place
@@ -202,6 +203,7 @@ double NewtonCloth::linearise(JobSystem& jobs) {
   energy += collapse_.linearise(potential_.positions(), jobs, force_);
   energy += pressure_.linearise(potential_.positions(), force_);
   energy += thread_bends_.linearise(potential_.positions(), jobs, force_);
+  energy += seams_.linearise(potential_.positions(), force_);
   return energy;
 }
 
@@ -266,6 +268,7 @@ double NewtonCloth::multiply(JobSystem& jobs) {
   dot += collapse_.add_product(p, q);
   dot += pressure_.add_product(p, q);
   dot += thread_bends_.add_product(p, jobs, q);
+  dot += seams_.add_product(p, q);
   return dot;
 }
 

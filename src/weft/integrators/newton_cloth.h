@@ -13,6 +13,7 @@
 #include "weft/integrators/newton_kernels.h"
 #include "weft/integrators/pressure_terms.h"
 #include "weft/integrators/scalar_preconditioner.h"
+#include "weft/integrators/seam_terms.h"
 #include "weft/integrators/thread_bend_terms.h"
 #include "weft/solvers/conjugate_gradients.h"
 
@@ -133,6 +134,7 @@ class NewtonCloth {
   CollapseTerms collapse_;
   PressureTerms pressure_;
   ThreadBendTerms thread_bends_;
+  SeamTerms seams_;
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
   std::vector<float> least_weight_;               // D for the largest memory [N/m]
   std::vector<double> stiffer_couplings_,

@@ -49,6 +49,19 @@ Lists elements_of_mesh(const ClothModel& model, const std::vector<double>& stiff
   return lists;
 }
 
+/// A seam couples its particle to the ends of its edge.
+void add_seams(const ClothModel& model, Lists& lists) {
+  for (const SeamSpring& s : model.topology->seams.springs) {
+    const auto weights = s.weights();
+    for (const int end : {1, 2}) {
+      const double coupling = -s.stiffness * weights[end];
+      if (coupling <= 0) continue;
+      lists[s.particles[0]].emplace_back(s.particles[end], coupling);
+      lists[s.particles[end]].emplace_back(s.particles[0], coupling);
+    }
+  }
+}
+
 }  // namespace
 
 void ScalarPreconditioner::set_springs(const ClothModel& model, const PaddedRows& rows, double step,
@@ -88,9 +101,10 @@ void ScalarPreconditioner::set_diagonal(const std::vector<float>& diagonal, JobS
 
 void ScalarPreconditioner::build_mesh(const ClothModel& model, double step,
                                       const std::vector<double>& added) {
-  const Lists lists = has_membranes(model)
-                          ? elements_of_mesh(model, coupling_stiffness(*model.elements, step, added))
-                          : springs_of_mesh(model, step);
+  Lists lists = has_membranes(model)
+                    ? elements_of_mesh(model, coupling_stiffness(*model.elements, step, added))
+                    : springs_of_mesh(model, step);
+  add_seams(model, lists);
   const int n = model.num_particles();
   std::vector<char> is_pinned(n, 0);
   for (const int p : pinned_) is_pinned[p] = 1;

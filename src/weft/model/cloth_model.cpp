@@ -52,13 +52,14 @@ std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, Sprin
   return topology;
 }
 
-std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh) {
+std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh, Seams seams) {
   require_valid(mesh);
   auto topology = std::make_shared<ClothTopology>();
   topology->mesh = std::move(mesh);
   topology->springs = build_mesh_springs(topology->mesh);
   topology->area = compute_vertex_areas(topology->mesh);
   topology->table = build_neighbour_table(topology->num_particles(), topology->springs);
+  topology->seams = std::move(seams);
   return topology;
 }
 

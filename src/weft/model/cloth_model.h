@@ -14,6 +14,7 @@
 #include "weft/model/cloth_elements.h"
 #include "weft/model/gas.h"
 #include "weft/model/neighbour_table.h"
+#include "weft/model/seams.h"
 #include "weft/model/springs.h"
 
 namespace weft::engine {
@@ -47,6 +48,7 @@ struct ClothTopology {
   std::optional<Grid> grid;     // set: the fast kernels use stencils, not `table`
   SpringModel spring_model = SpringModel::simplified;
   NeighbourTable table;  // the springs around each particle; empty on grids
+  Seams seams;           // of a mesh's panels
 
   int num_particles() const { return mesh.num_vertices(); }
 };
@@ -56,7 +58,7 @@ std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, Sprin
 
 /// The mesh must be clean (see clean_mesh). Its positions are the rest shape. Throws InputError for an
 /// invalid mesh.
-std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh);
+std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh, Seams seams = {});
 
 struct ClothModel {
   std::uint64_t id = 0;  // unique in the process: a cache key for data computed from a model without `gas`

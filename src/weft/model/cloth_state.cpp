@@ -79,6 +79,7 @@ void add_to_hash(const ClothState& state, Hash& hash) {
   }
   hash.add(std::span<const float>(state.bending.slip));
   hash.add(std::span<const float>(state.bending.set));
+  if (state.seam_time > 0) hash.add(state.seam_time);
   for (const CaughtParticle& p : state.caught) {
     hash.add(static_cast<double>(p.particle));
     for (const HoldingSide& side : p.sides) {

@@ -61,6 +61,7 @@ struct ClothState {
   MotionHistory history;       // reset (step = 0) when positions or velocities are set from outside
   PreciseState precise;
   BendingMemory bending;
+  double seam_time = 0;                // since seams began to close; 0 without seams [s]
   std::vector<CaughtParticle> caught;  // in ascending order of particles
 
   Vec3 position(std::size_t i) const { return origin + x.get(i); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "weft/forces/seam_springs.h"
 #include "weft/world/infeasible_pairs.h"
 #include "weft/world/measures.h"
 
@@ -44,6 +45,7 @@ void ProblemFinder::add_step(const StepReport& step) {
 void ProblemFinder::add_frame(double kinetic, double potential) {
   found_.strained.resize(world_.num_cloths());
   found_.flat.resize(world_.num_cloths());
+  found_.open.resize(world_.num_cloths());
   for (int c = 0; c < world_.num_cloths(); ++c) check_cloth(c);
   check_energy(kinetic, potential);
   ++found_.num_frames;
@@ -59,6 +61,10 @@ void ProblemFinder::check_cloth(int c) {
   update(found_.strained[c], strained, strain.max > strain_limit(model),
          strain.max > found_.strained[c].worst.value);
   update(found_.flat[c], flat, area.min < kMinArea, area.min < found_.flat[c].worst.value);
+  const std::optional<OpenSeam> seam = find_open_seam(model, state);
+  const double width = seam ? seam->width : 0;
+  update(found_.open[c], {WarningCode::open_seam, c, seam ? seam->particle : -1, width}, seam.has_value(),
+         width > found_.open[c].worst.value);
 }
 
 void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse) {
@@ -94,7 +100,7 @@ std::vector<RunProblem> ProblemFinder::problems() const {
   const auto add = [&](const StepWarning& w, int frames) {
     result.push_back({w.code, frames, w.value, describe(world_, w)});
   };
-  for (const std::vector<Record>* all : {&found_.strained, &found_.flat}) {
+  for (const std::vector<Record>* all : {&found_.strained, &found_.flat, &found_.open}) {
     for (const Record& record : *all) {
       if (record.is_reported) add(record.worst, record.frames);
     }

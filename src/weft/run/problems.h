@@ -20,6 +20,7 @@ struct RunProblem {
 ///
 ///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
 ///     flat_triangle  below a tenth of its area, for more than five frames in a row
+///     open_seam      after the seams' time, by more than a quarter of an edge, likewise
 ///     energy_rise    in a frame, without external drive, by more than 2 % of the energy that has been in motion
 ///                    or lost so far, and by more than the energy that lifts all cloth by its thickness
 ///     cap_reached, contact_skipped, not_converged   by steps
@@ -36,7 +37,7 @@ class ProblemFinder {
 
   /// What was found so far.
   struct Found {
-    std::vector<Record> strained, flat;  // (cloths)
+    std::vector<Record> strained, flat, open;  // (cloths)
     std::vector<Record> others;
     std::vector<InfeasiblePair> infeasible;
     int num_frames = 0, crossings = 0, passages = 0;

@@ -47,7 +47,7 @@ void describe(Archive& archive, ProblemFinder::Record& r) {
 }
 template <class Archive>
 void describe(Archive& archive, ProblemFinder::Found& f) {
-  members(archive, f.strained, f.flat, f.others, f.infeasible, f.num_frames, f.crossings, f.passages,
+  members(archive, f.strained, f.flat, f.open, f.others, f.infeasible, f.num_frames, f.crossings, f.passages,
           f.energy, f.max_energy, f.min_energy, f.max_kinetic);
 }
 

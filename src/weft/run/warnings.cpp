@@ -61,6 +61,10 @@ std::string describe_what(const StepWarning& w, const std::string& advice) {
              " pairs of triangles intersect; solver.untangle = true repairs intersections at the start; "
              "for all others " +
              advice;
+    case WarningCode::open_seam:
+      return "a seam stays open by " + number(1000 * w.value) + " mm at particle " +
+             std::to_string(w.particle) +
+             "; raise seam_time or seam_stiffness, or move the panels nearer to each other";
     case WarningCode::passages:
       return number(w.value) + " pairs of features passed through each other; " + advice;
     case WarningCode::infeasible:
@@ -92,6 +96,8 @@ std::string to_string(WarningCode code) {
       return "crossings";
     case WarningCode::passages:
       return "passages";
+    case WarningCode::open_seam:
+      return "open_seam";
     case WarningCode::infeasible:
       break;
   }

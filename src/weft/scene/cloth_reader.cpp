@@ -175,6 +175,19 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
     cloth.get("membrane").expected("\"triangle\": springs support a strain_limit on grids only");
 }
 
+std::vector<Seam> read_seams(TomlTable& cloth) {
+  std::vector<Seam> seams;
+  for (TomlTable& table : cloth.tables("seam")) {
+    Seam& seam = seams.emplace_back();
+    for (const auto& [key, side] : {std::pair("a", &seam.a), std::pair("b", &seam.b)}) {
+      table.require({key}, "at least two vertices on a border, as in [0, 24]");
+      const TomlValue vertices = table.get(key, make_note(IntegerRule{.least = 0}, 0));
+      if (vertices) vertices.read(*side, IntegerRule{.least = 0});
+    }
+  }
+  return seams;
+}
+
 }  // namespace
 
 std::filesystem::path read_file_name(TomlTable& owner, std::string_view key,
@@ -220,6 +233,11 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   if (cloth.fabric && cloth.fabric->membrane == Membrane::triangle)
     table.refuse("stiffen", "requires springs: set spring stiffnesses, or membrane = \"springs\"");
   cloth.stiffened = read_stiffened(table, shape ? &*shape : nullptr);
+  cloth.seams = read_seams(table);
+  table.read("seam_time", cloth.seam_time, not_negative("s"));
+  constexpr NumberRule stiffness = not_negative("N/m²");
+  if (const TomlValue given = table.get("seam_stiffness", make_note(stiffness)))
+    given.read(cloth.seam_stiffness.emplace(), stiffness);
   return cloth;
 }
 

@@ -53,6 +53,13 @@ constexpr ParameterText kTexts[] = {
      "corners, only meshes groups."},
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
+    {"cloth.seam", "",
+     "Seams of panels: stretches of border that draw together, and hold. Not on grids of springs."},
+    {"cloth.seam_time", "", "Time in which the seams close. Longer: gentler."},
+    {"cloth.seam_stiffness", "",
+     "Tension of the seams per opening. Default: that of the cloth's edges beside them. Higher: less open "
+     "where it is "
+     "pulled."},
     {"cloth.grid", "grid", "A rectangle of square or rectangular cells, horizontal before its rotation."},
     {"cloth.model", "grid",
      "Springs of a grid: two shear springs per cell, one, or one of alternating direction. A fabric's "
@@ -186,6 +193,10 @@ constexpr ParameterText kTexts[] = {
      "Region of the springs, as for pins. It has the springs with both ends inside."},
     {"cloth.stiffen.factor", "",
      "Multiplier of the stiffness of these springs. Above 1: stiffer, as in seams."},
+    {"cloth.seam.a", "",
+     "Vertices on a border, in order, two or more; from each to the next the shorter way along the border."},
+    {"cloth.seam.b", "",
+     "The same of the border it is sewn to: first to first, last to last, evenly between."},
 
     {"collider.shape", "", "Shape of the body. Its other keys depend on it."},
     {"collider.name", "",

@@ -26,6 +26,7 @@ c11 = 1
 select = { box = {} }
 motion = [{}]
 [[cloth.stiffen]]
+[[cloth.seam]]
 [[collider]]
 shape = "sphere"
 motion = [{}]

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "weft/animation/rigid_motion.h"
+#include "weft/cloth.h"
 #include "weft/contact/collider.h"
 #include "weft/core/shapes.h"
 #include "weft/fabric.h"
@@ -124,6 +125,9 @@ struct ClothSceneDesc {
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
   double pressure = 0;               // of gas inside closed cloth, in excess of the air outside [Pa]
   bool is_sealed = false;            // the gas keeps its amount, which has `pressure` at the start
+  std::vector<Seam> seams;
+  double seam_time = 1;                              // in which they close, >= 0 [s]
+  std::optional<double> seam_stiffness;              // as in ClothDesc, >= 0 [N/m²]
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]
   std::vector<PinDesc> pins;
   std::vector<StiffenDesc> stiffened;  // springs only; factors multiply where selections overlap

@@ -189,6 +189,9 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
     if (desc.fabric->warp) cloth.warp = from_engine(*desc.fabric->warp);
   }
   cloth.model = desc.model;
+  cloth.seams = desc.seams;
+  cloth.seam_time = desc.seam_time;
+  cloth.seam_stiffness = desc.seam_stiffness;
   cloth.pose = make_pose(desc.position, desc.rotation_deg);
   cloth.velocity = from_engine(desc.velocity);
   cloth.fits_thickness = has_contact && !desc.has_own_thickness;

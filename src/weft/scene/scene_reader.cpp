@@ -152,6 +152,10 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
       solver.get("integrator")
           .mistake("does not support the pressure of cloth \"" + cloth.name +
                    "\"; use \"newton\" or \"implicit_euler\"");
+    if (!cloth.seams.empty() && !supports_seams(scene.solver.integrator))
+      solver.get("integrator")
+          .mistake("does not support the seams of cloth \"" + cloth.name +
+                   "\"; use \"newton\" or \"implicit_euler\"");
     if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) &&
         !supports_bending_memory(scene.solver.integrator))
       solver.get("integrator")

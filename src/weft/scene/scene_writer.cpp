@@ -311,7 +311,9 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
       .add("velocity", cloth.velocity, ClothSceneDesc().velocity)
       .add("pressure", cloth.pressure, ClothSceneDesc().pressure)
       .add("sealed", cloth.is_sealed, false)
+      .add("seam_time", cloth.seam_time, ClothSceneDesc().seam_time)
       .add_text("color", toml_array(cloth.color));
+  if (cloth.seam_stiffness) table.add("seam_stiffness", *cloth.seam_stiffness);
   std::string text =
       "\n[[cloth]]\n" + Table().add("name", cloth.name).lines() + shape_lines(cloth, files) + table.lines();
   for (const PinDesc& pin : cloth.pins) {
@@ -326,6 +328,9 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
   for (const StiffenDesc& part : cloth.stiffened)
     text += "\n[[cloth.stiffen]]\n" +
             Table().add_text("select", selection_text(part.select)).add("factor", part.factor).lines();
+  for (const Seam& seam : cloth.seams)
+    text += "\n[[cloth.seam]]\n" +
+            Table().add_text("a", toml_array(seam.a)).add_text("b", toml_array(seam.b)).lines();
   return text;
 }
 

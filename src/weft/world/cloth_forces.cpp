@@ -8,6 +8,7 @@
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane_patch.h"
 #include "weft/forces/pressure.h"
+#include "weft/forces/seam_springs.h"
 #include "weft/forces/spring.h"
 #include "weft/forces/thread_bends.h"
 #include "weft/world/measures.h"
@@ -127,6 +128,12 @@ std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothSta
   for (int t = 0; t < mesh.num_triangles(); ++t)
     scatter(mesh.triangles[t],
             collapse_force(make_rest_triangle(mesh, t), collapse, gather(mesh.triangles[t], x)), force);
+  visit_seam_pulls(
+      model, seam_opening(model, state), [&](int v) { return x[v]; },
+      [&](const SeamSpring& spring, const SeamPull& pull) {
+        const auto weights = spring.weights();
+        for (int k = 0; k < 3; ++k) force[spring.particles[k]] += weights[k] * pull.force;
+      });
   if (!model.gas.is_active()) return force;
   const double excess = model.gas.orientation * gas_excess(model.gas, compute_volume(model, state));
   add_volume_gradient(

@@ -2,6 +2,7 @@
 
 #include "weft/contact/moving_shape.h"
 #include "weft/forces/gravity.h"
+#include "weft/forces/seam_springs.h"
 #include "weft/world/cloth_forces.h"
 #include "weft/world/measures.h"
 
@@ -145,7 +146,8 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
     add_contact_forces(c, contacts, outside);
     const std::vector<Pin>& pins = world.pins(world.cloth(c));
     audit.work_pins += compute_pin_work(find_moved_pins(pins, cloth), world.gravity(), outside, cloth);
-    audit.work_hands += compute_attachment_work(world.attachments(world.cloth(c)), pins, cloth);
+    audit.work_hands += compute_attachment_work(world.attachments(world.cloth(c)), pins, cloth) +
+                        seam_work(cloth.model, cloth.before, cloth.after);
   }
   audit.left_over = audit.energy.total() - start.energy.total() - audit.work();
   return audit;

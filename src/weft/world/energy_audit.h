@@ -44,7 +44,7 @@ struct EnergyAudit {
   double work_pins = 0;    // of moving pins, by their reaction m a − F; exactly 0 for pins at rest
   double work_shapes = 0;  // of moving colliders, by the contact forces
   double work_wind = 0;    // of wind drag, and aerodynamic drag and lift; still air takes energy
-  double work_hands = 0;   // of grabs, by their springs and dampers
+  double work_hands = 0;   // of grabs, by their springs and dampers, and of closing seams
   double left_over = 0;
 
   double work() const { return work_pins + work_shapes + work_wind + work_hands; }

@@ -10,6 +10,7 @@
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane_patch.h"
 #include "weft/forces/pressure.h"
+#include "weft/forces/seam_springs.h"
 #include "weft/forces/spring.h"
 #include "weft/forces/thread_bends.h"
 
@@ -58,6 +59,7 @@ template <class Add>
 void visit_energies(const ClothModel& model, const ClothState& state, const Add& add) {
   if (model.elements) visit_energies(*model.elements, state, add);
   add(ElasticKind::bending, thread_bend_energy(model, state));
+  add(ElasticKind::stretch, seam_energy(model, state));
   const std::vector<Spring>& springs = model.topology->springs;
   const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
   for (std::size_t s = 0; s < springs.size(); ++s) {

@@ -16,7 +16,7 @@ double compute_elastic_energy(const ClothModel& model, const ClothState& state);
 
 /// The same energy in its two parts.
 struct ElasticParts {
-  double stretch = 0;  // of structural and shear springs, membranes, strain limits, gas [J]
+  double stretch = 0;  // of structural and shear springs, membranes, strain limits, seams, gas [J]
   double bending = 0;  // of bending springs, curvature stencils and hinges [J]
 };
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state);

@@ -8,6 +8,7 @@
 #include "weft/animation/mesh_sequence.h"
 #include "weft/core/hash.h"
 #include "weft/forces/pressure.h"
+#include "weft/forces/seam_springs.h"
 #include "weft/world/infeasible_pairs.h"
 #include "weft/world/measures.h"
 #include "weft/world/world_input.h"
@@ -147,6 +148,7 @@ ClothId World::add_cloth(const ClothParts& given) {
   Cloth cloth;
   cloth.name = desc.name;
   if (desc.elements) require_elements_supported(integrator_settings_.integrator, *desc.elements, desc.name);
+  require_seams_supported(integrator_settings_.integrator, desc.topology->seams, desc.name);
   cloth.model = build_cloth_model(desc.topology, desc.material, desc.elements);
   cloth.state = make_state(positions);
   for (std::size_t i = 0; i < positions.size(); ++i) cloth.state.v.set(i, desc.velocity);
@@ -598,6 +600,7 @@ void World::set_integrator(const IntegratorSettings& settings) {
     if (cloth.model->elements)
       require_elements_supported(settings.integrator, *cloth.model->elements, cloth.name);
     if (cloth.model->gas.is_active()) require_pressure_supported(settings.integrator, cloth.name);
+    require_seams_supported(settings.integrator, cloth.model->topology->seams, cloth.name);
   }
   require_valid(wind_, settings.integrator);
   integrator_settings_ = settings;
@@ -824,6 +827,7 @@ bool World::is_driven() const {
          std::any_of(colliders_.begin(), colliders_.end(), is_deforming) ||
          std::any_of(cloths_.begin(), cloths_.end(), [&](const Cloth& cloth) {
            return !cloth.attachments.are_empty() || !cloth.forces.empty() ||
+                  are_seams_closing(*cloth.model, cloth.state) ||
                   cloth.pin_guide.from != cloth.pin_guide.to ||
                   std::any_of(cloth.pins.begin(), cloth.pins.end(), moves);
          });

@@ -173,6 +173,12 @@ void require_elements_supported(const std::string& integrator, const ClothElemen
               " does not support it; use newton or implicit_euler");
 }
 
+void require_seams_supported(const std::string& integrator, const Seams& seams, const std::string& cloth) {
+  require(seams.springs.empty() || supports_seams(integrator),
+          "cloth \"" + cloth + "\" has seams, but " + integrator +
+              " does not support them; use newton or implicit_euler");
+}
+
 void require_pressure_supported(const std::string& integrator, const std::string& cloth) {
   require(supports_pressure(integrator), "cloth \"" + cloth + "\" has a pressure, but " + integrator +
                                              " does not support it; use newton or implicit_euler");

@@ -35,6 +35,7 @@ void require_valid(const Wind& wind, const std::string& integrator);
 /// An integrator that supports elements.
 void require_elements_supported(const std::string& integrator, const ClothElements& elements,
                                 const std::string& cloth);
+void require_seams_supported(const std::string& integrator, const Seams& seams, const std::string& cloth);
 void require_pressure_supported(const std::string& integrator, const std::string& cloth);
 
 /// For gas inside the cloth: every edge joins two triangles that face the same way.

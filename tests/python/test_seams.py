@@ -1,0 +1,27 @@
+"""Seams of flat panels, from Python."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import weft
+
+
+def panels(gap: float) -> weft.Mesh:
+    """Two strips of 5 × 9 vertices side by side."""
+    left = np.array([(0.05 * i, 0, 0.05 * j) for j in range(9) for i in range(5)])
+    faces = [
+        t for j in range(8) for i in range(4) for a in [5 * j + i] for t in ((a, a + 5, a + 1), (a + 1, a + 5, a + 6))
+    ]
+    return weft.Mesh(np.vstack([left, left + (0.2 + gap, 0, 0)]), np.vstack([faces, np.add(faces, 45)]))
+
+
+@pytest.mark.parametrize("integrator", ["newton", "implicit_euler"])
+def test_panels_are_sewn(integrator: str) -> None:
+    world = weft.World(integrator=integrator)
+    world.gravity = (0, 0, 0)
+    cloth = world.add_cloth(panels(0.1), warp=(1, 0, 0), seams=[([4, 44], [45, 85])], seam_time=0.5)
+    for _ in range(60):
+        world.step(1 / 60)
+    open_by = np.linalg.norm(cloth.positions[4:45:5] - cloth.positions[45:90:5], axis=1)
+    assert open_by.max() < 0.002
