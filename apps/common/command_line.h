@@ -1,11 +1,14 @@
 #pragma once
 /// Shared helpers of the commands.
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "weft/render/camera.h"
 #include "weft/scene/scene_reader.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weft::engine::app {
 
