@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/message_of.h"
+#include "tests/same_continuation.h"
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
 #include "weft/mesh/sample_meshes.h"
@@ -163,15 +164,7 @@ TEST(Seams, ArePartOfSnapshotsAndOfSavedWorlds) {
   World world;
   world.add_cloth(describe(halves, 0.5));
   settle(world, 10);
-  const Snapshot snapshot = world.snapshot();
-  World loaded = World::load(world.save());
-  settle(world, 10);
-  const std::uint64_t hash = world.state_hash();
-  settle(loaded, 10);
-  EXPECT_EQ(loaded.state_hash(), hash);
-  world.restore(snapshot);
-  settle(world, 10);
-  EXPECT_EQ(world.state_hash(), hash);
+  expect_same_continuation(world, 10, kStep);
 }
 
 TEST(Seams, HaveTheSameBitsForAnyNumberOfThreads) {

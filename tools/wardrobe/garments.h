@@ -24,6 +24,7 @@ TriangleMesh make_coat(double cell);
 TriangleMesh make_scarf(double cell);
 /// A bodice of four panels and a pleated skirt of six, with borders 0.2 to 2 mm apart.
 TriangleMesh make_pleated_dress(double cell);
+
 /// Flat panels, and the seams that make a garment of them.
 struct Pattern {
   TriangleMesh mesh;

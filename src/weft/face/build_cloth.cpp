@@ -158,12 +158,14 @@ double edge_stiffness(const ClothDesc& desc) {
 /// `mesh` is that of the particles; notes.particle_of_vertex is known.
 Seams build_seams(const ClothDesc& desc, const TriangleMesh& mesh, const ClothNotes& notes) {
   Seams seams{.springs = {}, .time = desc.seam_time};
+  if (desc.seams.empty()) return seams;
+  const BorderPaths paths(mesh);
   for (std::size_t s = 0; s < desc.seams.size(); ++s) {
     try {
-      const std::vector<int> a = find_border_path(mesh,
-                                                  find_particles(desc.seams[s].a, notes.particle_of_vertex)),
-                             b = find_border_path(mesh,
-                                                  find_particles(desc.seams[s].b, notes.particle_of_vertex));
+      const auto find = [&](const std::vector<int>& vertices) {
+        return paths.find(find_particles(vertices, notes.particle_of_vertex));
+      };
+      const std::vector<int> a = find(desc.seams[s].a), b = find(desc.seams[s].b);
       const double stiffness = desc.seam_stiffness.value_or(edge_stiffness(desc) / mean_edge(mesh, a, b));
       const std::vector<SeamSpring> springs = make_seam_springs(mesh, a, b, stiffness);
       if (springs.empty()) throw InputError("its two stretches of border are the same");

@@ -59,13 +59,17 @@ Way find_way(const TriangleMesh& mesh, const Borders& borders, int from, int to)
 
 }  // namespace
 
-std::vector<int> find_border_path(const TriangleMesh& mesh, std::span<const int> stops) {
+BorderPaths::BorderPaths(const TriangleMesh& mesh)
+    : mesh_(mesh), borders_(std::make_unique<const Borders>(build_borders(mesh))) {}
+
+BorderPaths::~BorderPaths() = default;
+
+std::vector<int> BorderPaths::find(std::span<const int> stops) const {
   if (stops.size() < 2) throw InputError("a stretch of border has at least two vertices");
-  const Borders borders = build_borders(mesh);
   std::vector<int> path = {stops[0]};
   for (std::size_t k = 1; k < stops.size(); ++k) {
     if (stops[k] == stops[k - 1]) throw InputError(name(stops[k]) + " is named twice in a row");
-    const Way way = find_way(mesh, borders, stops[k - 1], stops[k]);
+    const Way way = find_way(mesh_, *borders_, stops[k - 1], stops[k]);
     path.insert(path.end(), way.vertices.begin(), way.vertices.end());
   }
   return path;
