@@ -34,7 +34,9 @@ class SceneWriter : public testing::Test {
     return read;
   }
 
-  const fs::path folder_ = fs::path(WEFT_OUTPUT_DIR) / "scene_writer";
+  // One per test: tests run at the same time.
+  const fs::path folder_ = fs::path(WEFT_OUTPUT_DIR) / "scene_writer" /
+                           testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 /// Mesh files by the shortest of their names.
