@@ -55,6 +55,18 @@ std::string ProgressLog::line(const Progress& p, double elapsed) {
 ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), is_terminal_(isatty(STDERR_FILENO) != 0), log_(label_) {}
 
+void ProgressBar::prepare(const std::string& what) {
+  if (is_terminal_) {
+    std::fputs(("\r\033[K" + label_ + ": " + what).c_str(), stderr);
+    std::fflush(stderr);
+    return;
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (elapsed.count() < prepared_ + ProgressLog::kInterval) return;
+  prepared_ = elapsed.count();
+  std::fputs((label_ + ": " + what + "\n").c_str(), stderr);
+}
+
 void ProgressBar::update(const Progress& p) {
   if (is_terminal_) return draw(p);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;

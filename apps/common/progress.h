@@ -11,6 +11,8 @@ namespace weft::engine::app {
 /// Log lines: one every ten seconds, the first after ten.
 class ProgressLog {
  public:
+  static constexpr double kInterval = 10;  // [s]
+
   explicit ProgressLog(std::string label) : label_(std::move(label)) {}
 
   /// The due line after a frame, `elapsed` after the start [s]; empty if none is due. Reports the frame's
@@ -21,8 +23,6 @@ class ProgressLog {
   std::string label_;
   double due_ = kInterval;  // time of the next line, after the start [s]
   double spent_ = 0;        // on simulation up to the previous frame [s]
-
-  static constexpr double kInterval = 10;  // [s]
 };
 
 /// Reports progress on standard error: a bar on a terminal, the lines of a ProgressLog elsewhere. A failed
@@ -31,6 +31,8 @@ class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
 
+  /// Before the first frame: what is being prepared.
+  void prepare(const std::string& what);
   void update(const Progress& progress);
   void clear();
 
@@ -41,6 +43,7 @@ class ProgressBar {
   bool is_terminal_;
   double last_drawn_ = -1;  // simulation time at the last drawing [s]
   ProgressLog log_;
+  double prepared_ = 0;  // time of the last line about the preparation, after the start [s]
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

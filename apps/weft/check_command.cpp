@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/common/command_line.h"
+#include "apps/common/progress.h"
 #include "commands.h"
 #include "weft/error.h"
 #include "weft/run/start_check.h"
@@ -18,7 +19,10 @@ namespace {
 bool check(const std::string& name, const Overrides& overrides) {
   const std::filesystem::path file = find_scene(name);
   const SceneDesc scene = read_scene(file, overrides);
-  const SceneWorld built = build_world(scene, make_serial_jobs());
+  ProgressBar bar(scene.name);
+  const SceneWorld built =
+      build_world(scene, make_serial_jobs(), [&bar](const std::string& what) { bar.prepare(what); });
+  bar.clear();
   const SizeCheck sizes = check_sizes(scene, built.world);
   for (const std::string& line : sizes.sizes) fmt::print("  {}\n", line);
   for (const std::string& note : built.notes) fmt::print("  {}\n", note);

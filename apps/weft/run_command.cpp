@@ -40,6 +40,7 @@ FinishedRun run_to_files(RunRequest request, const std::vector<FrameSink*>& sink
   make_folder(options.folder);  // the report may be in it
   if (!request.report.empty()) require_writable(request.report);
   ProgressBar bar(scene.name);
+  options.on_preparation = [&bar](const std::string& what) { bar.prepare(what); };
   catch_interrupts();
   FinishedRun run = run_to_folder(scene, options, sinks, [&](const Progress& progress) {
     bar.update(progress);

@@ -80,12 +80,17 @@ struct ClothDesc {
   /// lining, stay separate; 0: none [m].
   double sew = 0;
 
-  /// Seams of panels, which draw together within `seam_time`, and then hold, with borders 1.2 thicknesses apart. For `newton` and `implicit_euler`; not on grids of springs.
+  /// Seams of panels, which draw together within `seam_time`, and then hold, with borders 1.2 thicknesses
+  /// apart. For `newton` and `implicit_euler`; not on grids of springs.
   std::vector<Seam> seams = {};
   double seam_time = 1;  // from the start distance to closed, >= 0 [s]
 
   /// Tension per opening of the seams, >= 0; empty: that of the cloth's edges beside them [N/m²].
   std::optional<double> seam_stiffness = {};
+
+  /// Order of garments worn over each other. World::untangle() moves a cloth outside of those with lower
+  /// numbers, away from the nearest closed collider; equal numbers have no order.
+  int layer = 0;
 
   /// Whether to reduce the thickness to half the mean edge length where it is larger, so that few neighbours
   /// on coarse meshes are nearer than the thickness.

@@ -72,11 +72,15 @@ class WEFT_API VertexMotion {
 struct ColliderDesc {
   std::string name = {};  // for reports; empty: "collider", "collider 2", …
 
-  /// In its own coordinates. Closed meshes should face outwards; shells that face inwards are flipped. Open
-  /// meshes collide on both sides. Coincident vertices are merged; degenerate and duplicate triangles are
-  /// dropped.
+  /// In its own coordinates. Closed shells of a mesh are solid and should face outwards; triangles and shells
+  /// that face inwards are flipped. Open shells collide on both sides. Coincident vertices are merged;
+  /// degenerate and duplicate triangles are dropped.
   std::variant<Sphere, Plane, Capsule, OrientedBox, TriangleMesh> shape = {};
   std::string source = {};  // file of a mesh, for messages: "body.obj"; may be empty
+
+  /// Whether the holes of a mesh's shells are filled, which makes them solid. Empty: of shells whose holes are
+  /// at most a twentieth of their area.
+  std::optional<bool> solid = {};
 
   Pose pose = {};                      // initial pose, from the shape's own coordinates to the world
   std::vector<KeyFrame> motion = {};   // pivot: centre, plane point, middle of the axis; of meshes the origin

@@ -145,7 +145,7 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
            std::optional<Vec3> warp, const std::string& model, const Vec3& position, const Matrix& rotation,
            const Vec3& velocity, std::optional<double> weld, double sew,
            const std::vector<std::pair<Indices, Indices>>& seams, double seam_time,
-           std::optional<double> seam_stiffness, bool fits_thickness) {
+           std::optional<double> seam_stiffness, int layer, bool fits_thickness) {
           ClothDesc desc{.name = name,
                          .source = source,
                          .fabric = to_substance(fabric),
@@ -159,6 +159,7 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
                          .sew = sew,
                          .seam_time = seam_time,
                          .seam_stiffness = seam_stiffness,
+                         .layer = layer,
                          .fits_thickness = fits_thickness};
           for (const auto& [a, b] : seams) desc.seams.push_back({to_indices(a), to_indices(b)});
           if (nb::isinstance<Grid>(shape)) {
@@ -171,11 +172,12 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
         });
   c.def("add_collider",
         [](LockedWorld& own, const std::string& name, nb::handle shape, const std::string& source,
-           const Vec3& position, const Matrix& rotation, std::vector<KeyFrame> motion, nb::handle frames,
-           std::optional<VertexMotion> deformation, double deformation_start, double friction,
-           double static_friction) {
+           std::optional<bool> solid, const Vec3& position, const Matrix& rotation,
+           std::vector<KeyFrame> motion, nb::handle frames, std::optional<VertexMotion> deformation,
+           double deformation_start, double friction, double static_friction) {
           ColliderDesc desc{.name = name,
                             .source = source,
+                            .solid = solid,
                             .pose = to_pose(position, rotation),
                             .motion = std::move(motion),
                             .deformation = deformation.value_or(VertexMotion()),

@@ -489,6 +489,7 @@ class World:
         seams: Sequence[tuple[Sequence[int], Sequence[int]]] = (),
         seam_time: float = 1.0,
         seam_stiffness: float | None = None,
+        layer: int = 0,
         fits_thickness: bool = True,
     ) -> Cloth:
         """Adds a cloth: a `grid`, a `Mesh`, or any object with `vertices` and `faces`, its rest shape.
@@ -500,7 +501,8 @@ class World:
         vertices within this distance. sew: joins borders within this distance [m]. seams: pairs of
         stretches of border that draw together within seam_time [s], and hold; each stretch is a list of vertices on a
         border, in order, from each to the next the shorter way; the first of one is sewn to the first of the other.
-        seam_stiffness: tension per opening [N/m²]; None: that of the cloth's edges. fits_thickness: reduces the
+        seam_stiffness: tension per opening [N/m²]; None: that of the cloth's edges. layer: order of garments over
+        each other: `untangle` moves a cloth outside of those with lower numbers. fits_thickness: reduces the
         thickness to half of a mean edge where it is larger.
 
         Raises InputError for an invalid mesh or fabric.
@@ -515,7 +517,7 @@ class World:
             _rotation(rotation), vector(velocity, "velocity"), None if weld is None else real(weld, "weld"),
             real(sew, "sew"), _seams(seams),
             real(seam_time, "seam_time"), None if seam_stiffness is None else real(seam_stiffness, "seam_stiffness"),
-            bool(fits_thickness),
+            whole(layer, "layer"), bool(fits_thickness),
         )  # fmt: skip
         return Cloth(self, id)
 
@@ -530,6 +532,7 @@ class World:
         motion: Sequence[_core.KeyFrame] = (),
         frames: Iterable[tuple[float, ArrayLike]] = (),
         start_time: float | None = None,
+        solid: bool | None = None,
         name: str = "",
     ) -> Collider:
         """Adds a collider: Sphere, Plane, Capsule, Box, Mesh, or any object with `vertices` and `faces`.
@@ -537,6 +540,9 @@ class World:
         position [m] and rotation: its pose, as in `add_cloth`. motion: key frames. frames: (time, vertices) of a
         mesh that deforms, linear between them. start_time: of the `deformation` of a mesh from `read_gltf`, at time 0 of
         the world [s]; by default its start. friction and static_friction: Coulomb coefficients of cloth on it.
+
+        solid: whether the holes of a mesh are filled, so that it has an inside; None: those of shells whose holes are
+        at most a twentieth of their area.
 
         Raises InputError for an invalid shape or motion.
         """
@@ -557,7 +563,8 @@ class World:
                 raise _core.InputError(f"frames: expected pairs (time, vertices), found {len(frame)} items")
             poses.append((real(frame[0], "frames"), vectors(frame[1], "frames")))
         id = self._core.add_collider(
-            str(name), shape, "", vector(position, "position"), _rotation(rotation), keys, poses,
+            str(name), shape, "", None if solid is None else bool(solid), vector(position, "position"),
+            _rotation(rotation), keys, poses,
             deformation, real(start_time, "start_time"), real(friction, "friction"), real(static_friction, "static_friction"),
         )  # fmt: skip
         return Collider(self, id)

@@ -46,7 +46,8 @@ struct Patches {
                       .end_vertex = surface.num_vertices,
                       .first_triangle = first_triangle,
                       .end_triangle = static_cast<int>(surface.triangles.size()),
-                      .is_closed = true});
+                      .solid = {surface.triangles.begin() + first_triangle, surface.triangles.end()},
+                      .is_solid = std::vector<char>(mesh.positions.size(), 1)});
     motion.start.insert(motion.start.end(), mesh.positions.begin(), mesh.positions.end());
     motion.half_thickness.resize(motion.start.size(), 0);
     inverse_mass.resize(motion.start.size(), 0);
@@ -69,8 +70,8 @@ struct Patches {
     Proximity proximity;
     proximity.reset(surface, groups, rest, num_cloth_vertices, num_cloth_triangles, {0.003, 0.001, 0.006});
     CcdFailSafe fail_safe;
-    return fail_safe.resolve({&inverse_mass, &shapes, &first_of_cloth, &origins, &bodies}, proximity,
-                             motion, *jobs);
+    return fail_safe.resolve({&inverse_mass, &shapes, &first_of_cloth, &origins, &bodies}, proximity, motion,
+                             *jobs);
   }
 
   /// Number of feature pairs that pass through each other on the way to `end`.
@@ -83,7 +84,8 @@ struct Patches {
         if (m < origins.size())
           frame.cloths.push_back({"patch", positions, meshes[m].triangles});
         else
-          frame.colliders.push_back({"solid", verify::MeshView{positions, meshes[m].triangles, true}});
+          frame.colliders.push_back(
+              {"solid", verify::MeshView{positions, meshes[m].triangles, meshes[m].triangles}});
       }
       return frame;
     };

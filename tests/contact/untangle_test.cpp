@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "tests/support.h"
 #include "weft/mesh/clean.h"
@@ -92,6 +94,18 @@ TEST(Untangle, ClothPartlyInAClosedMeshComesOut) {
   expect_untangled(world, "cloth \"sheet\"");
 }
 
+TEST(Untangle, ClothPartlyInTheClosedShellOfAMeshComesOut) {
+  TriangleMesh mesh = make_sphere_mesh(Vec3::Zero(), 0.12, 12);
+  const int first = mesh.num_vertices();  // and a card beside it, as of hair
+  for (const Vec3& p : {Vec3(-0.3, 0, 0), Vec3(-0.25, 0, 0), Vec3(-0.3, 0, 0.05)})
+    mesh.positions.push_back(p);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  World world;
+  world.add_collider({"rock", MeshShape{.mesh = std::make_shared<const TriangleMesh>(mesh)}, 0.3, {}});
+  add_sheet(world, "sheet", {0.05, 0.08, 0.02}, {5, 0, 0});
+  expect_untangled(world, "cloth \"sheet\"");
+}
+
 /// A sheet bent over by `turn_deg` around an edge, so that its end comes back through the rest.
 TEST(Untangle, AFoldThroughItselfComesOut) {
   const auto topology = build_grid_topology({.size_x = 0.7, .size_z = 0.2, .cells_x = 35, .cells_z = 10},
@@ -157,6 +171,100 @@ TEST(Untangle, AnArmHalfOutsideItsSleeveIsPutIntoIt) {
   }
   EXPECT_GT(above, kArm);
   EXPECT_LT(below, -kArm);
+}
+
+struct Sleeve {
+  double radius, aside;  // [m]
+  int layer;
+};
+
+constexpr int kAround = 36, kAlong = 30;
+
+/// Sleeves of the same length around an arm of 40 mm along x.
+std::vector<ClothId> add_sleeves(World& world, std::span<const Sleeve> sleeves) {
+  const TriangleMesh arm = make_capsule_mesh({-0.3, 0, 0}, {0.3, 0, 0}, 0.04, 24);
+  const CleanMesh closed = clean_mesh(arm, {.weld_distance = 0});
+  world.add_collider({"arm", MeshShape{.mesh = std::make_shared<const TriangleMesh>(closed.mesh)}, 0.3, {}});
+  std::vector<ClothId> ids;
+  for (const Sleeve& sleeve : sleeves) {
+    const TriangleMesh mesh = make_sleeve(sleeve.radius, 0.25, kAround, kAlong);
+    std::vector<Vec3> positions = mesh.positions;
+    for (Vec3& p : positions) p.y() += sleeve.aside;
+    ids.push_back(world.add_cloth({.name = "sleeve " + std::to_string(ids.size()),
+                                   .topology = build_mesh_topology(mesh),
+                                   .material = kCotton,
+                                   .positions = positions,
+                                   .layer = sleeve.layer}));
+  }
+  return ids;
+}
+
+/// Rays from the arm's axis meet `inner` before `outer`, everywhere but at their ends.
+void expect_order(const World& world, ClothId inner, ClothId outer) {
+  const auto positions = [&](ClothId id) { return positions_of(world.state(id)); };
+  const std::vector<Vec3> in = positions(inner), out = positions(outer);
+  const std::vector<Triangle>& triangles = world.model(inner).topology->mesh.triangles;
+  const auto meets = [](const Vec3& from, const Vec3& to, const std::vector<Vec3>& x, const Triangle& t) {
+    Mat3 m;
+    m << x[t[1]] - x[t[0]], x[t[2]] - x[t[0]], from - to;
+    const Vec3 uvs = m.inverse() * (from - x[t[0]]);
+    return uvs.minCoeff() >= 0 && uvs.x() + uvs.y() <= 1 && uvs.z() <= 1;
+  };
+  for (int v = 3 * kAround; v < (kAlong - 2) * kAround; ++v) {
+    const Vec3 axis(out[v].x(), 0, 0);
+    const auto count = [&](const Vec3& from, const Vec3& to) {
+      return std::ranges::count_if(triangles, [&](const Triangle& t) { return meets(from, to, in, t); });
+    };
+    EXPECT_EQ(count(axis, out[v]) % 2, 1) << "vertex " << v << " at " << out[v].transpose();
+  }
+}
+
+TEST(Untangle, PutsAHigherLayerOutside) {
+  // Wholly under the other one, and through it on one side.
+  for (const auto& [first, second] : {std::pair(Sleeve{0.050, 0, 0}, Sleeve{0.0485, 0, 1}),
+                                      std::pair(Sleeve{0.047, 0, 0}, Sleeve{0.049, 0.006, 1}),
+                                      std::pair(Sleeve{0.0485, 0, 1}, Sleeve{0.050, 0, 0}),
+                                      std::pair(Sleeve{0.049, 0.006, 3}, Sleeve{0.047, 0, -1})}) {
+    World world;
+    const std::vector<ClothId> ids = add_sleeves(world, std::array{first, second});
+    const bool is_first_inner = first.layer < second.layer;
+    const UntangleReport report = world.untangle();
+    EXPECT_GT(report.rounds, 0);
+    for (const std::string& left : report.left) ADD_FAILURE() << left;
+    EXPECT_EQ(check(world).intersections, 0);
+    expect_order(world, ids[is_first_inner ? 0 : 1], ids[is_first_inner ? 1 : 0]);
+    for (const ClothId id : ids) EXPECT_LT(largest_strain(world, id), 0.2);
+  }
+}
+
+TEST(Untangle, PutsThreeLayersInOrder) {
+  World world;
+  const std::vector<ClothId> ids =
+      add_sleeves(world, std::array{Sleeve{0.049, 0.004, 2}, Sleeve{0.048, 0, 1}, Sleeve{0.047, -0.003, 0}});
+  for (const std::string& left : world.untangle().left) ADD_FAILURE() << left;
+  EXPECT_EQ(check(world).intersections, 0);
+  expect_order(world, ids[2], ids[1]);
+  expect_order(world, ids[1], ids[0]);
+}
+
+TEST(Untangle, SaysWhichLayerIsUnderWhich) {
+  World world;
+  add_sleeves(world, std::array{Sleeve{0.050, 0, 0}, Sleeve{0.0485, 0, 1}});
+  const UntangleReport report = world.untangle();
+  ASSERT_EQ(report.crossed.size(), 1);
+  EXPECT_NE(
+      report.crossed[0].find("particles of cloth \"sleeve 1\" are under cloth \"sleeve 0\", a lower layer"),
+      std::string::npos)
+      << report.crossed[0];
+}
+
+TEST(Untangle, LeavesLayersInOrderAlone) {
+  World world;
+  add_sleeves(world, std::array{Sleeve{0.045, 0, 0}, Sleeve{0.0485, 0, 1}});
+  EXPECT_EQ(world.untangle().rounds, 0);
+  World equal;
+  add_sleeves(equal, std::array{Sleeve{0.0485, 0, 4}, Sleeve{0.045, 0, 4}});
+  EXPECT_EQ(equal.untangle().rounds, 0);
 }
 
 TEST(Untangle, LeavesAloneWhatDoesNotCross) {

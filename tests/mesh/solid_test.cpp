@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "weft/core/random.h"
 #include "weft/mesh/clean.h"
@@ -146,6 +148,69 @@ TEST(Shells, ThatFaceInwardsAreTurnedButHollowsAreNot) {
   EXPECT_EQ(shells.turned, 1);
   const std::vector<Vec3> points = {{-0.7, 0.1, 0.1}, {0.7, 0.8, 0.9}, {1.2, 1.3, 1.2}, {0.21, 0.22, 0.23}};
   EXPECT_EQ(compute_winding_numbers(mesh, points), (std::vector<int>{1, 2, 1, 1}));
+}
+
+TEST(OrientTriangles, FlipsTheFewerOfEachPart) {
+  Random random(1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const TriangleMesh ball = clean_mesh(make_sphere_mesh(Vec3::Zero(), 1, 10), {.weld_distance = 0}).mesh;
+    TriangleMesh mesh =
+        join(ball, clean_mesh(make_sphere_mesh(Vec3(5, 0, 0), 1, 10), {.weld_distance = 0}).mesh);
+    const TriangleMesh right = mesh;
+    int flipped = 0;
+    for (Triangle& t : mesh.triangles) {
+      if (random.uniform(0, 1) > 0.3) continue;
+      std::swap(t[1], t[2]);
+      ++flipped;
+    }
+    EXPECT_EQ(orient_triangles(mesh), flipped);
+    EXPECT_TRUE(is_closed(count_surface_edges(mesh)));
+    EXPECT_NEAR(compute_signed_volume(mesh), compute_signed_volume(right), 1e-12);
+    EXPECT_EQ(orient_triangles(mesh), 0);
+  }
+}
+
+TEST(OrientTriangles, LeavesAStripWithOneSide) {
+  TriangleMesh strip;  // of Möbius
+  constexpr int kCells = 12;
+  for (int k = 0; k < kCells; ++k) {
+    const double turn = 2 * 3.141592653589793 * k / kCells;
+    for (const double across : {-0.3, 0.3}) {
+      const double r = 1 + across * std::cos(turn / 2);
+      strip.positions.emplace_back(r * std::cos(turn), across * std::sin(turn / 2), r * std::sin(turn));
+    }
+    const int a = 2 * k, b = a + 1, c = k + 1 < kCells ? a + 2 : 1, d = k + 1 < kCells ? a + 3 : 0;
+    strip.triangles.insert(strip.triangles.end(), {{a, b, c}, {b, d, c}});
+  }
+  const std::vector<Triangle> before = strip.triangles;
+  EXPECT_EQ(orient_triangles(strip), 0);
+  EXPECT_EQ(strip.triangles, before);
+  EXPECT_GT(count_surface_edges(strip).twisted, 0);
+}
+
+TEST(SolidPart, IsThatOfTheClosedShells) {
+  TriangleMesh open = box(Vec3(1, 0, 0), 2);
+  open.triangles.pop_back();
+  const TriangleMesh mesh = join(join(box(Vec3::Zero(), 1), open), box(Vec3(9, 0, 0), 1));
+  const TriangleMesh solid = find_solid_part(mesh);
+  EXPECT_EQ(solid.num_vertices(), mesh.num_vertices());
+  EXPECT_NEAR(compute_signed_volume(solid), 8 + 8, 1e-12);
+  EXPECT_EQ(compute_winding_numbers(solid, {Vec3::Zero(), Vec3(2, 0, 0), Vec3(9, 0, 0)}),
+            (std::vector<int>{1, 0, 1}));
+}
+
+TEST(Shells, ThatAreOpenAreNeitherTurnedNorHollows) {
+  TriangleMesh open = box(Vec3::Zero(), 3);  // around the other one, facing inwards
+  open.triangles.pop_back();
+  turn_inside_out(open);
+  TriangleMesh inwards = box(Vec3::Zero(), 1);
+  turn_inside_out(inwards);
+  TriangleMesh mesh = join(open, inwards);
+  const Shells shells = turn_shells_outwards(mesh);
+  EXPECT_EQ(shells.count, 1);
+  EXPECT_EQ(shells.turned, 1);
+  EXPECT_EQ(mesh.triangles[0], open.triangles[0]);
+  EXPECT_NEAR(compute_signed_volume(find_solid_part(mesh)), 8, 1e-12);
 }
 
 }  // namespace

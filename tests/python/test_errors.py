@@ -475,8 +475,8 @@ FILES: list[tuple[Callable[[Path], object], str]] = [
      'cloth "cloth": a pin\'s region contains no particle; regions are in world coordinates [m], after position and '
      "rotation"),
     (lambda t: world_of(two_meshes(t), t),
-     'collider "body": frame 1 (m_1.obj) has 9 vertices and 8 triangles, the first (m_0.obj) 4 vertices and 2 '
-     "triangles; all frames must have the same vertices and triangles, in the same order"),
+     'collider "body": frame 1: {}/m_1.obj:10: face 1 is not that of the first file; all frames must have the same '
+     "vertices and faces, in the same order"),
     (lambda t: run_of(GRID_OF_FOUR, out="/dev/null/x"),
      "cannot create folder /dev/null/x: Not a directory"),
     (lambda t: run_of(GRID_OF_FOUR, glb=False).picture(), "the run has no animation.glb; run it with glb=True"),

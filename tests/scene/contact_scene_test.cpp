@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"
@@ -107,6 +109,29 @@ TEST_F(DeformingMesh, TakesFramesInTheOrderOfTheirNames) {
   EXPECT_NEAR(top_at(5), 2, 1e-12);
 }
 
+/// The shorter diagonals of quads change while a body twists.
+TEST_F(DeformingMesh, OfQuadsKeepsTheTrianglesOfTheFirstFrame) {
+  const auto write_quads = [&](const std::string& name, double twist) {
+    std::ofstream file(folder_ / name);
+    for (const double y : {0.0, 1.0}) {
+      for (int k = 0; k < 4; ++k) {
+        const double angle = 1.5707963267948966 * k + twist * y;
+        file << "v " << std::cos(angle) << ' ' << y << ' ' << std::sin(angle) << '\n';
+      }
+    }
+    file << "f 1 2 3 4\nf 8 7 6 5\n";
+    for (int k = 1; k <= 4; ++k)
+      file << "f " << k << "/1 " << k + 4 << "//2 " << k % 4 + 5 << "/1/2 " << k % 4 - 8 << '\n';
+  };
+  write_quads("body_00.obj", -0.4);
+  write_quads("body_01.obj", 0.4);
+  const SceneWorld built = build();
+  const Collider& body = built.world.colliders().at(0);
+  EXPECT_EQ(std::get<MeshShape>(body.shape).mesh->num_triangles(), 12);
+  const ColliderShape twisted = shape_at(body, 0.25);
+  EXPECT_NEAR(std::get<MeshShape>(twisted).vertex(4).z(), std::sin(0.4), 1e-5);
+}
+
 TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
   write("body_00.obj", box(1));
   TriangleMesh other = box(2);
@@ -116,10 +141,11 @@ TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
     build();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "collider \"body\": frame 1 (body_01.obj) has 24 vertices and 11 triangles, the first "
-              "(body_00.obj) 24 vertices and 12 triangles; all frames must have the same vertices and "
-              "triangles, in the same order");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "collider \"body\": frame 1: " + (folder_ / "body_01.obj").string() +
+            ": has 11 faces, the first file 12; all frames must have the same vertices and faces, in the "
+            "same order");
   }
 }
 

@@ -12,6 +12,7 @@
 #include "weft/face/world_impl.h"
 #include "weft/io/mesh_files.h"
 #include "weft/io/obj_reader.h"
+#include "weft/mesh/clean.h"
 #include "weft/mesh/sample_meshes.h"
 #include "weft/mesh/solid.h"
 #include "weft/scene/cloth_faces.h"
@@ -352,10 +353,54 @@ TEST_F(MeshCollider, WithABorderIsNamed) {
   EXPECT_TRUE(warns(build(mesh), "collider \"body\" (body.obj): has a border of 4 edges"));
 }
 
+TEST_F(MeshCollider, WithSmallHolesIsFilledAndNamed) {
+  const TriangleMesh whole = clean_mesh(make_sphere_mesh(Vec3::Zero(), 0.5, 20), {.weld_distance = 0}).mesh;
+  TriangleMesh mesh = whole;
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == 50 || t[1] == 50 || t[2] == 50; });
+  const SceneWorld built = build(mesh);
+  EXPECT_TRUE(warns(built, "has 1 hole, up to "));
+  EXPECT_TRUE(warns(built, " wide; it was filled (solid = false leaves them open)"));
+  EXPECT_NEAR(compute_signed_volume(*shape(built).mesh), compute_signed_volume(whole), 0.005);
+  const SceneWorld open = build(mesh, "solid = false\n");
+  EXPECT_TRUE(
+      warns(open, "has a border of 6 edges: cloth collides with both sides there, and nothing is inside"));
+  EXPECT_EQ(shape(open).mesh->num_triangles(), mesh.num_triangles());
+}
+
+TEST_F(MeshCollider, WithALargeHoleIsFilledOnDemand) {
+  TriangleMesh mesh = box();
+  mesh.triangles.resize(10);
+  EXPECT_TRUE(warns(build(mesh), "; solid = true fills its holes"));
+  const SceneWorld built = build(mesh, "solid = true\n");
+  EXPECT_TRUE(warns(built, "has 1 hole, up to 1.13e+03 mm wide; it was filled"));
+  EXPECT_NEAR(compute_signed_volume(*shape(built).mesh), 1, 1e-15);
+}
+
+TEST_F(MeshCollider, WithAnOpenShellIsSolidElsewhere) {
+  TriangleMesh mesh = box();
+  const int first = mesh.num_vertices();
+  for (const Vec3& p : {Vec3(0, 0.8, 0), Vec3(0.1, 0.8, 0), Vec3(0, 0.8, 0.1)}) mesh.positions.push_back(p);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  const SceneWorld built =
+      build(mesh, "[solver]\ncontact = false\n[[cloth]]\ngrid = { size = [0.2, 0.2], cells = [2, 2] }\n");
+  EXPECT_TRUE(warns(built, "9 particles inside collider \"body\""));
+}
+
+TEST_F(MeshCollider, ThatIsOpenAroundClothIsNamed) {
+  TriangleMesh mesh = box();
+  mesh.triangles.resize(10);
+  for (Vec3& p : mesh.positions) p *= 4;
+  EXPECT_TRUE(
+      warns(build(mesh), "81 particles of cloth \"cloth\" start within collider \"body\", which is open"));
+  EXPECT_FALSE(warns(build(mesh, "[solver]\ncontact = false\n"), "which is open"));
+}
+
 TEST_F(MeshCollider, WithTwistedTrianglesOrFinsIsNamed) {
   TriangleMesh mesh = box();
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
-  EXPECT_TRUE(warns(build(mesh), "3 edges between triangles of opposite orientation"));
+  const SceneWorld oriented = build(mesh);
+  EXPECT_TRUE(warns(oriented, "1 triangle faced another way than most around; it was flipped"));
+  EXPECT_NEAR(compute_signed_volume(*shape(oriented).mesh), 1, 1e-15);
   mesh = box();
   mesh.positions.emplace_back(0, 2, 0);
   mesh.triangles.push_back({0, 1, 24});

@@ -45,7 +45,7 @@ NamedCloth cloth(const std::string& name, const TriangleMesh& mesh) {
 }
 
 NamedCollider body(const std::string& name, const TriangleMesh& mesh) {
-  return {name, MeshView{mesh.positions, mesh.triangles, true}};
+  return {name, MeshView{mesh.positions, mesh.triangles, mesh.triangles}};
 }
 
 /// Passages from each frame to the next: meshes as cloths, in their order.

@@ -201,7 +201,7 @@ std::optional<Touch> Catcher::touch_of(const Constraint& c) const {
   const std::vector<Vec3>& x = bodies_.motion.end;
   touch.side = {.collider = body.collider,
                 .face = triangle - body.first_triangle,
-                .is_back = !body.is_closed && (x[j] - x[i]).cross(x[k] - x[i]).dot(touch.normal) < 0};
+                .is_back = !body.has_inside_at(i) && (x[j] - x[i]).cross(x[k] - x[i]).dot(touch.normal) < 0};
   return touch;
 }
 

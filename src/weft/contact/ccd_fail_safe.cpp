@@ -196,23 +196,21 @@ bool CcdFailSafe::starts_intersecting(const Hit& hit) const {
   return is_pierced;
 }
 
-/// Winding number test: whether the point of cloth that meets a closed mesh is inside of it at the start. The
+/// Winding number test: whether the point of cloth that meets a closed shell is inside of it at the start. The
 /// side of the met face does not suffice: faces of a rotating mesh come from far, and a point behind a face's
 /// plane may be outside, beyond the face's border.
 bool CcdFailSafe::comes_from_inside(const Constraint& c) const {
   if (c.shape >= 0) return false;
   const int of_mesh = std::max(c.vertex[0], c.vertex[3]);
   const auto mesh = std::find_if(step_.bodies->begin(), step_.bodies->end(), [&](const ColliderMesh& m) {
-    return m.is_closed && of_mesh >= m.first_vertex && of_mesh < m.end_vertex;
+    return of_mesh >= m.first_vertex && of_mesh < m.end_vertex;
   });
-  if (mesh == step_.bodies->end()) return false;
+  if (mesh == step_.bodies->end() || !mesh->has_inside_at(of_mesh)) return false;
   Vec3 point = Vec3::Zero();
   for (int k = 0; k < c.num_vertices; ++k) {
     if (c.vertex[k] < num_cloth_vertices()) point += std::abs(c.weight[k]) * motion_->start[c.vertex[k]];
   }
-  const std::span triangles = std::span(proximity_->surface().triangles)
-                                  .subspan(mesh->first_triangle, mesh->end_triangle - mesh->first_triangle);
-  return compute_winding_number(triangles, motion_->start, point) > 0;
+  return compute_winding_number(mesh->solid, motion_->start, point) > 0;
 }
 
 template <class Find>

@@ -479,11 +479,12 @@ Intersections ContactSystem::find_intersections(std::span<const ContactCloth> cl
 }
 
 UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
-                                       const std::vector<Collider>& colliders, const ContactStep& now) {
+                                       const std::vector<Collider>& colliders, const ContactStep& now,
+                                       const std::function<void(int round)>& on_round) {
   begin_step(cloths, colliders, now);
   if (!is_placed_) place();
   std::vector<Vec3> positions = positions_now(bodies_);
-  const UntangleResult result = weft::engine::untangle(make_repair_input(bodies_), positions);
+  const UntangleResult result = weft::engine::untangle(make_repair_input(bodies_), positions, on_round);
   bodies_.for_particles([&](int c, int i, int v) {
     if (positions[v] == bodies_.motion.start[v]) return;
     ClothState& state = *bodies_.cloths[c].state;

@@ -100,7 +100,7 @@ class ContactSystem {
   Intersections find_intersections(std::span<const ContactCloth> cloths,
                                    const std::vector<Collider>& colliders, const ContactStep& now);
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                          const ContactStep& now);
+                          const ContactStep& now, const std::function<void(int round)>& on_round);
 
   const Surface& surface() const { return proximity_.surface(); }
   BodyPlace place_of(int vertex) const { return bodies_.numbering.place_of(vertex); }

@@ -28,7 +28,14 @@ ColliderMesh add_body(int collider, const TriangleMesh& mesh, Surface& surface) 
   ColliderMesh body{.collider = collider,
                     .first_vertex = surface.num_vertices,
                     .first_triangle = static_cast<int>(surface.triangles.size()),
-                    .is_closed = is_closed(count_surface_edges(mesh))};
+                    .solid = find_solid_part(mesh).triangles,
+                    .is_solid = std::vector<char>(mesh.positions.size(), 0)};
+  for (Triangle& t : body.solid) {
+    for (int& v : t) {
+      body.is_solid[v] = 1;
+      v += body.first_vertex;
+    }
+  }
   body.min = body.max = mesh.positions[0];
   for (const Vec3& p : mesh.positions) {
     body.min = body.min.cwiseMin(p);

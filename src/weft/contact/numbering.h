@@ -21,6 +21,7 @@ struct ContactCloth {
   ClothState* state = nullptr;
   const std::vector<char>* is_pinned = nullptr;  // (num_particles)
   double pressure = 0;                           // on its surface, from inside, >= 0 [Pa]
+  int layer = 0;                                 // see ClothDesc::layer
 };
 
 /// A vertex or a triangle of a body; exactly one of cloth and collider is not -1.
@@ -30,11 +31,14 @@ struct BodyPlace {
 
 /// The mesh of a collider.
 struct ColliderMesh {
-  int collider = 0;                          // number
-  int first_vertex = 0, end_vertex = 0;      // under the common numbering
-  int first_triangle = 0, end_triangle = 0;  // likewise
-  bool is_closed = false;
+  int collider = 0;                             // number
+  int first_vertex = 0, end_vertex = 0;         // under the common numbering
+  int first_triangle = 0, end_triangle = 0;     // likewise
+  std::vector<Triangle> solid;                  // of closed shells, under the common numbering
+  std::vector<char> is_solid;                   // (vertices) whether on a closed shell
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();  // of its vertices, in its own coordinates [m]
+
+  bool has_inside_at(int vertex) const { return is_solid[vertex - first_vertex] != 0; }
 
   /// Bounds of its vertices at the shape's pose; infinite for a deforming mesh.
   std::pair<Vec3, Vec3> bounds_at(const MeshShape& shape) const;
@@ -61,7 +65,7 @@ struct Numbering {
 
   const ColliderMesh& body_of(int vertex) const;
   const ColliderMesh& body_with(int collider) const;
-  bool is_on_closed_body(int vertex) const { return !is_of_cloth(vertex) && body_of(vertex).is_closed; }
+  bool is_on_solid(int vertex) const { return !is_of_cloth(vertex) && body_of(vertex).has_inside_at(vertex); }
 
   /// Whether one side of a pair is a collider mesh.
   bool is_on_body(const Constraint& c) const { return !is_of_cloth(std::max(c.vertex[0], c.vertex[3])); }

@@ -130,7 +130,7 @@ bool NarrowPhase::make_vertex_triangle(const FeaturePair& pair, Constraint& c) c
     if (there.region == TriangleRegion::face) {
       c.weight = {-there.weights[0], -there.weights[1], -there.weights[2], 1};
       c.normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
-      const bool leaves = numbering_.is_on_closed_body(i) && c.normal.dot(c.sum(motion_.end) - c.sum(x)) > 0;
+      const bool leaves = numbering_.is_on_solid(i) && c.normal.dot(c.sum(motion_.end) - c.sum(x)) > 0;
       return !leaves && finish_crossing(pair, c);
     }
   }
@@ -139,14 +139,14 @@ bool NarrowPhase::make_vertex_triangle(const FeaturePair& pair, Constraint& c) c
   const std::vector<Vec3>& y = motion_.end;
   const double near = near_by(gap, share_nearby(c));
   if (distance > near && point_triangle_distance(y[pair.a], y[i], y[j], y[k]).distance() > near) return false;
-  if (numbering_.is_on_closed_body(i)) {
+  if (numbering_.is_on_solid(i)) {
     // The outside is defined, so slight penetration is pushed out.
     c.normal = (x[j] - x[i]).cross(x[k] - x[i]).stableNormalized();
     distance = c.normal.dot(c.sum(x));
   } else {
     if (distance < kTouching) return false;
     c.normal = c.sum(x) / distance;
-    if (numbering_.is_on_closed_body(pair.a) && is_behind(std::span(&pair.a, 1), -c.normal))
+    if (numbering_.is_on_solid(pair.a) && is_behind(std::span(&pair.a, 1), -c.normal))
       turn_outwards(distance, c);
   }
   return finish_pair(distance, gap, c);
@@ -211,7 +211,7 @@ bool NarrowPhase::starts_behind(const Constraint& c) const {
   const bool is_first = c.vertex[0] >= bodies_.num_cloth_vertices();
   const std::span edge = std::span(c.vertex).subspan(is_first ? 0 : 2, 2);
   const Vec3 between = c.sum(motion_.start);
-  return numbering_.is_on_closed_body(edge[0]) && is_behind(edge, is_first ? Vec3(-between) : between);
+  return numbering_.is_on_solid(edge[0]) && is_behind(edge, is_first ? Vec3(-between) : between);
 }
 
 /// Time of coplanarity, if the four vertices can meet by then: from `distance`, with motion up to `travel`.

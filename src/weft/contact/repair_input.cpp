@@ -22,6 +22,7 @@ RepairInput make_repair_input(const StepBodies& bodies) {
     const TriangleMesh& mesh = cloth.model->topology->mesh;
     input.num_cloth_triangles += mesh.num_triangles();
     input.rest.insert(input.rest.end(), mesh.positions.begin(), mesh.positions.end());
+    input.layers.push_back(cloth.layer);
     input.origins.insert(input.origins.end(), mesh.positions.size(), cloth.state->origin);
   }
   const std::vector<MovingShape>& shapes = bodies.shapes;
@@ -30,9 +31,9 @@ RepairInput make_repair_input(const StepBodies& bodies) {
   }
   for (const ColliderMesh& body : numbering.bodies) {
     input.first_vertex.push_back(body.end_vertex);
-    if (body.is_closed)
+    if (!body.solid.empty())
       input.solids.push_back(
-          {body.collider, shapes[body.collider].after, body.first_vertex, body.end_vertex});
+          {body.collider, shapes[body.collider].after, body.first_vertex, body.end_vertex, body.solid});
   }
   return input;
 }

@@ -21,10 +21,12 @@ constexpr double kMaxStretch = 1.1;               // of an edge, or its stretch 
 constexpr double kMinGap = 1e-4;                  // between cloth and the features it intersected [m]
 constexpr double kMaxPushPerEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
 constexpr double kShortening = 0.1;      // of the mean edge: how far a cut's end moves in a round
+constexpr double kLayerReach = 0.03;     // up to this far above it a layer is looked for [m]
+constexpr double kSameWay = 0.5;  // least cosine between the ways out of two layers that belong together
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A closed mesh at its pose, with a tree for nearest-point queries.
+/// Closed shells at their pose, with a tree for nearest-point queries.
 struct SolidMesh {
   TriangleMesh mesh;
   AabbTree tree;
@@ -41,12 +43,18 @@ class Untangler {
   Untangler(const RepairInput& input, std::vector<Vec3>& x)
       : input_(input), surface_(*input.surface), inverse_mass_(*input.inverse_mass), x_(x) {
     measure_edges();
-    for (const RepairInput::Solid& solid : input.solids) meshes_.push_back(build_mesh(solid));
+    is_on_solid_.resize(x_.size(), 0);
+    for (const RepairInput::Solid& solid : input.solids) {
+      meshes_.push_back(build_mesh(solid));
+      for (const Triangle& t : solid.triangles) {
+        for (const int v : t) is_on_solid_[v] = 1;
+      }
+    }
     build_trees();
   }
 
   /// Keeps the best of all rounds.
-  UntangleResult run() {
+  UntangleResult run(const std::function<void(int round)>& on_round) {
     UntangleResult result;
     result.before = result.after = find_intersections();
     std::vector<Vec3> best = x_;
@@ -55,6 +63,7 @@ class Untangler {
     const int most = std::clamp(kMaxTriangles / std::max(num_triangles, 1), kMinRounds, kMaxRounds);
     while (!intersections.empty() && result.rounds < most) {
       ++result.rounds;
+      if (on_round) on_round(result.rounds);
       move_apart(intersections);
       intersections = find_intersections();
       if (intersections.size() >= result.after.size()) continue;
@@ -90,6 +99,7 @@ class Untangler {
       for (const int v : find_inside(s))
         intersections.inside.push_back({v, input_.solids[s].collider, way_out(s, x_[v]).depth});
     }
+    intersections.beneath = find_beneath();
     return intersections;
   }
 
@@ -101,6 +111,10 @@ class Untangler {
     count_ = std::vector<int>(x_.size(), 0);
     find_cuts(intersections.edge_face);
     for (const EdgeFaceIntersection& p : intersections.edge_face) push_back(p);
+    for (const Beneath& b : intersections.beneath) {
+      push_[b.vertex] += limited(b.depth + gap(b.vertex) + gap(surface_.triangles[b.triangle][0])) * b.out;
+      ++count_[b.vertex];
+    }
     for (int v = 0; v < input_.num_cloth_vertices; ++v) {
       if (count_[v] > 0) x_[v] += push_[v] / count_[v];
     }
@@ -132,9 +146,10 @@ class Untangler {
 
   SolidMesh build_mesh(const RepairInput::Solid& solid) const {
     SolidMesh result;
-    const MeshShape* shape = std::get_if<MeshShape>(&solid.shape);
-    if (!shape) return result;
-    result.mesh.triangles = shape->mesh->triangles;
+    if (solid.triangles.empty()) return result;
+    for (const auto& [i, j, k] : solid.triangles)
+      result.mesh.triangles.push_back(
+          {i - solid.first_vertex, j - solid.first_vertex, k - solid.first_vertex});
     result.mesh.positions.assign(x_.begin() + solid.first_vertex, x_.begin() + solid.end_vertex);
     std::vector<Aabb> boxes;
     for (const Triangle& t : result.mesh.triangles) boxes.push_back(box_of(result.mesh.positions, t));
@@ -177,7 +192,8 @@ class Untangler {
 
   /// Free cloth particles in a solid.
   std::vector<int> find_inside(std::size_t s) const {
-    const auto& [collider, shape, first_vertex, end_vertex] = input_.solids[s];
+    const int collider = input_.solids[s].collider;
+    const ColliderShape& shape = input_.solids[s].shape;
     std::vector<int> found;
     const std::vector<Vec3> cloth(x_.begin(), x_.begin() + input_.num_cloth_vertices);
     std::vector<int> winding;
@@ -282,13 +298,94 @@ class Untangler {
     }
   }
 
+  // ---- Layers ----
+
+  int layer_of(int cloth_vertex) const { return input_.layers[mesh_at(cloth_vertex)]; }
+
+  bool have_order() const {
+    const auto is_ground = [](const RepairInput::Solid& s) { return std::holds_alternative<Plane>(s.shape); };
+    return std::ranges::any_of(input_.layers, [&](int layer) { return layer != input_.layers[0]; }) &&
+           !std::ranges::all_of(input_.solids, is_ground);
+  }
+
+  /// Away from the solid nearest to a cloth vertex; planes are ground, and not worn.
+  const Vec3& outward(int v) {
+    constexpr double kSamePlace = 2e-3;  // as far a vertex may move before its way is found again [m]
+    Outward& known = outwards_[v];
+    if ((known.place - x_[v]).norm() < kSamePlace) return known.way;
+    double nearest = kInfinity;
+    for (std::size_t s = 0; s < input_.solids.size(); ++s) {
+      if (std::holds_alternative<Plane>(input_.solids[s].shape)) continue;
+      Way way = way_out(s, x_[v]);
+      if (std::holds_alternative<MeshShape>(input_.solids[s].shape) && !is_in(s, x_[v])) {
+        way = {-way.depth, -way.out};
+      }
+      if (-way.depth >= nearest) continue;
+      nearest = -way.depth;
+      known.way = way.out;
+    }
+    known.place = x_[v];
+    return known.way;
+  }
+
+  Vec3 outward(const Triangle& t) { return outward(t[0]) + outward(t[1]) + outward(t[2]); }
+
+  std::vector<Beneath> find_beneath() {
+    std::vector<Beneath> found;
+    if (!have_order()) return found;
+    outwards_.resize(x_.size());
+    for (int v = 0; v < input_.num_cloth_vertices; ++v) {
+      if (!is_free(v)) continue;
+      const auto is_lower = [&](int t) {
+        const int w = surface_.triangles[t][0];
+        return layer_of(w) < layer_of(v) && !input_.non_colliding(v, w);
+      };
+      bool has_lower = false;
+      const Vec3 reach = Vec3::Constant(kLayerReach);
+      cloth_tree_.for_each_overlapping(make_aabb(x_[v] - reach, x_[v] + reach),
+                                       [&](int t) { has_lower = has_lower || is_lower(t); });
+      if (!has_lower) continue;
+      Beneath beneath{.vertex = v, .triangle = -1, .out = outward(v)};
+      cloth_tree_.for_each_along_ray(x_[v], beneath.out, kLayerReach, [&](int t) {
+        if (!is_lower(t)) return kLayerReach;
+        const std::optional<double> way = way_to(surface_.triangles[t], x_[v], beneath.out);
+        if (way && *way > beneath.depth &&
+            outward(surface_.triangles[t]).normalized().dot(beneath.out) > kSameWay) {
+          beneath.depth = *way;
+          beneath.triangle = t;
+        }
+        return kLayerReach;
+      });
+      if (beneath.triangle >= 0) found.push_back(beneath);
+    }
+    return found;
+  }
+
+  /// The way from p to the triangle, no longer than kLayerReach.
+  std::optional<double> way_to(const Triangle& t, const Vec3& p, const Vec3& direction) const {
+    const Vec3 end = p + kLayerReach * direction;
+    const SegmentTriangleDistance d = segment_triangle_distance(p, end, x_[t[0]], x_[t[1]], x_[t[2]]);
+    if (d.distance_sq > 0) return {};
+    return d.s * kLayerReach;
+  }
+
+  /// The end of an edge that is on the wrong side of another layer; empty if the layers have no order, or lie
+  /// across the way out.
+  std::optional<int> find_wrong_by_layer(const EdgeFaceIntersection& p) {
+    const Triangle& t = surface_.triangles[p.triangle];
+    const auto& [i, j] = surface_.edges[p.edge];
+    if (!is_cloth(i) || !is_cloth(t[0]) || layer_of(i) == layer_of(t[0]) || !have_order()) return {};
+    const Vec3 normal = area(t).stableNormalized();
+    const double facing = normal.dot(outward(t).stableNormalized());
+    if (std::abs(facing) < kSameWay) return {};
+    const bool is_i_higher = (facing > 0 ? 1 : -1) * normal.dot(x_[i] - x_[j]) > 0;
+    const bool is_outer = layer_of(i) > layer_of(t[0]);
+    return is_i_higher == is_outer ? j : i;
+  }
+
   // ---- Cuts ----
 
-  bool is_solid(int triangle) const {
-    const int v = surface_.triangles[triangle][0];
-    return std::any_of(input_.solids.begin(), input_.solids.end(),
-                       [&](const RepairInput::Solid& s) { return v >= s.first_vertex && v < s.end_vertex; });
-  }
+  bool is_solid(int triangle) const { return is_on_solid_[surface_.triangles[triangle][0]] != 0; }
 
   /// The cut of a surface by another one, or by itself, with the lighter of its two parts.
   struct Cut {
@@ -414,7 +511,8 @@ class Untangler {
     if (is_cloth(t[0]) && !is_cloth(i)) {
       if (const std::optional<Vec3> out = ridge_direction(p.edge)) return push_from_solid(p, *out);
     }
-    const int wrong = find_wrong(p);
+    const std::optional<int> by_layer = find_wrong_by_layer(p);
+    const int wrong = by_layer ? *by_layer : find_wrong(p);
     if (wrong == kNobody) return;
     if (wrong == kUndecided) return shorten_cut(p);
     const int right = wrong == i ? j : i;
@@ -531,8 +629,14 @@ class Untangler {
   std::vector<double> longest_;    // (edges) length limit [m]
   double mean_edge_ = 0;           // of cloth [m]
   std::vector<SolidMesh> meshes_;  // (solids)
+  std::vector<char> is_on_solid_;  // (num_vertices) whether on a closed shell
   AabbTree cloth_tree_, body_tree_;
-  std::vector<int> curve_;  // (edges) union-find forest of the edges that one curve cuts
+  /// The way out at a place.
+  struct Outward {
+    Vec3 place = Vec3::Constant(kInfinity), way = Vec3::UnitY();
+  };
+  std::vector<Outward> outwards_;  // (num_vertices) where layers have an order
+  std::vector<int> curve_;         // (edges) union-find forest of the edges that one curve cuts
   std::map<CutKey, Cut> cuts_;
   std::vector<std::vector<std::pair<int, int>>> neighbours_;  // (num_vertices) and the edge to each
   std::vector<Vec3> push_;                                    // (num_vertices) sum of a round's moves [m]
@@ -546,8 +650,9 @@ Intersections find_intersections(const RepairInput& input, const std::vector<Vec
   return Untangler(input, x).find_intersections();
 }
 
-UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions) {
-  return Untangler(input, positions).run();
+UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions,
+                        const std::function<void(int round)>& on_round) {
+  return Untangler(input, positions).run(on_round);
 }
 
 }  // namespace weft::engine

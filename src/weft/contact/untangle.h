@@ -10,7 +10,8 @@
 /// Where pins hold all parts, the cut is shortened at its ends (Volino and Magnenat-Thalmann 2006).
 ///
 /// Particles inside a solid leave it by the shortest way, or, where neighbours disagree on that, all in one
-/// direction. This repairs positions and is not a motion: only here may cloth pass through cloth.
+/// direction. Of cloths in different layers the higher one moves outwards, away from the nearest solid, where it
+/// is under the lower one. This repairs positions and is not a motion: only here may cloth pass through cloth.
 
 #include <functional>
 #include <vector>
@@ -27,14 +28,16 @@ struct RepairInput {
   int num_cloth_vertices = 0, num_cloth_triangles = 0;
   const std::vector<double>* inverse_mass = nullptr;    // (num_vertices) 0 where fixed [1/kg]
   const std::vector<double>* half_thickness = nullptr;  // (num_vertices) [m]
+  std::vector<int> layers;                              // (cloths) see ClothDesc::layer
   std::vector<Vec3> rest;                               // (num_cloth_vertices) [m]
   std::vector<Vec3> origins;                            // (num_cloth_vertices) of float positions [m]
   struct Solid {
     int collider = 0;                      // number
     ColliderShape shape;                   // at its pose
-    int first_vertex = 0, end_vertex = 0;  // of a closed mesh
+    int first_vertex = 0, end_vertex = 0;  // of a mesh
+    std::vector<Triangle> triangles = {};  // of its closed shells
   };
-  std::vector<Solid> solids;  // primitive shapes and closed meshes
+  std::vector<Solid> solids;  // primitive shapes, and meshes with closed shells
   // Collision filter, true: the bodies do not collide. Arguments: two vertices; or a cloth vertex and a
   // collider. Never empty.
   std::function<bool(int, int)> non_colliding, non_colliding_solid;
@@ -53,12 +56,20 @@ struct Inside {
   double depth = 0;  // [m]
 };
 
+/// A particle between a solid and cloth of a lower layer, which should be outside of that.
+struct Beneath {
+  int vertex = 0, triangle = 0;  // the triangle above it
+  double depth = 0;              // way to it, along `out` [m]
+  Vec3 out = Vec3::Zero();       // away from the nearest solid, unit length
+};
+
 struct Intersections {
   std::vector<EdgeFaceIntersection> edge_face;
   std::vector<Inside> inside;
+  std::vector<Beneath> beneath;
 
-  bool empty() const { return edge_face.empty() && inside.empty(); }
-  std::size_t size() const { return edge_face.size() + inside.size(); }
+  bool empty() const { return size() == 0; }
+  std::size_t size() const { return edge_face.size() + inside.size() + beneath.size(); }
 };
 
 /// Finds the intersections with vertices at `positions` (num_vertices).
@@ -70,7 +81,8 @@ struct UntangleResult {
 };
 
 /// Moves cloth positions (num_vertices) until no intersections are left, as far as possible. Takes seconds
-/// for thousands of particles; a no-op without intersections.
-UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions);
+/// for thousands of particles; a no-op without intersections. Calls on_round with the number of each round.
+UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions,
+                        const std::function<void(int round)>& on_round = {});
 
 }  // namespace weft::engine

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -10,39 +12,62 @@
 #include "weft/face/convert.h"
 #include "weft/face/vertex_motion.h"
 #include "weft/mesh/clean.h"
+#include "weft/mesh/holes.h"
 #include "weft/mesh/solid.h"
 #include "weft/world/world_input.h"
 
 namespace weft::engine {
 namespace {
 
-std::string count_edges(int count) { return std::to_string(count) + (count == 1 ? " edge" : " edges"); }
+std::string count_of(int count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
 
-/// Flips inside-out shells, and warns of the mesh's other defects as a solid.
-void check_as_solid(TriangleMesh& mesh, std::vector<std::string>& warnings) {
+std::string to_millimetres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1000 * length);
+  return text;
+}
+
+/// Makes shells solid where that is possible: orients triangles, fills holes, flips inside-out shells. Warns of
+/// what was done, and of what remains. `solid` as in ColliderDesc.
+void make_solid(TriangleMesh& mesh, std::optional<bool> solid, std::vector<std::string>& warnings) {
+  constexpr double kMostHoles = 0.05;  // of a shell's area, unless told otherwise
+  if (const int flipped = orient_triangles(mesh); flipped > 0)
+    warnings.push_back(count_of(flipped, "triangle") + " faced another way than most around; " +
+                       (flipped == 1 ? "it was" : "they were") + " flipped");
+  if (solid.value_or(true)) {
+    const FilledHoles filled = fill_holes(mesh, solid ? std::numeric_limits<double>::infinity() : kMostHoles);
+    if (filled.count > 0)
+      warnings.push_back("has " + count_of(filled.count, "hole") + ", up to " +
+                         to_millimetres(filled.largest) + " wide; " +
+                         (filled.count == 1 ? "it was" : "they were") + " filled" +
+                         (solid ? "" : " (solid = false leaves them open)"));
+  }
   const SurfaceEdges edges = count_surface_edges(mesh);
   if (edges.non_manifold > 0) {
-    warnings.push_back(count_edges(edges.non_manifold) +
+    warnings.push_back(count_of(edges.non_manifold, "edge") +
                        " of more than two triangles (non-manifold): inside and outside may be " +
                        "wrong there");
   }
   if (edges.twisted > 0) {
-    warnings.push_back(count_edges(edges.twisted) +
-                       " between triangles of opposite orientation: inside and outside may be " +
-                       "wrong; recalculate the mesh's normals to face outwards");
+    warnings.push_back(
+        count_of(edges.twisted, "edge") +
+        " between triangles of opposite orientation: its surface has only one side, and no inside");
   }
   if (edges.border > 0) {
-    warnings.push_back("has a border of " + count_edges(edges.border) +
-                       ": cloth collides with both sides, the inside is undefined");
-    return;
+    warnings.push_back("has a border of " + count_of(edges.border, "edge") +
+                       ": cloth collides with both sides there, and nothing is inside" +
+                       (solid ? "" : "; solid = true fills its holes"));
   }
   const Shells shells = turn_shells_outwards(mesh);
   if (shells.turned == 0) return;
   const std::string turned = std::to_string(shells.turned) + " of its " + std::to_string(shells.count);
-  warnings.push_back((shells.count == 1
-                          ? "is inside out (its triangles face inwards); it was"
-                          : turned + " shells are inside out (their triangles face inwards); they were") +
-                     std::string(" flipped"));
+  warnings.push_back(
+      (shells.count == 1
+           ? "is inside out (its triangles face inwards); it was"
+           : turned + " closed shells are inside out (their triangles face inwards); they were") +
+      std::string(" flipped"));
 }
 
 /// A motion of the vertices that were given, for those of the cleaned mesh.
@@ -94,7 +119,7 @@ struct ShapeBuilder {
     CleanMesh clean = clean_mesh(to_engine(given), {.weld_distance = 0, .is_cloth = false});
     built.warnings = std::move(clean.warnings);
     built.vertex_of_source = std::move(clean.vertex_of_source);
-    check_as_solid(clean.mesh, built.warnings);
+    make_solid(clean.mesh, desc.solid, built.warnings);
     MeshShape shape{.mesh = std::make_shared<const TriangleMesh>(std::move(clean.mesh)),
                     .rotation = pose->rotation,
                     .translation = pose->translation};

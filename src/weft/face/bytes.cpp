@@ -91,7 +91,7 @@ void describe(Archive& archive, weft::Seam& s) {
 template <class Archive>
 void describe(Archive& archive, ClothDesc& d) {
   members(archive, d.name, d.shape, d.source, d.fabric, d.fabric_name, d.membrane, d.warp, d.model, d.pose,
-          d.velocity, d.weld, d.sew, d.seams, d.seam_time, d.seam_stiffness, d.fits_thickness);
+          d.velocity, d.weld, d.sew, d.layer, d.seams, d.seam_time, d.seam_stiffness, d.fits_thickness);
 }
 template <class Archive>
 void describe(Archive& archive, weft::Sphere& s) {
@@ -155,8 +155,8 @@ void describe(Archive& archive, VertexMotion& motion) {
 }
 template <class Archive>
 void describe(Archive& archive, ColliderDesc& d) {
-  members(archive, d.name, d.shape, d.source, d.pose, d.motion, d.frames, d.deformation, d.deformation_start,
-          d.friction, d.static_friction);
+  members(archive, d.name, d.shape, d.source, d.solid, d.pose, d.motion, d.frames, d.deformation,
+          d.deformation_start, d.friction, d.static_friction);
 }
 template <class Archive>
 void describe(Archive& archive, IntegratorSettings& s) {
@@ -262,7 +262,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 8;         // of the format
+constexpr std::uint32_t kVersion = 9;         // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.

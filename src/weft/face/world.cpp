@@ -59,7 +59,8 @@ ClothId World::Impl::add(ClothDesc desc) {
                                       .material = made.material,
                                       .elements = made.elements,
                                       .positions = std::move(positions),
-                                      .velocity = to_engine(cloth.desc.velocity)});
+                                      .velocity = to_engine(cloth.desc.velocity),
+                                      .layer = cloth.desc.layer});
   cloth.desc.name = world.name(id);
   cloths.push_back(std::move(cloth));
   return id;

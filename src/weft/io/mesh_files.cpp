@@ -30,6 +30,23 @@ MeshFromFile read_mesh(const std::filesystem::path& file) {
   return read_obj(file);
 }
 
+std::vector<Vec3> read_vertices(const std::filesystem::path& file, const MeshFromFile& first) {
+  const bool is_other = has_ending(file, ".ply") || has_ending(file, ".stl") || is_gltf(file);
+  std::vector<Vec3> positions;
+  if (is_other) {
+    MeshFromFile mesh = read_mesh(file);
+    if (mesh.faces.corners != first.faces.corners || mesh.faces.ends != first.faces.ends)
+      throw InputError(file.string() + ": its faces are not those of the first file");
+    positions = std::move(mesh.mesh.positions);
+  } else {
+    positions = read_obj_vertices(file, first.faces);
+  }
+  if (positions.size() != first.mesh.positions.size())
+    throw InputError(file.string() + ": has " + std::to_string(positions.size()) +
+                     " vertices, the first file " + std::to_string(first.mesh.positions.size()));
+  return positions;
+}
+
 void write_mesh(const std::filesystem::path& file, const std::vector<Vec3>& positions,
                 const MeshFaces& faces) {
   if (has_ending(file, ".obj")) return write_obj(file, positions, faces);

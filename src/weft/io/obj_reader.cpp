@@ -53,7 +53,8 @@ class LineReader {
  private:
   /// Appends the words of one line of the text; true if the next line continues it.
   bool take_line() {
-    const size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    const auto is_end = [](char c) { return c == '\r' || c == '\n'; };
+    const std::size_t length = std::ranges::find_if(rest_, is_end) - rest_.begin();
     const std::string_view line = rest_.substr(0, length);
     append_words(line.substr(0, line.find('#')), words_);
     rest_.remove_prefix(length);
@@ -171,6 +172,23 @@ class ObjParser {
     return std::move(result_);
   }
 
+  /// The vertices of a file with these faces.
+  std::vector<Vec3> parse_vertices(const MeshFaces& faces) {
+    std::size_t num_compared = 0;
+    while (lines_.next()) {
+      if (lines_.words().empty()) continue;
+      if (lines_.words()[0] == "v") read_vertex();
+      if (lines_.words()[0] != "f") continue;
+      if (num_compared == faces.size() || !has_corners(faces[num_compared]))
+        fail(lines_.line(), "face " + std::to_string(num_compared + 1) + " is not that of the first file");
+      ++num_compared;
+    }
+    if (num_compared < faces.size())
+      throw InputError(name_ + ": has " + std::to_string(num_compared) + " faces, the first file " +
+                       std::to_string(faces.size()));
+    return std::move(positions());
+  }
+
  private:
   struct Face {
     int line = 0;
@@ -261,6 +279,18 @@ class ObjParser {
       face.uv.push_back(uv > 0 ? uv - 1 : uv < 0 ? num_uv + uv : -1);
     }
     faces_.push_back(std::move(face));
+  }
+
+  /// Whether the face of this line has these corners.
+  bool has_corners(std::span<const int> corners) const {
+    const auto& words = lines_.words();
+    if (words.size() != corners.size() + 1) return false;
+    const auto num_read = static_cast<long long>(result_.mesh.positions.size());
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const long long index = parse_index(words[k + 1]).value_or(0);
+      if ((index > 0 ? index - 1 : num_read + index) != corners[k]) return false;
+    }
+    return true;
   }
 
   void add_face(const Face& face) {
@@ -421,6 +451,11 @@ MeshFromFile read_obj(const std::filesystem::path& file) {
 
 MeshFromFile parse_obj(const std::string& text, const std::string& name) {
   return ObjParser(text, name).parse();
+}
+
+std::vector<Vec3> read_obj_vertices(const std::filesystem::path& file, const MeshFaces& faces) {
+  const std::string text = read_bytes(file, "an OBJ file");
+  return ObjParser(text, file.string()).parse_vertices(faces);
 }
 
 void write_obj(const std::filesystem::path& file, const std::vector<Vec3>& positions,

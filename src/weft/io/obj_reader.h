@@ -23,6 +23,9 @@ MeshFromFile read_obj(const std::filesystem::path& file);
 /// The same from text; `name` is the file name in messages.
 MeshFromFile parse_obj(const std::string& text, const std::string& name);
 
+/// The vertices of a file that has `faces`, which are not read again. Throws InputError for other faces.
+std::vector<Vec3> read_obj_vertices(const std::filesystem::path& file, const MeshFaces& faces);
+
 struct ObjObject {
   std::string name;
   TriangleMesh mesh;

@@ -33,10 +33,11 @@ std::string_view take_line(std::string_view text, std::size_t& at) {
 }
 
 void append_words(std::string_view line, std::vector<std::string_view>& words) {
-  constexpr std::string_view kBlanks = " \t\v\f\r";
-  for (std::size_t begin = 0; (begin = line.find_first_not_of(kBlanks, begin)) != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
+  // The searches of std::string_view for one of several characters call memchr for each character.
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r'; };
+  for (auto begin = line.begin(); (begin = std::find_if_not(begin, line.end(), is_blank)) != line.end();) {
+    const auto end = std::find_if(begin, line.end(), is_blank);
+    words.emplace_back(begin, end);
     begin = end;
   }
 }

@@ -40,13 +40,28 @@ double compute_signed_volume(std::span<const Triangle> triangles, const At& at) 
 }
 double compute_signed_volume(const TriangleMesh& mesh);
 
-/// Shells of a closed mesh: its components connected by vertices.
+/// A part of a mesh that vertices connect.
+struct Shell {
+  std::vector<int> triangles;  // ascending
+  bool is_closed = true;       // every edge is balanced
+};
+
+/// In the order of their first triangles.
+std::vector<Shell> find_shells(const TriangleMesh& mesh);
+
+/// The same vertices with the triangles of closed shells only: what has an inside.
+TriangleMesh find_solid_part(const TriangleMesh& mesh);
+
+/// Flips triangles that face another way than most in their part, where edges of two triangles connect parts.
+/// Returns their number. A part with one side only, such as a Möbius strip, stays.
+int orient_triangles(TriangleMesh& mesh);
+
 struct Shells {
-  int count = 0;
+  int count = 0;   // closed ones
   int turned = 0;  // those that faced inwards
 };
 
-/// Flips shells that face inwards, except hollows: shells completely inside other shells.
+/// Flips closed shells that face inwards, except hollows: those completely inside other ones.
 Shells turn_shells_outwards(TriangleMesh& mesh);
 
 /// Winding number of a closed mesh around each point (num_points): 1 inside where it faces outwards, -1 where

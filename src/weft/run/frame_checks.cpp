@@ -27,16 +27,16 @@ struct Placement {
 };
 
 /// A mesh whose positions are stored in `result`.
-MeshView view_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles, bool is_closed,
-                   FrameToCheck& result) {
-  return {result.positions.emplace_back(std::move(positions)), triangles, is_closed};
+MeshView view_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles,
+                   const std::vector<Triangle>& solid, FrameToCheck& result) {
+  return {result.positions.emplace_back(std::move(positions)), triangles, solid};
 }
 
 /// The mesh in its placement.
 MeshView place_mesh(std::vector<Vec3> positions, const std::vector<Triangle>& triangles,
-                    const Placement& placement, bool is_closed, FrameToCheck& result) {
+                    const std::vector<Triangle>& solid, const Placement& placement, FrameToCheck& result) {
   for (Vec3& p : positions) p = placement.point(p);
-  return view_mesh(std::move(positions), triangles, is_closed, result);
+  return view_mesh(std::move(positions), triangles, solid, result);
 }
 
 std::vector<Vec3> positions_of(const MeshShape& shape) {
@@ -45,9 +45,9 @@ std::vector<Vec3> positions_of(const MeshShape& shape) {
   return positions;
 }
 
-Solid place(const ColliderShape& shape, bool is_closed, FrameToCheck& result) {
+Solid place(const ColliderShape& shape, const std::vector<Triangle>& solid, FrameToCheck& result) {
   if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
-    return view_mesh(positions_of(*mesh), mesh->mesh->triangles, is_closed, result);
+    return view_mesh(positions_of(*mesh), mesh->mesh->triangles, solid, result);
   }
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
   if (const auto* plane = std::get_if<Plane>(&shape)) return *plane;
@@ -121,7 +121,8 @@ class AnimationFrames {
  public:
   explicit AnimationFrames(const Animation& meshes) : meshes_(meshes) {
     for (const AnimatedBody& body : meshes.bodies)
-      is_closed_.push_back(!body.shape && verify::is_closed(body.mesh.triangles));
+      solid_.push_back(body.shape ? std::vector<Triangle>()
+                                  : verify::find_solid_triangles(body.mesh.triangles));
   }
 
   FrameToCheck at(const AnimationFrame& frame) const {
@@ -137,7 +138,7 @@ class AnimationFrames {
       const Solid shape = body.shape
                               ? std::visit(placement, *body.shape)
                               : Solid(place_mesh(moved.empty() ? body.mesh.positions : to_positions(moved),
-                                                 body.mesh.triangles, placement, is_closed_[b], result));
+                                                 body.mesh.triangles, solid_[b], placement, result));
       result.frame.colliders.push_back({body.name, shape, placement.rotation});
     }
     result.frame.non_colliding = meshes_.passing;
@@ -146,7 +147,7 @@ class AnimationFrames {
 
  private:
   const Animation& meshes_;
-  std::vector<char> is_closed_;  // (bodies) meshes with an inside
+  std::vector<std::vector<Triangle>> solid_;  // (bodies) triangles of meshes with an inside
 };
 
 }  // namespace
@@ -154,7 +155,7 @@ class AnimationFrames {
 WorldFrames::WorldFrames(const World& world) : world_(world) {
   for (const Collider& collider : world.colliders()) {
     const auto* mesh = std::get_if<MeshShape>(&collider.shape);
-    is_closed_.push_back(mesh && verify::is_closed(mesh->mesh->triangles));
+    solid_.push_back(mesh ? verify::find_solid_triangles(mesh->mesh->triangles) : std::vector<Triangle>());
   }
 }
 
@@ -166,7 +167,7 @@ FrameToCheck WorldFrames::at(double time) const {
   }
   for (std::size_t k = 0; k < world_.colliders().size(); ++k) {
     const Collider& collider = world_.colliders()[k];
-    const Solid shape = place(shape_at(collider, time), is_closed_[k], result);
+    const Solid shape = place(shape_at(collider, time), solid_[k], result);
     result.frame.colliders.push_back({collider.name, shape, collider.motion.at(time).rotation});
   }
   result.frame.non_colliding = world_.non_colliding_pairs();

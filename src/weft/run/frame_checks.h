@@ -34,7 +34,7 @@ class WorldFrames {
 
  private:
   const World& world_;
-  std::vector<char> is_closed_;  // (colliders) meshes with an inside
+  std::vector<std::vector<Triangle>> solid_;  // (colliders) triangles of meshes with an inside
 };
 
 /// Results of the checker for one frame.

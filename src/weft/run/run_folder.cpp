@@ -352,8 +352,9 @@ FinishedRun run_to_folder(const SceneDesc& scene, const RunOptions& options,
   const int num_frames = options.frames.value_or(scene.num_frames());
   const std::shared_ptr<JobSystem> jobs = make_jobs(options.threads);
   const bool is_new = work.resumed().empty();
-  SceneRun run = is_new ? SceneRun(scene, jobs, all, num_frames, start ? &*start : nullptr)
-                        : SceneRun(scene, jobs, all, num_frames, work.resumed());
+  SceneRun run =
+      is_new ? SceneRun(scene, jobs, all, num_frames, start ? &*start : nullptr, options.on_preparation)
+             : SceneRun(scene, jobs, all, num_frames, work.resumed());
   if (is_new) work.save(run, true);
   const auto save_and_tell = [&](const Progress& progress) {
     const bool goes_on = !on_frame || on_frame(progress);

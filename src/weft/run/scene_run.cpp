@@ -54,10 +54,11 @@ RunReport make_report(const SceneDesc& scene, const SceneNotes& notes, const Wor
 }  // namespace
 
 SceneRun::SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks,
-                   std::optional<int> num_frames, const SceneStart* start)
+                   std::optional<int> num_frames, const SceneStart* start,
+                   const OnPreparation& on_preparation)
     : scene_(std::move(scene)),
       num_frames_(num_frames.value_or(scene_.num_frames())),
-      built_(build_scene(scene_, jobs, start)),
+      built_(build_scene(scene_, jobs, start, on_preparation)),
       sinks_(std::move(sinks)),
       report_(make_report(scene_, built_, world())) {
   report_.threads = jobs->num_threads();
@@ -208,7 +209,8 @@ RunReport run_scene(const SceneDesc& scene, const RunOptions& options, const std
   all.insert(all.end(), sinks.begin(), sinks.end());
   std::optional<SceneStart> start;
   if (!options.start_from.empty()) start = read_start(parse_start_from(options.start_from));
-  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames, start ? &*start : nullptr);
+  SceneRun run(scene, make_jobs(options.threads), std::move(all), options.frames, start ? &*start : nullptr,
+               options.on_preparation);
   return play(run, options, on_frame);
 }
 

@@ -233,6 +233,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   if (cloth.fabric && cloth.fabric->membrane == Membrane::triangle)
     table.refuse("stiffen", "requires springs: set spring stiffnesses, or membrane = \"springs\"");
   cloth.stiffened = read_stiffened(table, shape ? &*shape : nullptr);
+  table.read("layer", cloth.layer, IntegerRule{-100, 100});
   cloth.seams = read_seams(table);
   table.read("seam_time", cloth.seam_time, not_negative("s"));
   constexpr NumberRule stiffness = not_negative("N/m²");

@@ -15,7 +15,7 @@ constexpr double kUnit = 1e-15;  // deviation of |n|² from 1 at which the direc
 /// Keys of a mesh on any other shape: refused with the reason, not as unknown.
 void refuse_mesh_keys(TomlTable& collider, const std::string& shape_has, bool has_rotation = false) {
   for (const std::string_view key : {"file", "node", "clip", "start_time", "frames", "frame_rate", "rest",
-                                     "up", "scale", "position", "rotation"}) {
+                                     "solid", "up", "scale", "position", "rotation"}) {
     const bool is_own = has_rotation && key == "rotation";
     if (!is_own) collider.refuse(key, "only a mesh has it; " + shape_has + ", in m with y up");
   }
@@ -111,6 +111,8 @@ PlacedMesh read_mesh(TomlTable& collider, const std::filesystem::path& folder) {
   }
   read_gltf_keys(collider, mesh);
   mesh.rest = read_file_name(collider, "rest", folder);
+  if (const TomlValue solid = collider.get("solid", {.kind = ParameterKind::flag}))
+    solid.read(mesh.solid.emplace());
   mesh.source.weld = true;
   mesh.source.weld_distance = 0;
   collider.refuse("weld", "a collider has no seams; its vertices are always sewn where they coincide");

@@ -53,6 +53,9 @@ constexpr ParameterText kTexts[] = {
      "corners, only meshes groups."},
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
+    {"cloth.layer", "",
+     "Order of garments over each other at the start. A higher one is moved outside of lower ones, away from "
+     "the body. Equal: no order."},
     {"cloth.seam", "",
      "Seams of panels: stretches of border that draw together, and hold. Not on grids of springs."},
     {"cloth.seam_time", "", "Time in which the seams close. Longer: gentler."},
@@ -234,6 +237,9 @@ constexpr ParameterText kTexts[] = {
      "the same triangles."},
     {"collider.rest", "mesh",
      "OBJ, PLY or STL file of the pose from which the body moves to its first one during `settle`."},
+    {"collider.solid", "mesh",
+     "Whether holes of the body are filled, so that it has an inside. Not given: those of shells whose holes "
+     "are at most a twentieth of their area."},
     {"collider.position", "mesh", "Displacement of the body at the start, after its rotation."},
     {"collider.rotation", "mesh",
      "Rotation of the mesh at the start about its own origin: angles about fixed x, y, z."},

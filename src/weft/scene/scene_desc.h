@@ -2,6 +2,7 @@
 /// A scene as plain data: the contents of a scene file, checked and with defaults filled in.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@
 #include "weft/model/springs.h"
 
 namespace weft::engine {
+
+/// Called while a scene is prepared: see RunOptions::on_preparation.
+using OnPreparation = std::function<void(const std::string& what)>;
 
 struct GridCorner {
   int i = 0, j = 0;  // 0 or 1 each: the end of the first and of the second axis
@@ -79,6 +83,7 @@ struct PlacedMesh {
                                                    // source's unit and axes [m]
   std::string node, clip;                          // of a glTF file, as in GltfOptions
   std::optional<double> start_time;                // of the clip, at time 0; empty: its first key [s]
+  std::optional<bool> solid;                       // as in ColliderDesc
   std::filesystem::path rest;                      // pose before SceneDesc::settle; empty: that of the start
   double frame_rate = 30;                          // of a sequence, > 0 [1/s]
   Vec3 position = Vec3::Zero();                    // added after the rotation [m]
@@ -125,6 +130,7 @@ struct ClothSceneDesc {
   Vec3 velocity = Vec3::Zero();      // at the start [m/s]
   double pressure = 0;               // of gas inside closed cloth, in excess of the air outside [Pa]
   bool is_sealed = false;            // the gas keeps its amount, which has `pressure` at the start
+  int layer = 0;                     // as in ClothDesc
   std::vector<Seam> seams;
   double seam_time = 1;                              // in which they close, >= 0 [s]
   std::optional<double> seam_stiffness;              // as in ClothDesc, >= 0 [N/m²]

@@ -1,12 +1,14 @@
 #include "weft/scene/scene_meshes.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "weft/error.h"
 #include "weft/face/convert.h"
 #include "weft/io.h"
 #include "weft/io/mesh_files.h"
+#include "weft/mesh/holes.h"
 #include "weft/mesh/solid.h"
 #include "weft/scene/cloth_faces.h"
 
@@ -18,24 +20,37 @@ Vec3 to_world(const Vec3& p, const MeshSource& source) {
   return engine::to_world(p, source.up_is_z, source.scale);
 }
 
-MeshFromFile read_in_metres(const std::filesystem::path& file, const MeshSource& source,
-                            const std::string& owner) {
-  MeshFromFile obj = read_mesh_of(file, owner);
-  for (Vec3& p : obj.mesh.positions) p = to_world(p, source);
-  return obj;
+MeshFromFile read_in_metres(const MeshSource& source, const std::string& owner) {
+  MeshFromFile mesh;
+  if (source.mesh) {
+    mesh = {.mesh = to_engine(*source.mesh), .uv = to_engine(source.mesh->uv)};
+    mesh.faces = make_faces(mesh.mesh.triangles);
+  } else {
+    mesh = read_mesh_of(source.file, owner);
+  }
+  for (Vec3& p : mesh.mesh.positions) p = to_world(p, source);
+  return mesh;
+}
+
+/// The vertices of another file with the faces of `first`.
+std::vector<weft::Vec3> read_vertices_in_metres(const std::filesystem::path& file, const MeshSource& source,
+                                                const MeshFromFile& first) {
+  std::vector<weft::Vec3> positions;
+  for (const Vec3& p : read_vertices(file, first)) positions.push_back(from_engine(to_world(p, source)));
+  return positions;
+}
+
+void add_warnings(const MeshFromFile& mesh, const MeshSource& source, const std::string& owner,
+                  std::vector<std::string>& warnings) {
+  for (const std::string& warning : mesh.warnings)
+    warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
 }
 
 weft::TriangleMesh read_mesh(const MeshSource& source, const std::string& owner,
                              std::vector<std::string>& warnings) {
-  if (source.mesh) {
-    weft::TriangleMesh mesh = *source.mesh;
-    for (weft::Vec3& p : mesh.positions) p = from_engine(to_world(to_engine(p), source));
-    return mesh;
-  }
-  const MeshFromFile obj = read_in_metres(source.file, source, owner);
-  for (const std::string& warning : obj.warnings)
-    warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
-  return from_engine(obj.mesh, obj.uv);
+  const MeshFromFile mesh = read_in_metres(source, owner);
+  add_warnings(mesh, source, owner, warnings);
+  return from_engine(mesh.mesh, mesh.uv);
 }
 
 weft::Pose make_pose(const Vec3& position, const Vec3& rotation_deg) {
@@ -53,54 +68,59 @@ Springs make_springs(const ClothMaterial& m) {
           .friction = m.friction};
 }
 
-std::string describe(std::size_t vertices, std::size_t triangles) {
-  return std::to_string(vertices) + " vertices and " + std::to_string(triangles) + " triangles";
-}
+constexpr const char* kSameFaces = "; all frames must have the same vertices and faces, in the same order";
 
-std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const weft::TriangleMesh& first,
+std::vector<MeshFrame> copy_frames(const PlacedMesh& placed, std::size_t num_vertices,
                                    const std::string& owner) {
   std::vector<MeshFrame> frames;
   for (const std::vector<Vec3>& positions : placed.frame_positions) {
-    if (positions.size() != first.positions.size())
+    if (positions.size() != num_vertices)
       throw InputError(owner + ": frame " + std::to_string(frames.size()) + " has " +
                        std::to_string(positions.size()) + " vertices, the mesh " +
-                       std::to_string(first.positions.size()));
+                       std::to_string(num_vertices));
     MeshFrame frame{static_cast<double>(frames.size()) / placed.frame_rate, {}};
     for (const Vec3& p : positions) frame.positions.push_back(from_engine(to_world(p, placed.source)));
     frames.push_back(std::move(frame));
   }
+  return frames;
+}
+
+/// `first` is read from the first of the frames' files.
+std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const MeshFromFile& first,
+                                   const std::string& owner, const OnPreparation& on_preparation) {
+  std::vector<MeshFrame> frames;
   for (std::size_t k = 0; k < placed.frames.size(); ++k) {
-    const TriangleMesh mesh = read_in_metres(placed.frames[k], placed.source, owner).mesh;
-    if (mesh.positions.size() != first.positions.size() || mesh.triangles != first.triangles) {
-      throw InputError(owner + ": frame " + std::to_string(k) + " (" + placed.frames[k].filename().string() +
-                       ") has " + describe(mesh.positions.size(), mesh.triangles.size()) + ", the first (" +
-                       placed.frames[0].filename().string() + ") " +
-                       describe(first.positions.size(), first.triangles.size()) +
-                       "; all frames must have the same vertices and triangles, in the same order");
+    if (on_preparation)
+      on_preparation("reading frame " + std::to_string(k + 1) + " of " +
+                     std::to_string(placed.frames.size()) + " of " + owner);
+    try {
+      frames.push_back({static_cast<double>(k) / placed.frame_rate,
+                        k == 0 ? from_engine(first.mesh.positions)
+                               : read_vertices_in_metres(placed.frames[k], placed.source, first)});
+    } catch (const InputError& error) {
+      throw InputError(owner + ": frame " + std::to_string(k) + ": " + error.what() + kSameFaces);
     }
-    frames.push_back({static_cast<double>(k) / placed.frame_rate, from_engine(mesh.positions)});
   }
   return frames;
 }
 
 /// From the rest pose to the first pose, where the mesh stands still for the rest of `settle` [s].
-void prepend_rest(const PlacedMesh& placed, double settle, const weft::TriangleMesh& first,
+void prepend_rest(const PlacedMesh& placed, double settle, const MeshFromFile& first,
                   const std::string& owner, std::vector<MeshFrame>& frames) {
   constexpr double kStill = 0.4;  // share of the time, at its end
-  const TriangleMesh rest = read_in_metres(placed.rest, placed.source, owner).mesh;
-  if (rest.positions.size() != first.positions.size() || rest.triangles != first.triangles)
-    throw InputError(owner + ": its rest pose (" + placed.rest.filename().string() + ") has " +
-                     describe(rest.positions.size(), rest.triangles.size()) + ", the mesh " +
-                     describe(first.positions.size(), first.triangles.size()) +
-                     "; both must have the same triangles of the same vertices, in the same order");
-  frames.insert(frames.begin(),
-                {{-settle, from_engine(rest.positions)}, {-kStill * settle, first.positions}});
+  try {
+    frames.insert(frames.begin(), {{-settle, read_vertices_in_metres(placed.rest, placed.source, first)},
+                                   {-kStill * settle, from_engine(first.mesh.positions)}});
+  } catch (const InputError& error) {
+    throw InputError(owner + ": its rest pose: " + error.what() + kSameFaces);
+  }
 }
 
 struct ShapeDescriber {
   double settle;  // SceneDesc::settle [s]
   const std::string& owner;
   std::vector<std::string>& warnings;
+  const OnPreparation& on_preparation;
   ColliderDesc& desc;
 
   void operator()(const Sphere& s) const { desc.shape = weft::Sphere{from_engine(s.center), s.radius}; }
@@ -115,13 +135,16 @@ struct ShapeDescriber {
                                    from_engine(rotation_from_angles_deg(b.rotation_deg))};
   }
   void operator()(const PlacedMesh& placed) const {
+    desc.solid = placed.solid;
     if (is_gltf(placed.source.file)) return describe_gltf(placed);
-    weft::TriangleMesh mesh = read_mesh(placed.source, owner, warnings);
-    desc.frames = read_frames(placed, mesh, owner);
-    if (!placed.rest.empty()) prepend_rest(placed, settle, mesh, owner, desc.frames);
     desc.pose = make_pose(placed.position, placed.rotation_deg);
     desc.source = placed.source.file.filename().string();
-    desc.shape = std::move(mesh);
+    const MeshFromFile mesh = read_in_metres(placed.source, owner);
+    add_warnings(mesh, placed.source, owner, warnings);
+    desc.frames = placed.frames.empty() ? copy_frames(placed, mesh.mesh.positions.size(), owner)
+                                        : read_frames(placed, mesh, owner, on_preparation);
+    if (!placed.rest.empty()) prepend_rest(placed, settle, mesh, owner, desc.frames);
+    desc.shape = from_engine(mesh.mesh, mesh.uv);
   }
 
   void describe_gltf(const PlacedMesh& placed) const {
@@ -157,11 +180,14 @@ struct ShapeDescriber {
   }
 };
 
-int count_inside(const MeshShape& shape, const std::vector<Vec3>& points) {
+TriangleMesh at_pose(const MeshShape& shape) {
   TriangleMesh mesh = *shape.mesh;
-  if (count_surface_edges(mesh).border > 0) return 0;
   for (int v = 0; v < mesh.num_vertices(); ++v) mesh.positions[v] = shape.vertex(v);
-  const std::vector<int> winding = compute_winding_numbers(mesh, points);
+  return mesh;
+}
+
+int count_inside(const TriangleMesh& closed, const std::vector<Vec3>& points) {
+  const std::vector<int> winding = compute_winding_numbers(closed, points);
   return static_cast<int>(winding.size() - std::count(winding.begin(), winding.end(), 0));
 }
 
@@ -189,6 +215,7 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
     if (desc.fabric->warp) cloth.warp = from_engine(*desc.fabric->warp);
   }
   cloth.model = desc.model;
+  cloth.layer = desc.layer;
   cloth.seams = desc.seams;
   cloth.seam_time = desc.seam_time;
   cloth.seam_stiffness = desc.seam_stiffness;
@@ -199,9 +226,10 @@ ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vect
 }
 
 ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
-                               std::vector<std::string>& warnings) {
+                               std::vector<std::string>& warnings, const OnPreparation& on_preparation) {
   ColliderDesc collider{.name = desc.name};
-  std::visit(ShapeDescriber{settle, "collider \"" + desc.name + '"', warnings, collider}, desc.shape);
+  std::visit(ShapeDescriber{settle, "collider \"" + desc.name + '"', warnings, on_preparation, collider},
+             desc.shape);
   collider.motion = from_engine(desc.motion.keys());
   collider.friction = desc.friction;
   collider.static_friction = desc.static_friction;
@@ -209,9 +237,21 @@ ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
 }
 
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points) {
-  if (const MeshShape* mesh = std::get_if<MeshShape>(&shape)) return count_inside(*mesh, points);
+  if (const MeshShape* mesh = std::get_if<MeshShape>(&shape))
+    return count_inside(find_solid_part(at_pose(*mesh)), points);
   return static_cast<int>(std::count_if(
       points.begin(), points.end(), [&](const Vec3& p) { return signed_distance(shape, p).distance < 0; }));
+}
+
+int count_inside_holes(const MeshShape& shape, const std::vector<Vec3>& points) {
+  const TriangleMesh mesh = at_pose(shape);
+  TriangleMesh open{mesh.positions, {}};
+  for (const Shell& shell : find_shells(mesh)) {
+    if (shell.is_closed) continue;
+    for (const int t : shell.triangles) open.triangles.push_back(mesh.triangles[t]);
+  }
+  fill_holes(open, std::numeric_limits<double>::infinity());
+  return count_inside(find_solid_part(open), points);
 }
 
 }  // namespace weft::engine

@@ -21,9 +21,12 @@ std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc);
 
 /// The same for a collider; `settle` as in SceneDesc [s].
 ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
-                               std::vector<std::string>& warnings);
+                               std::vector<std::string>& warnings, const OnPreparation& on_preparation = {});
 
-/// Number of points inside the shape; 0 for an open mesh.
+/// Number of points inside the shape, of a mesh inside its closed shells.
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points);
+
+/// Number of points that would be inside a mesh if the holes of its open shells were filled; 0 without such shells.
+int count_inside_holes(const MeshShape& shape, const std::vector<Vec3>& points);
 
 }  // namespace weft::engine

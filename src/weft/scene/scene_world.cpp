@@ -142,9 +142,32 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   }
 }
 
-void untangle(World& world, SceneNotes& built) {
+/// Cloth that an open body would have inside it: contact holds it there.
+void warn_about_open_bodies(const World& world, std::vector<std::string>& warnings) {
+  const auto non_colliding = world.non_colliding_pairs();
+  for (const Collider& collider : world.colliders()) {
+    const ColliderShape shape = shape_at(collider, world.time());
+    const MeshShape* mesh = std::get_if<MeshShape>(&shape);
+    if (!mesh) continue;
+    for (int c = 0; c < world.num_cloths(); ++c) {
+      const std::string& cloth = world.name(world.cloth(c));
+      const std::array<std::string, 2> pair{cloth, collider.name};
+      if (std::ranges::find(non_colliding, pair) != non_colliding.end()) continue;
+      const int inside = count_inside_holes(*mesh, positions_of(world.state(world.cloth(c))));
+      if (inside == 0) continue;
+      warnings.push_back(
+          std::to_string(inside) + (inside == 1 ? " particle" : " particles") + " of cloth \"" + cloth +
+          "\" start within collider \"" + collider.name +
+          "\", which is open, and stay there; solid = true fills its holes, and cloth is moved out");
+    }
+  }
+}
+
+void untangle(World& world, const OnPreparation& on_preparation, SceneNotes& built) {
   const auto start = std::chrono::steady_clock::now();
-  const UntangleReport report = world.untangle();
+  const UntangleReport report = world.untangle([&](int round) {
+    if (on_preparation) on_preparation("repairing the start, round " + std::to_string(round));
+  });
   if (report.rounds == 0) return;
   built.untangle_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::vector<std::string>& warnings = built.warnings;
@@ -158,9 +181,11 @@ void untangle(World& world, SceneNotes& built) {
 }
 
 /// Steps up to time 0, and stops the cloth there.
-void settle(const SceneDesc& scene, PublicScene& built) {
+void settle(const SceneDesc& scene, const OnPreparation& on_preparation, PublicScene& built) {
   const int steps = std::max(1, static_cast<int>(std::ceil(scene.settle / scene.step_length() - 1e-9)));
   for (int s = 0; s < steps; ++s) {
+    if (on_preparation)
+      on_preparation("settling, step " + std::to_string(s + 1) + " of " + std::to_string(steps));
     built.settling.push_back(built.world.step(scene.settle / steps));
     if (!built.settling.back().ok)
       throw InputError("scene.settle: the simulation failed in step " + std::to_string(s + 1) + " of " +
@@ -174,6 +199,18 @@ void settle(const SceneDesc& scene, PublicScene& built) {
   }
 }
 
+/// The same, called at most every tenth of a second.
+OnPreparation at_intervals(const OnPreparation& on_preparation) {
+  using Clock = std::chrono::steady_clock;
+  if (!on_preparation) return {};
+  return [&on_preparation, last = Clock::time_point()](const std::string& what) mutable {
+    constexpr std::chrono::milliseconds kInterval(100);
+    if (Clock::now() - last < kInterval) return;
+    last = Clock::now();
+    on_preparation(what);
+  };
+}
+
 void append(const std::vector<std::string>& messages, std::vector<std::string>& to) {
   to.insert(to.end(), messages.begin(), messages.end());
 }
@@ -183,7 +220,8 @@ void append(const std::vector<std::string>& messages, std::vector<std::string>& 
 int SceneDesc::num_frames() const { return std::max(1, static_cast<int>(std::lround(duration * fps))); }
 double SceneDesc::step_length() const { return 1 / (fps * steps_per_frame); }
 
-PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
+PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
+                        const OnPreparation& on_preparation) {
   PublicScene result;
   World& world = WorldAccess::engine(result.world);
   world.set_jobs(std::move(jobs));
@@ -194,7 +232,8 @@ PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs)
   result.world.set_wind(describe_wind(scene.wind));
   world.set_contact(scene.contact);
   for (const ColliderSceneDesc& desc : scene.colliders) {
-    const ColliderId id = result.world.add_collider(describe_collider(desc, scene.settle, result.warnings));
+    const ColliderId id =
+        result.world.add_collider(describe_collider(desc, scene.settle, result.warnings, on_preparation));
     append(result.world.warnings(id), result.warnings);
   }
   for (const ClothSceneDesc& desc : scene.cloths) {
@@ -211,18 +250,22 @@ PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs)
   return result;
 }
 
-PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs, const SceneStart* start) {
-  PublicScene result = place_scene(scene, std::move(jobs));
+PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs, const SceneStart* start,
+                        const OnPreparation& on_preparation) {
+  const OnPreparation now_and_then = at_intervals(on_preparation);
+  PublicScene result = place_scene(scene, std::move(jobs), now_and_then);
   if (start) set_start(*start, result);
+  if (scene.contact) warn_about_open_bodies(WorldAccess::engine(result.world), result.warnings);
   const bool is_repaired = scene.untangle && scene.contact;
   World& world = WorldAccess::engine(result.world);
-  is_repaired ? untangle(world, result) : warn_about_start(world, result.warnings);
-  if (scene.settle > 0) settle(scene, result);
+  is_repaired ? untangle(world, now_and_then, result) : warn_about_start(world, result.warnings);
+  if (scene.settle > 0) settle(scene, now_and_then, result);
   return result;
 }
 
-SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs) {
-  PublicScene built = build_scene(scene, std::move(jobs));
+SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
+                       const OnPreparation& on_preparation) {
+  PublicScene built = build_scene(scene, std::move(jobs), nullptr, on_preparation);
   return {std::move(static_cast<SceneNotes&>(built)), std::move(WorldAccess::engine(built.world))};
 }
 

@@ -34,11 +34,13 @@ struct SceneStart;  // scene_start.h
 /// cloths, before intersections are removed and the scene settles; null: none. Throws InputError if a mesh
 /// cannot be used, if a pin selects nothing, and like set_start().
 PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
-                        const SceneStart* start = nullptr);
+                        const SceneStart* start = nullptr, const OnPreparation& on_preparation = {});
 
 /// The same before intersections are removed and the scene settles: at the time -SceneDesc::settle.
-PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
-SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs);
+PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
+                        const OnPreparation& on_preparation = {});
+SceneWorld build_world(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
+                       const OnPreparation& on_preparation = {});
 
 /// The pins of a cloth as input for the world that has it, with particles selected by their initial positions.
 /// Throws InputError for a selection without particles.

@@ -311,6 +311,7 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
       .add("velocity", cloth.velocity, ClothSceneDesc().velocity)
       .add("pressure", cloth.pressure, ClothSceneDesc().pressure)
       .add("sealed", cloth.is_sealed, false)
+      .add("layer", cloth.layer, ClothSceneDesc().layer)
       .add("seam_time", cloth.seam_time, ClothSceneDesc().seam_time)
       .add_text("color", toml_array(cloth.color));
   if (cloth.seam_stiffness) table.add("seam_stiffness", *cloth.seam_stiffness);
@@ -365,6 +366,7 @@ struct ShapeKeys {
     if (!m.clip.empty()) table.add("clip", m.clip);
     if (m.start_time) table.add("start_time", *m.start_time);
     if (!m.rest.empty()) table.add("rest", files.relative(m.rest));
+    if (m.solid) table.add("solid", *m.solid);
     add_mesh_keys(m.source, table);
     table.add("position", m.position, PlacedMesh().position)
         .add("rotation", m.rotation_deg, PlacedMesh().rotation_deg);

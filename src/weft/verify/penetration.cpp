@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -123,8 +125,8 @@ class Search {
   }
 
   void operator()(int solid, const MeshView& mesh) {
-    if (!mesh.is_closed) return;
-    const InsideOfMesh inside(mesh.positions, mesh.triangles);
+    if (mesh.solid.empty()) return;
+    const InsideOfMesh inside(mesh.positions, mesh.solid);
     DepthInMesh depth(mesh);
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
       for (std::size_t i = 0; i < cloths_[c].positions.size(); ++i) {
@@ -149,7 +151,7 @@ class Search {
     /// the same triangle, so the last nearest triangle is tested first.
     double at(const Vec3& p, double known) {
       double least = distance_sq(p, corners(nearest_));
-      for (std::size_t t = 0; t < mesh_.triangles.size() && least > known * known; ++t) {
+      for (std::size_t t = 0; t < mesh_.solid.size() && least > known * known; ++t) {
         const double d = distance_sq(p, corners(t));
         if (d < least) std::tie(least, nearest_) = std::pair(d, t);
       }
@@ -158,7 +160,7 @@ class Search {
 
    private:
     Corners corners(std::size_t t) const {
-      const auto& [a, b, c] = mesh_.triangles[t];
+      const auto& [a, b, c] = mesh_.solid[t];
       return {mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]};
     }
 
@@ -212,24 +214,30 @@ double depth_in(const OrientedBox& box, const Corners& triangle) {
   return bound <= 0 ? bound : greatest_depth(faces, local);
 }
 
-bool is_closed(std::span<const Triangle> triangles) {
-  std::vector<std::tuple<int, int, int>> edges;  // low, high, ±1 for the direction
+std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles) {
+  std::map<int, int> joined;  // each vertex to another one of its part, or to itself
+  const auto part_of = [&](int v) {
+    while (joined.at(v) != v) v = joined.at(v) = joined.at(joined.at(v));
+    return v;
+  };
+  std::map<std::pair<int, int>, int> balance;  // of edges: how often more in one direction than in the other
   for (const Triangle& t : triangles) {
     for (int k = 0; k < 3; ++k) {
+      joined.try_emplace(t[k], t[k]);
       const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      edges.emplace_back(low, high, t[k] < t[(k + 1) % 3] ? 1 : -1);
+      balance[{low, high}] += t[k] == low ? 1 : -1;
     }
+    for (const int v : {t[1], t[2]}) joined[part_of(v)] = part_of(t[0]);
   }
-  std::sort(edges.begin(), edges.end());
-  int balance = 0;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto& [low, high, direction] = edges[e];
-    const bool is_new =
-        e == 0 || std::tie(low, high) != std::tie(std::get<0>(edges[e - 1]), std::get<1>(edges[e - 1]));
-    if (is_new && balance != 0) return false;
-    balance += direction;
+  std::set<int> open;
+  for (const auto& [edge, excess] : balance) {
+    if (excess != 0) open.insert(part_of(edge.first));
   }
-  return balance == 0 && !edges.empty();
+  std::vector<Triangle> solid;
+  for (const Triangle& t : triangles) {
+    if (!open.contains(part_of(t[0]))) solid.push_back(t);
+  }
+  return solid;
 }
 
 std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std::span<const Solid> solids) {

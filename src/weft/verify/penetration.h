@@ -36,11 +36,12 @@ Eigen::AlignedBox3d bounds_of(const OrientedBox& box);
 struct MeshView {
   std::span<const Vec3> positions;  // [m]
   std::span<const Triangle> triangles;
-  bool is_closed = false;  // see is_closed(); the inside of open meshes is undefined
+  std::span<const Triangle> solid = {};  // those with an inside: see find_solid_triangles()
 };
 
-/// True if every edge occurs equally often in both directions, so that the mesh has an inside.
-bool is_closed(std::span<const Triangle> triangles);
+/// The triangles of closed parts: of those connected by vertices in which every edge occurs equally often in both
+/// directions. They have an inside.
+std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles);
 
 using Solid = std::variant<Sphere, Plane, Capsule, OrientedBox, MeshView>;
 
@@ -53,9 +54,9 @@ struct Penetration {
   int solid = -1;     // index
 };
 
-/// The deepest penetration of all cloths in all solids. In closed meshes particles are tested, not triangles:
+/// The deepest penetration of all cloths in all solids. In closed parts of meshes particles are tested, not triangles:
 /// inside means a nonzero winding number (exact, for any degenerate ray), depth the distance to the nearest
-/// triangle. Open meshes are skipped. Empty if no solid has an inside.
+/// triangle. Open parts are skipped. Empty if no solid has an inside.
 std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std::span<const Solid> solids);
 
 }  // namespace weft::engine::verify

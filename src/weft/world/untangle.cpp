@@ -12,6 +12,7 @@
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/contact/shrink.h"
+#include "weft/mesh/solid.h"
 #include "weft/world/measures.h"
 #include "weft/world/world.h"
 
@@ -87,7 +88,8 @@ World World::make_stage() const {
                                         .topology = cloth.model->topology,
                                         .material = cloth.model->material,
                                         .elements = cloth.model->elements,
-                                        .positions = positions_of(cloth.state)});
+                                        .positions = positions_of(cloth.state),
+                                        .layer = cloth.layer});
     Pin held;
     for (const PinnedParticle& pinned : cloth.pinned) held.particles.push_back(pinned.particle);
     stage.set_pins(id, {held});
@@ -105,12 +107,13 @@ int World::thin_colliders(const Intersections& crossed, World& stage) const {
     if (!shape || depths[c] == 0) continue;
     stage.colliders_[c].friction = stage.colliders_[c].static_friction = 0;
     const MeshShape full = *shape;
-    const std::vector<double> radii = compute_inner_radii(*full.mesh);
+    const TriangleMesh solid = find_solid_part(*full.mesh);
+    const std::vector<double> radii = compute_inner_radii(solid);
     double depth = kMoreThanDeep * depths[c] + kRoom;
     int steps = 0;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
       steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
-      *shape = growing_from(weft::engine::shrink(*full.mesh, radii, depth), full, steps);
+      *shape = growing_from(weft::engine::shrink(solid, radii, depth), full, steps);
       if (compute_depths(stage.find_intersections(), colliders_.size())[c] == 0) break;
     }
     most_steps = std::max(most_steps, steps);
@@ -126,7 +129,7 @@ void World::halt() {
   }
 }
 
-UntangleReport World::untangle() {
+UntangleReport World::untangle(const std::function<void(int round)>& on_round) {
   UntangleReport report;
   const Intersections crossed = find_intersections();
   if (crossed.empty()) return report;
@@ -134,9 +137,10 @@ UntangleReport World::untangle() {
   World stage = make_stage();
   const int growing = thin_colliders(crossed, stage);
   stage.show_contact_cloths();
-  report.rounds = stage.contact_system_
-                      .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_})
-                      .rounds;
+  report.rounds =
+      stage.contact_system_
+          .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_}, on_round)
+          .rounds;
   const auto is_relaxed = [](const Cloth& cloth) {
     return compute_largest_strain(*cloth.model, cloth.state) <= kRelaxed;
   };
@@ -145,6 +149,7 @@ UntangleReport World::untangle() {
     stage.halt();
     if (!stage.step(kStep).ok) break;
     ++report.rounds;
+    if (on_round) on_round(report.rounds);
   }
   const Snapshot before = snapshot();
   for (std::size_t c = 0; c < cloths_.size(); ++c) {

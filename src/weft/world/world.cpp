@@ -155,6 +155,7 @@ ClothId World::add_cloth(const ClothParts& given) {
   require(find_non_finite(cloth.state) < 0,
           "cloth \"" + desc.name + "\" has a non-finite position or velocity");
   cloth.is_pinned.assign(positions.size(), 0);
+  cloth.layer = desc.layer;
   cloth.number = ++last_number_;
   last_step_ = 0;
   cloths_.push_back(std::move(cloth));
@@ -651,7 +652,7 @@ void World::show_contact_cloths() {
   contact_cloths_.clear();
   for (Cloth& cloth : cloths_)
     contact_cloths_.push_back(
-        {cloth.model.get(), &cloth.state, &cloth.is_pinned, std::abs(excess_of(cloth))});
+        {cloth.model.get(), &cloth.state, &cloth.is_pinned, std::abs(excess_of(cloth)), cloth.layer});
 }
 
 void World::begin_contact(double time, double dt) {
@@ -781,6 +782,12 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
   for (const Inside& inside : intersections.inside) {
     const BodyPlace place = contact_system_.place_of(inside.vertex);
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
+        [&] { return ", first particle " + std::to_string(place.index); });
+  }
+  for (const Beneath& beneath : intersections.beneath) {
+    const BodyPlace place = contact_system_.place_of(beneath.vertex);
+    add("particles of " + name_of(place) + " are under " +
+            name_of(contact_system_.place_of_triangle(beneath.triangle)) + ", a lower layer",
         [&] { return ", first particle " + std::to_string(place.index); });
   }
   std::vector<std::string> messages;

@@ -31,6 +31,7 @@ struct ClothParts {
   std::shared_ptr<const ClothElements> elements;  // of a fabric, on the topology's mesh; null: springs only
   std::vector<Vec3> positions;                    // (num_particles) at the start; empty: the rest shape [m]
   Vec3 velocity = Vec3::Zero();                   // of all particles at the start [m/s]
+  int layer = 0;                                  // see ClothDesc::layer
 };
 
 /// Particles with prescribed motion: static, along key frames from their positions when pinned, or bound to a
@@ -150,8 +151,8 @@ class World {
   /// Repairs intersections of cloth with itself, other cloth or colliders, so that none is left from the next
   /// step on: solids that cloth is in become thinner and grow back (untangle.cpp). Pinned particles stay.
   /// Velocities are kept, and all positions are unchanged if the repair does not help. Takes seconds for
-  /// thousands of particles; a no-op without intersections.
-  UntangleReport untangle();
+  /// thousands of particles; a no-op without intersections. Calls on_round with the number of each round.
+  UntangleReport untangle(const std::function<void(int round)>& on_round = {});
 
   /// Advances the world by dt > 0 [s].
   StepReport step(double dt);
@@ -277,6 +278,7 @@ class World {
     std::vector<char> is_pinned;         // (num_particles)
     Attachments attachments;
     PointGuide pin_guide, attachment_guide;  // of pins and attachments moved by the program
+    int layer = 0;
     std::vector<Vec3> forces;                // external (num_particles; empty: none) [N]
     const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where attached
     Vec3 attachment_impulse = Vec3::Zero();  // of all attachments in the last step [N·s]
@@ -315,8 +317,7 @@ class World {
   BodyPlace find_place(const std::string& name) const;
   BodyPlace place_of(const BodyId& id) const;
   ContactRule& rule_for(BodyPlace a, BodyPlace b);
-  void set_friction_at(BodyPlace a, BodyPlace b, double friction,
-                       double static_friction);
+  void set_friction_at(BodyPlace a, BodyPlace b, double friction, double static_friction);
   void save(Snapshot& snapshot) const;
   void save_states(std::vector<ClothState>& states) const;
   void place_pins(Cloth& cloth, std::vector<Pin> pins);
