@@ -56,14 +56,10 @@ ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), is_terminal_(isatty(STDERR_FILENO) != 0), log_(label_) {}
 
 void ProgressBar::prepare(const std::string& what) {
-  if (is_terminal_) {
-    std::fputs(("\r\033[K" + label_ + ": " + what).c_str(), stderr);
-    std::fflush(stderr);
-    return;
-  }
+  if (is_terminal_) return show(label_ + ": " + what);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  if (elapsed.count() < prepared_ + ProgressLog::kInterval) return;
-  prepared_ = elapsed.count();
+  if (elapsed.count() < preparation_logged_ + ProgressLog::kInterval) return;
+  preparation_logged_ = elapsed.count();
   std::fputs((label_ + ": " + what + "\n").c_str(), stderr);
 }
 
@@ -78,15 +74,20 @@ void ProgressBar::draw(const Progress& p) {
   if (p.frame < p.num_frames && p.seconds_spent - last_drawn_ < kRedrawInterval) return;
   last_drawn_ = p.seconds_spent;
   const int filled = kBarWidth * p.frame / std::max(1, p.num_frames);
-  const std::string bar = fmt::format("\r\033[K{:<26} [{}{}] {:>3}/{} frames, {} left", label_,
-                                      std::string(filled, '='), std::string(kBarWidth - filled, ' '), p.frame,
-                                      p.num_frames, format_seconds(p.seconds_left));
-  std::fputs(bar.c_str(), stderr);
+  show(fmt::format("{:<26} [{}{}] {:>3}/{} frames, {} left", label_, std::string(filled, '='),
+                   std::string(kBarWidth - filled, ' '), p.frame, p.num_frames,
+                   format_seconds(p.seconds_left)));
+}
+
+void ProgressBar::show(const std::string& text) {
+  is_shown_ = true;
+  std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
 }
 
 void ProgressBar::clear() {
-  if (is_terminal_) std::fputs("\r\033[K", stderr);
+  if (is_shown_) std::fputs("\r\033[K", stderr);
+  is_shown_ = false;
 }
 
 void catch_interrupts() {

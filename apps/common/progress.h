@@ -30,20 +30,25 @@ class ProgressLog {
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Before the first frame: what is being prepared.
+  /// Reports a step of preparation, before the first frame.
   void prepare(const std::string& what);
   void update(const Progress& progress);
   void clear();
 
  private:
   void draw(const Progress& progress);
+  void show(const std::string& text);
 
   std::string label_;
   bool is_terminal_;
+  bool is_shown_ = false;
   double last_drawn_ = -1;  // simulation time at the last drawing [s]
   ProgressLog log_;
-  double prepared_ = 0;  // time of the last line about the preparation, after the start [s]
+  double preparation_logged_ = 0;  // time of the latest line about preparation, after the start [s]
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

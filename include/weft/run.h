@@ -41,7 +41,7 @@ struct RunOptions {
   Unfinished unfinished = Unfinished::refuse;
   double checkpoint_seconds = 30;  // of simulation and output, between checkpoints in the folder; >= 0 [s]
   std::optional<int> checkpoint_every = {};  // instead: frames between them, >= 1 [1]
-  /// Called while the scene is prepared, about every tenth of a second: "frame 40 of 120 of figure_*.obj".
+  /// Called while the scene is prepared, at most every tenth of a second: "repairing the start, round 7".
   std::function<void(const std::string& what)> on_preparation = {};
   /// Asked between the steps of a frame; false interrupts the run without the unfinished frame.
   std::function<bool()> keep_going = {};

@@ -97,9 +97,9 @@ class WEFT_API World {
   const ClothNotes& notes(ClothId cloth) const;
   const std::vector<std::string>& warnings(ColliderId collider) const;  // flaws of its mesh, as sentences
 
-  /// Separates cloth that currently intersects itself, other cloth or colliders. Pinned particles stay,
-  /// velocities are kept, and all positions stay if separation fails. Takes seconds for thousands of
-  /// particles; a no-op without intersections. Returns the remaining intersections, as sentences.
+  /// Separates cloth that intersects itself, other cloth or colliders, and puts layers in order. Pinned
+  /// particles stay, velocities are kept, and all positions stay if that fails. Takes seconds for thousands
+  /// of particles; otherwise a no-op. Returns the remaining intersections, as sentences.
   std::vector<std::string> untangle();
 
   // Motion controlled by the program, between two steps.

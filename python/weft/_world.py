@@ -699,7 +699,7 @@ class World:
         return self._core.time
 
     def untangle(self) -> list[str]:
-        """Separates cloth that intersects itself, other cloth or colliders, which takes seconds.
+        """Separates cloth that intersects itself, other cloth or colliders, and puts layers in order; takes seconds.
 
         Returns the remaining intersections as sentences; positions stay if separation fails.
         """

@@ -258,6 +258,38 @@ TEST(Untangle, SaysWhichLayerIsUnderWhich) {
       << report.crossed[0];
 }
 
+/// Planes are ground: without another solid there is no outside.
+TEST(Untangle, HasNoOrderOfLayersWithoutABody) {
+  World world;
+  world.add_collider({"floor", Plane{Vec3(0, -0.1, 0), Vec3::UnitY()}, 0.3, {}});
+  const TriangleMesh mesh = make_sleeve(0.04, 0.25, kAround, kAlong);
+  for (const double scale : {1.0, 0.9}) {
+    std::vector<Vec3> positions = mesh.positions;
+    for (Vec3& p : positions) p *= scale;
+    world.add_cloth({.topology = build_mesh_topology(mesh),
+                     .material = kCotton,
+                     .positions = positions,
+                     .layer = scale < 1 ? 1 : 0});
+  }
+  EXPECT_EQ(world.untangle().rounds, 0);
+}
+
+/// As trousers on a waist that is pinned inside the skin.
+TEST(Untangle, PutsLayersInOrderBesidePinsInsideABody) {
+  World world;
+  const std::vector<ClothId> ids = add_sleeves(world, std::array{Sleeve{0.050, 0, 0}, Sleeve{0.0485, 0, 1}});
+  std::vector<Vec3> positions = positions_of(world.state(ids[0]));
+  Pin held;
+  for (int k = 0; k < kAround; ++k) {
+    positions[k] = Vec3(positions[k].x(), 0.7 * positions[k].y(), 0.7 * positions[k].z());
+    held.particles.push_back(k);
+  }
+  world.set_positions(ids[0], positions);
+  world.set_pins(ids[0], {held});
+  world.untangle();
+  expect_order(world, ids[0], ids[1]);
+}
+
 TEST(Untangle, LeavesLayersInOrderAlone) {
   World world;
   add_sleeves(world, std::array{Sleeve{0.045, 0, 0}, Sleeve{0.0485, 0, 1}});

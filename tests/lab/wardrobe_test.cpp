@@ -26,7 +26,7 @@ TEST(Wardrobe, TheFigureIsClosedAndItsHairCoversItsHead) {
   const Figure figure = make_figure(kCoarse);
   EXPECT_TRUE(is_closed(count_surface_edges(figure.mesh)));
   TriangleMesh mesh = figure.mesh;
-  const Shells shells = turn_shells_outwards(mesh);
+  const TurnedShells shells = turn_shells_outwards(mesh);
   EXPECT_EQ(shells.count, 2);
   EXPECT_EQ(shells.turned, 0);
   EXPECT_EQ(compute_winding_numbers(mesh, {{0, 1.65, 0}, {0, 1.3, 0}, {0, 0.3, 0}}),

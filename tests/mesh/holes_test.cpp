@@ -84,16 +84,81 @@ TEST(FillHoles, JudgesEachShellByItself) {
   EXPECT_NEAR(compute_signed_volume(find_solid_part(mesh)), 4.1, 0.1);
 }
 
+/// A tube around y without its ends, and with a slit of this angle.
+TriangleMesh make_collar(double slit) {
+  constexpr int kAround = 40;
+  TriangleMesh mesh;
+  for (int k = 0; k <= kAround; ++k) {
+    const double angle = (2 * std::numbers::pi - slit) * k / kAround;
+    for (const double y : {0.0, 1.0}) mesh.positions.emplace_back(std::cos(angle), y, std::sin(angle));
+    if (k == kAround) break;
+    const int a = 2 * k, b = a + 1, c = a + 2, d = a + 3;
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {b, d, c}});
+  }
+  return mesh;
+}
+
+TEST(FillHoles, LeavesCurledSheets) {
+  for (const double slit : {0.3, 0.1, 0.01, 0.0}) {
+    TriangleMesh collar = make_collar(slit);
+    EXPECT_EQ(fill_holes(collar, 0.05).count, 0) << slit;
+  }
+}
+
+TEST(FillHoles, LeavesSheetsWithoutVolume) {
+  for (TriangleMesh sheet : {build_disc_mesh(1, 1), build_disc_mesh(1, 6)}) {
+    const std::size_t before = sheet.triangles.size();
+    EXPECT_EQ(fill_holes(sheet, kAny).count, 0);
+    EXPECT_EQ(sheet.triangles.size(), before);
+  }
+}
+
+/// Fins on an edge, and cards on a vertex, are no holes of the body.
+TEST(FillHoles, LeavesWhatIsAttachedToABody) {
+  TriangleMesh finned = make_ball();
+  const auto [a, b, c] = finned.triangles[0];
+  finned.positions.push_back(2 * finned.positions[a]);
+  finned.triangles.push_back({a, b, finned.num_vertices() - 1});
+  const std::size_t before = finned.triangles.size();
+  EXPECT_EQ(fill_holes(finned, kAny).count, 0);
+  EXPECT_EQ(finned.triangles.size(), before);
+
+  TriangleMesh with_card = without(make_ball(), {30});
+  const int first = with_card.num_vertices();
+  const auto [i, j, k] = with_card.triangles[9];
+  with_card.positions.push_back(1.3 * with_card.positions[i]);
+  with_card.positions.push_back(1.3 * with_card.positions[j]);
+  with_card.triangles.push_back({i, first, first + 1});
+  EXPECT_EQ(fill_holes(with_card, 0.05).count, 1);
+  EXPECT_NEAR(compute_signed_volume(find_solid_part(with_card)), 4.1, 0.1);
+  (void)k;
+}
+
+TEST(FillHoles, LeavesAGapWithoutArea) {
+  // Removed by mesh cleaning where a vertex lies on the edge of a neighbour.
+  TriangleMesh mesh = make_ball();
+  const auto [a, b, c] = mesh.triangles[5];
+  mesh.positions[b] = 0.5 * (mesh.positions[a] + mesh.positions[c]);
+  mesh.triangles.erase(mesh.triangles.begin() + 5);
+  EXPECT_EQ(fill_holes(mesh, 0.05).count, 0);
+}
+
 TEST(FillHoles, ClosesWhateverIsLeftOfASphere) {
   Random random(7);
+  int num_closed = 0;
   for (int trial = 0; trial < 200; ++trial) {
     TriangleMesh mesh = make_ball();
-    const double left = 0.05 + 0.9 * random.uniform(0, 1);
+    const double left = random.uniform(0.5, 1);
     std::erase_if(mesh.triangles, [&](const Triangle&) { return random.uniform(0, 1) > left; });
-    if (mesh.triangles.empty()) continue;
     fill_holes(mesh, kAny);
-    EXPECT_TRUE(is_closed(count_surface_edges(mesh))) << trial;
+    // Parts of one triangle, and of nearly flat ones, have no volume.
+    for (const Shell& shell : find_shells(mesh)) {
+      if (shell.triangles.size() < 100) continue;
+      EXPECT_TRUE(shell.is_closed) << trial;
+      ++num_closed;
+    }
   }
+  EXPECT_GT(num_closed, 180);
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST(Shells, ThatFaceInwardsAreTurnedButHollowsAreNot) {
   turn_inside_out(hair);
   turn_inside_out(hollow);
   TriangleMesh mesh = join(join(box(Vec3::Zero(), 1), hair), hollow);
-  const Shells shells = turn_shells_outwards(mesh);
+  const TurnedShells shells = turn_shells_outwards(mesh);
   EXPECT_EQ(shells.count, 3);
   EXPECT_EQ(shells.turned, 1);
   const std::vector<Vec3> points = {{-0.7, 0.1, 0.1}, {0.7, 0.8, 0.9}, {1.2, 1.3, 1.2}, {0.21, 0.22, 0.23}};
@@ -188,6 +188,21 @@ TEST(OrientTriangles, LeavesAStripWithOneSide) {
   EXPECT_GT(count_surface_edges(strip).twisted, 0);
 }
 
+TEST(WindingNumbers, OfManyPointsAreThoseOfEach) {
+  const TriangleMesh flat = join(box(Vec3::Zero(), 1), box(Vec3(4, 0, 4), 0.5));
+  Random random(3);
+  std::vector<Vec3> points;
+  for (int k = 0; k < 2000; ++k)
+    points.emplace_back(random.uniform(-2, 6), random.uniform(-1.2, 1.2), random.uniform(-2, 6));
+  for (int i = -8; i <= 24; ++i) {  // in line with corners, edges, diagonals and the borders of cells
+    for (int k = -8; k <= 24; ++k) points.emplace_back(0.25 * i, 0.1, 0.25 * k);
+  }
+  const std::vector<int> winding = compute_winding_numbers(flat, points);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    EXPECT_EQ(winding[p], compute_winding_number(flat.triangles, flat.positions, points[p]));
+  }
+}
+
 TEST(SolidPart, IsThatOfTheClosedShells) {
   TriangleMesh open = box(Vec3(1, 0, 0), 2);
   open.triangles.pop_back();
@@ -206,8 +221,8 @@ TEST(Shells, ThatAreOpenAreNeitherTurnedNorHollows) {
   TriangleMesh inwards = box(Vec3::Zero(), 1);
   turn_inside_out(inwards);
   TriangleMesh mesh = join(open, inwards);
-  const Shells shells = turn_shells_outwards(mesh);
-  EXPECT_EQ(shells.count, 1);
+  const TurnedShells shells = turn_shells_outwards(mesh);
+  EXPECT_EQ(shells.count, 2);
   EXPECT_EQ(shells.turned, 1);
   EXPECT_EQ(mesh.triangles[0], open.triangles[0]);
   EXPECT_NEAR(compute_signed_volume(find_solid_part(mesh)), 8, 1e-12);

@@ -82,6 +82,7 @@ rotation = [90, 0, -45]
 velocity = [0, 0, 1]
 pressure = -20
 sealed = true
+layer = -2
 color = [0, 0.5, 1]
 )")
                                    .cloths.at(0);
@@ -97,6 +98,7 @@ color = [0, 0.5, 1]
   EXPECT_EQ(cloth.velocity, Vec3(0, 0, 1));
   EXPECT_EQ(cloth.pressure, -20);
   EXPECT_TRUE(cloth.is_sealed);
+  EXPECT_EQ(cloth.layer, -2);
   EXPECT_EQ(cloth.color, (std::array<double, 3>{0, 0.5, 1}));
 }
 

@@ -112,6 +112,7 @@ membrane = "springs"
 warp = [1, 0, 0.5]
 seam_time = 0.5
 seam_stiffness = 1e5
+layer = 3
 pins = ['group:left "cuff"', { group = "waist", follow = "dancer", stiffness = 50, damping = 0.1 }]
 [[cloth.seam]]
 a = [0, 4, 9]
@@ -146,6 +147,7 @@ shape = "mesh"
 frames = "b_*.obj"
 frame_rate = 12
 rest = "a.obj"
+solid = true
 up = "z"
 scale = 2
 position = [0, 1, 0]
@@ -157,6 +159,7 @@ file = "c.glb"
 node = "Body"
 clip = "walk"
 start_time = 0.5
+solid = false
 scale = 0.01
 [[contact]]
 between = ["mesh", "body"]

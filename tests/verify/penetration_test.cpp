@@ -119,8 +119,13 @@ TriangleMesh cube(double half) {
   return mesh;
 }
 
+bool is_solid(const std::vector<Triangle>& triangles) {
+  return !triangles.empty() && find_solid_triangles(triangles).size() == triangles.size();
+}
+
 MeshView view(const TriangleMesh& mesh) {
-  return {mesh.positions, mesh.triangles, is_closed(mesh.triangles)};
+  return {mesh.positions, mesh.triangles,
+          is_solid(mesh.triangles) ? mesh.triangles : std::span<const Triangle>()};
 }
 
 /// A cloth of particles only.
@@ -130,17 +135,21 @@ double deepest_of(const std::vector<Vec3>& particles, const Solid& solid) {
   return find_deepest(cloth, solids)->depth;
 }
 
-TEST(ClosedMeshes, AreThoseWithoutBorder) {
-  EXPECT_TRUE(is_closed(cube(1).triangles));
-  EXPECT_TRUE(is_closed(make_sphere_mesh({0, 0, 0}, 1, 8).triangles));
-  EXPECT_FALSE(is_closed(build_grid_mesh({}, GridDiagonals::parallel).triangles));
-  EXPECT_FALSE(is_closed({}));
+TEST(SolidTriangles, AreThoseOfPartsWithoutBorder) {
+  EXPECT_TRUE(is_solid(cube(1).triangles));
+  EXPECT_TRUE(is_solid(make_sphere_mesh({0, 0, 0}, 1, 8).triangles));
+  EXPECT_TRUE(find_solid_triangles(build_grid_mesh({}, GridDiagonals::parallel).triangles).empty());
+  EXPECT_TRUE(find_solid_triangles({}).empty());
   auto torn = cube(1).triangles;
   torn.pop_back();
-  EXPECT_FALSE(is_closed(torn));
+  EXPECT_TRUE(find_solid_triangles(torn).empty());
   auto turned = cube(1).triangles;
   std::swap(turned[0][0], turned[0][1]);
-  EXPECT_FALSE(is_closed(turned)) << "one face looks inwards";
+  EXPECT_TRUE(find_solid_triangles(turned).empty()) << "one face looks inwards";
+
+  auto both = torn;  // and a closed cube beside the torn one
+  for (const Triangle& t : cube(1).triangles) both.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  EXPECT_EQ(find_solid_triangles(both), std::vector<Triangle>(both.begin() + torn.size(), both.end()));
 }
 
 TEST(DepthInAMesh, IsThatInTheBoxItShows) {

@@ -14,7 +14,7 @@
 namespace weft::engine {
 
 /// A triangle mesh as a collider, static or deforming, placed from mesh coordinates: p ↦ rotation p +
-/// translation. Closed meshes face outwards; open meshes collide on both sides.
+/// translation. Closed shells face outwards; open ones collide on both sides.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;  // never null
   Mat3 rotation = Mat3::Identity();

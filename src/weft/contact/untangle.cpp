@@ -21,7 +21,9 @@ constexpr double kMaxStretch = 1.1;               // of an edge, or its stretch 
 constexpr double kMinGap = 1e-4;                  // between cloth and the features it intersected [m]
 constexpr double kMaxPushPerEdge = 0.5;  // no push is longer than this share of the cloth's mean edge
 constexpr double kShortening = 0.1;      // of the mean edge: how far a cut's end moves in a round
-constexpr double kLayerReach = 0.03;     // up to this far above it a layer is looked for [m]
+constexpr double kLayerReach = 0.03;     // a lower layer is found up to this far above a higher one [m]
+constexpr double kSamePlace = 2e-3;      // way of a vertex that changes nothing about its layers [m]
+constexpr double kOnSurface = 1e-9;      // a point this near to a mesh lies on it [m]
 constexpr double kSameWay = 0.5;  // least cosine between the ways out of two layers that belong together
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -66,7 +68,7 @@ class Untangler {
       if (on_round) on_round(result.rounds);
       move_apart(intersections);
       intersections = find_intersections();
-      if (intersections.size() >= result.after.size()) continue;
+      if (!intersections.is_better_than(result.after)) continue;
       result.after = intersections;
       best = x_;
     }
@@ -95,9 +97,13 @@ class Untangler {
     std::sort(intersections.edge_face.begin(), intersections.edge_face.end());
     intersections.edge_face.erase(std::unique(intersections.edge_face.begin(), intersections.edge_face.end()),
                                   intersections.edge_face.end());
+    is_inside_.assign(input_.num_cloth_vertices, 0);
     for (std::size_t s = 0; s < meshes_.size(); ++s) {
-      for (const int v : find_inside(s))
+      for (const int v : find_inside(s)) {
+        is_inside_[v] = 1;
+        if (!is_free(v)) continue;
         intersections.inside.push_back({v, input_.solids[s].collider, way_out(s, x_[v]).depth});
+      }
     }
     intersections.beneath = find_beneath();
     return intersections;
@@ -190,7 +196,7 @@ class Untangler {
 
   // ---- Out of solids ----
 
-  /// Free cloth particles in a solid.
+  /// Cloth particles in a solid.
   std::vector<int> find_inside(std::size_t s) const {
     const int collider = input_.solids[s].collider;
     const ColliderShape& shape = input_.solids[s].shape;
@@ -201,7 +207,7 @@ class Untangler {
     for (int v = 0; v < input_.num_cloth_vertices; ++v) {
       const bool is_inside =
           winding.empty() ? signed_distance(shape, cloth[v]).distance < 0 : winding[v] != 0;
-      if (is_inside && is_free(v) && !input_.non_colliding_solid(v, collider)) found.push_back(v);
+      if (is_inside && !input_.non_colliding_solid(v, collider)) found.push_back(v);
     }
     return found;
   }
@@ -225,14 +231,15 @@ class Untangler {
     const Vec3 face = (mesh.positions[j] - mesh.positions[i])
                           .cross(mesh.positions[k] - mesh.positions[i])
                           .stableNormalized();
-    return {depth, depth > 1e-9 ? Vec3((foot - p) / depth) : face};
+    return {depth, depth > kOnSurface ? Vec3((foot - p) / depth) : face};
   }
 
   double gap(int v) const { return std::max(kMinGap, (*input_.half_thickness)[v]); }
 
   /// Moves all cloth out of a solid; triangles that only their corners have left are pushed out whole.
   void leave(std::size_t s) {
-    const std::vector<int> inside = find_inside(s);
+    std::vector<int> inside = find_inside(s);
+    std::erase_if(inside, [&](int v) { return !is_free(v); });
     std::vector<Way> ways;
     for (const int v : inside) ways.push_back(way_out(s, x_[v]));
     const std::optional<Vec3> common = find_common_way(inside, ways);
@@ -308,24 +315,38 @@ class Untangler {
            !std::ranges::all_of(input_.solids, is_ground);
   }
 
-  /// Away from the solid nearest to a cloth vertex; planes are ground, and not worn.
+  /// Away from the nearest solid that a vertex outside of all solids collides with. Planes do not count: they are
+  /// ground, and wear no cloth.
   const Vec3& outward(int v) {
-    constexpr double kSamePlace = 2e-3;  // as far a vertex may move before its way is found again [m]
     Outward& known = outwards_[v];
-    if ((known.place - x_[v]).norm() < kSamePlace) return known.way;
+    if (known.holds_at(x_[v])) return known.way;
     double nearest = kInfinity;
     for (std::size_t s = 0; s < input_.solids.size(); ++s) {
-      if (std::holds_alternative<Plane>(input_.solids[s].shape)) continue;
-      Way way = way_out(s, x_[v]);
-      if (std::holds_alternative<MeshShape>(input_.solids[s].shape) && !is_in(s, x_[v])) {
-        way = {-way.depth, -way.out};
-      }
-      if (-way.depth >= nearest) continue;
-      nearest = -way.depth;
-      known.way = way.out;
+      const RepairInput::Solid& solid = input_.solids[s];
+      if (std::holds_alternative<Plane>(solid.shape) || input_.non_colliding_solid(v, solid.collider))
+        continue;
+      const Way way = way_out(s, x_[v]);
+      const double distance = std::abs(way.depth);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      // On the surface of a mesh, the way out is the face's normal; farther away, it points to the surface.
+      const bool is_to_surface = std::holds_alternative<MeshShape>(solid.shape) && distance > kOnSurface;
+      known.way = (is_to_surface ? -1.0 : 1.0) * way.out;
     }
     known.place = x_[v];
     return known.way;
+  }
+
+  /// Whether a lower layer is near.
+  template <class IsLower>
+  bool is_over_lower(int v, const IsLower& is_lower) {
+    LowerLayer& known = lower_layers_[v];
+    if (known.holds_at(x_[v])) return known.is_near;
+    const Vec3 reach = Vec3::Constant(kLayerReach + 2 * kSamePlace);
+    known = {{x_[v]}, false};
+    cloth_tree_.for_each_overlapping(make_aabb(x_[v] - reach, x_[v] + reach),
+                                     [&](int t) { known.is_near = known.is_near || is_lower(t); });
+    return known.is_near;
   }
 
   Vec3 outward(const Triangle& t) { return outward(t[0]) + outward(t[1]) + outward(t[2]); }
@@ -334,17 +355,15 @@ class Untangler {
     std::vector<Beneath> found;
     if (!have_order()) return found;
     outwards_.resize(x_.size());
+    lower_layers_.resize(x_.size());
     for (int v = 0; v < input_.num_cloth_vertices; ++v) {
-      if (!is_free(v)) continue;
+      if (!is_free(v) || is_inside_[v]) continue;
       const auto is_lower = [&](int t) {
-        const int w = surface_.triangles[t][0];
-        return layer_of(w) < layer_of(v) && !input_.non_colliding(v, w);
+        const auto [i, j, k] = surface_.triangles[t];
+        return layer_of(i) < layer_of(v) && !input_.non_colliding(v, i) && !is_inside_[i] && !is_inside_[j] &&
+               !is_inside_[k];
       };
-      bool has_lower = false;
-      const Vec3 reach = Vec3::Constant(kLayerReach);
-      cloth_tree_.for_each_overlapping(make_aabb(x_[v] - reach, x_[v] + reach),
-                                       [&](int t) { has_lower = has_lower || is_lower(t); });
-      if (!has_lower) continue;
+      if (!is_over_lower(v, is_lower)) continue;
       Beneath beneath{.vertex = v, .triangle = -1, .out = outward(v)};
       cloth_tree_.for_each_along_ray(x_[v], beneath.out, kLayerReach, [&](int t) {
         if (!is_lower(t)) return kLayerReach;
@@ -369,12 +388,13 @@ class Untangler {
     return d.s * kLayerReach;
   }
 
-  /// The end of an edge that is on the wrong side of another layer; empty if the layers have no order, or lie
-  /// across the way out.
+  /// The end of an edge that is on the wrong side of another layer. Empty if the layers have no order, lie across
+  /// the way out, or have been inside a solid.
   std::optional<int> find_wrong_by_layer(const EdgeFaceIntersection& p) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];
     if (!is_cloth(i) || !is_cloth(t[0]) || layer_of(i) == layer_of(t[0]) || !have_order()) return {};
+    if (is_inside_[t[0]] || is_inside_[t[1]] || is_inside_[t[2]]) return {};
     const Vec3 normal = area(t).stableNormalized();
     const double facing = normal.dot(outward(t).stableNormalized());
     if (std::abs(facing) < kSameWay) return {};
@@ -630,13 +650,22 @@ class Untangler {
   double mean_edge_ = 0;           // of cloth [m]
   std::vector<SolidMesh> meshes_;  // (solids)
   std::vector<char> is_on_solid_;  // (num_vertices) whether on a closed shell
+  std::vector<char> is_inside_;    // (num_cloth_vertices) whether inside a solid before the round
   AabbTree cloth_tree_, body_tree_;
-  /// The way out at a place.
-  struct Outward {
-    Vec3 place = Vec3::Constant(kInfinity), way = Vec3::UnitY();
+  /// What is known of a vertex as long as it stays near a place.
+  struct Known {
+    Vec3 place = Vec3::Constant(kInfinity);
+    bool holds_at(const Vec3& p) const { return (place - p).norm() < kSamePlace; }
   };
-  std::vector<Outward> outwards_;  // (num_vertices) where layers have an order
-  std::vector<int> curve_;         // (edges) union-find forest of the edges that one curve cuts
+  struct Outward : Known {
+    Vec3 way = Vec3::UnitY();
+  };
+  struct LowerLayer : Known {
+    bool is_near = false;
+  };
+  std::vector<Outward> outwards_;         // (num_vertices) where layers have an order
+  std::vector<LowerLayer> lower_layers_;  // likewise
+  std::vector<int> curve_;                // (edges) union-find forest of the edges that one curve cuts
   std::map<CutKey, Cut> cuts_;
   std::vector<std::vector<std::pair<int, int>>> neighbours_;  // (num_vertices) and the edge to each
   std::vector<Vec3> push_;                                    // (num_vertices) sum of a round's moves [m]

@@ -70,6 +70,13 @@ struct Intersections {
 
   bool empty() const { return size() == 0; }
   std::size_t size() const { return edge_face.size() + inside.size() + beneath.size(); }
+
+  /// Fewer intersections, or as many and fewer particles in the wrong order.
+  bool is_better_than(const Intersections& other) const {
+    const std::size_t own = edge_face.size() + inside.size(),
+                      others = other.edge_face.size() + other.inside.size();
+    return own < others || (own == others && beneath.size() < other.beneath.size());
+  }
 };
 
 /// Finds the intersections with vertices at `positions` (num_vertices).
@@ -81,7 +88,7 @@ struct UntangleResult {
 };
 
 /// Moves cloth positions (num_vertices) until no intersections are left, as far as possible. Takes seconds
-/// for thousands of particles; a no-op without intersections. Calls on_round with the number of each round.
+/// for thousands of particles; a no-op where all is well. Calls on_round with the number of each round.
 UntangleResult untangle(const RepairInput& input, std::vector<Vec3>& positions,
                         const std::function<void(int round)>& on_round = {});
 

@@ -29,45 +29,40 @@ std::string to_millimetres(double length) {
   return text;
 }
 
-/// Makes shells solid where that is possible: orients triangles, fills holes, flips inside-out shells. Warns of
-/// what was done, and of what remains. `solid` as in ColliderDesc.
+/// Makes shells solid where possible: orients triangles, fills holes, flips inside-out shells. Warns of the changes,
+/// and of what remains open. `solid` as in ColliderDesc.
 void make_solid(TriangleMesh& mesh, std::optional<bool> solid, std::vector<std::string>& warnings) {
-  constexpr double kMostHoles = 0.05;  // of a shell's area, unless told otherwise
+  constexpr double kMaxShare = 0.05;  // of a shell's area in holes, by default
+  const auto they_were = [](int count) { return std::string(count == 1 ? "it was " : "they were "); };
+  const SurfaceEdges given = count_surface_edges(mesh);
+  if (given.non_manifold > 0)
+    warnings.push_back(count_of(given.non_manifold, "edge") +
+                       " of more than two triangles (non-manifold): inside and outside may be wrong there");
   if (const int flipped = orient_triangles(mesh); flipped > 0)
     warnings.push_back(count_of(flipped, "triangle") + " faced another way than most around; " +
-                       (flipped == 1 ? "it was" : "they were") + " flipped");
+                       they_were(flipped) + "flipped");
   if (solid.value_or(true)) {
-    const FilledHoles filled = fill_holes(mesh, solid ? std::numeric_limits<double>::infinity() : kMostHoles);
+    const FilledHoles filled = fill_holes(mesh, solid ? std::numeric_limits<double>::infinity() : kMaxShare);
     if (filled.count > 0)
       warnings.push_back("has " + count_of(filled.count, "hole") + ", up to " +
-                         to_millimetres(filled.largest) + " wide; " +
-                         (filled.count == 1 ? "it was" : "they were") + " filled" +
+                         to_millimetres(filled.largest) + " wide; " + they_were(filled.count) + "filled" +
                          (solid ? "" : " (solid = false leaves them open)"));
   }
   const SurfaceEdges edges = count_surface_edges(mesh);
-  if (edges.non_manifold > 0) {
-    warnings.push_back(count_of(edges.non_manifold, "edge") +
-                       " of more than two triangles (non-manifold): inside and outside may be " +
-                       "wrong there");
-  }
-  if (edges.twisted > 0) {
-    warnings.push_back(
-        count_of(edges.twisted, "edge") +
-        " between triangles of opposite orientation: its surface has only one side, and no inside");
-  }
-  if (edges.border > 0) {
+  if (edges.twisted > 0)
+    warnings.push_back(count_of(edges.twisted, "edge") +
+                       " between triangles of opposite orientation: a surface with one side has no inside");
+  if (edges.border > 0)
     warnings.push_back("has a border of " + count_of(edges.border, "edge") +
-                       ": cloth collides with both sides there, and nothing is inside" +
-                       (solid ? "" : "; solid = true fills its holes"));
-  }
-  const Shells shells = turn_shells_outwards(mesh);
+                       ": cloth collides with both sides there" +
+                       (solid ? "" : "; solid = true fills holes"));
+  const TurnedShells shells = turn_shells_outwards(mesh);
   if (shells.turned == 0) return;
-  const std::string turned = std::to_string(shells.turned) + " of its " + std::to_string(shells.count);
-  warnings.push_back(
-      (shells.count == 1
-           ? "is inside out (its triangles face inwards); it was"
-           : turned + " closed shells are inside out (their triangles face inwards); they were") +
-      std::string(" flipped"));
+  warnings.push_back((shells.count == 1
+                          ? "is inside out (its triangles face inwards); "
+                          : std::to_string(shells.turned) + " of its " + std::to_string(shells.count) +
+                                " shells are inside out (their triangles face inwards); ") +
+                     they_were(shells.turned) + "flipped");
 }
 
 /// A motion of the vertices that were given, for those of the cleaned mesh.

@@ -1,5 +1,5 @@
 #pragma once
-/// Converts a ColliderDesc to the engine's Collider: cleans meshes, and flips shells that face inwards.
+/// Converts a ColliderDesc to the engine's Collider: cleans meshes, orients their triangles, and fills holes.
 
 #include <string>
 #include <vector>

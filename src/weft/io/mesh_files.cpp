@@ -36,14 +36,14 @@ std::vector<Vec3> read_vertices(const std::filesystem::path& file, const MeshFro
   if (is_other) {
     MeshFromFile mesh = read_mesh(file);
     if (mesh.faces.corners != first.faces.corners || mesh.faces.ends != first.faces.ends)
-      throw InputError(file.string() + ": its faces are not those of the first file");
+      throw InputError(file.string() + ": its faces are not those of the first file" + kSameFaces);
     positions = std::move(mesh.mesh.positions);
   } else {
     positions = read_obj_vertices(file, first.faces);
   }
   if (positions.size() != first.mesh.positions.size())
     throw InputError(file.string() + ": has " + std::to_string(positions.size()) +
-                     " vertices, the first file " + std::to_string(first.mesh.positions.size()));
+                     " vertices, the first file " + std::to_string(first.mesh.positions.size()) + kSameFaces);
   return positions;
 }
 

@@ -66,6 +66,10 @@ struct MeshFromFile {
   std::vector<std::string> warnings;  // ignored contents, one message for each kind, with counts
 };
 
+/// The end of messages about a file of a sequence.
+inline constexpr const char* kSameFaces =
+    "; all files of a sequence must have the same vertices and faces, in the same order";
+
 /// Appends a face: n vertices of `result`, n >= 3, and its n - 2 triangles, by ear clipping; it may be concave.
 /// Positions must be complete. `uv`: (n) texture coordinates of the corners, or empty to append none.
 void append_polygon(std::span<const int> polygon, std::span<const Eigen::Vector2d> uv, MeshFromFile& result);

@@ -180,12 +180,13 @@ class ObjParser {
       if (lines_.words()[0] == "v") read_vertex();
       if (lines_.words()[0] != "f") continue;
       if (num_compared == faces.size() || !has_corners(faces[num_compared]))
-        fail(lines_.line(), "face " + std::to_string(num_compared + 1) + " is not that of the first file");
+        fail(lines_.line(),
+             "face " + std::to_string(num_compared + 1) + " is not that of the first file" + kSameFaces);
       ++num_compared;
     }
     if (num_compared < faces.size())
       throw InputError(name_ + ": has " + std::to_string(num_compared) + " faces, the first file " +
-                       std::to_string(faces.size()));
+                       std::to_string(faces.size()) + kSameFaces);
     return std::move(positions());
   }
 

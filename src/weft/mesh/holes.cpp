@@ -8,78 +8,129 @@
 
 #include "weft/mesh/polygon.h"
 #include "weft/mesh/solid.h"
+#include "weft/mesh/triangle_edges.h"
 
 namespace weft::engine {
 namespace {
 
-using Loop = std::vector<int>;  // vertices of a closed border, along which its hole is to the left
+using Loop = std::vector<int>;  // vertices of a border, against the direction of its triangles
 
-/// The closed borders of a shell; nothing if some border is not closed.
-std::vector<Loop> find_loops(const TriangleMesh& mesh, const Shell& shell) {
-  std::map<std::pair<int, int>, int> balance;  // of each edge, ascending: how often more along it than back
-  for (const int t : shell.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const int from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      balance[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+/// Triangles that edges of two triangles connect, with their borders.
+struct Part {
+  std::vector<int> triangles;
+  std::map<int, std::vector<int>> next;  // vertices of the border: the following ones, against the triangles
+  bool can_close = true;
+};
+
+std::vector<Part> find_parts(const TriangleMesh& mesh) {
+  const std::vector<TriangleEdge> edges = find_triangle_edges(mesh);
+  std::vector<int> joined(mesh.triangles.size());
+  for (std::size_t t = 0; t < joined.size(); ++t) joined[t] = static_cast<int>(t);
+  const auto root = [&](int t) {
+    while (joined[t] != t) t = joined[t] = joined[joined[t]];
+    return t;
+  };
+  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+    if (same.size() == 2) joined[root(same[1].triangle)] = root(same[0].triangle);
+  });
+  std::vector<Part> parts;
+  std::vector<int> number(mesh.triangles.size(), -1);
+  const auto part_of = [&](int t) -> Part& { return parts[number[root(t)]]; };
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    if (number[root(t)] < 0) {
+      number[root(t)] = static_cast<int>(parts.size());
+      parts.emplace_back();
     }
+    part_of(t).triangles.push_back(t);
   }
-  std::map<int, std::vector<int>> next;  // against the triangles
-  for (const auto& [edge, excess] : balance) {
-    if (std::abs(excess) > 1) return {};
-    if (excess == 1) next[edge.second].push_back(edge.first);
-    if (excess == -1) next[edge.first].push_back(edge.second);
-  }
-  // Where borders touch, a walk comes back to a vertex: the part since then is a loop of its own.
+  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+    const auto& [a, b, is_ascending, triangle] = same[0];
+    if (same.size() == 1) {
+      part_of(triangle).next[is_ascending ? b : a].push_back(is_ascending ? a : b);
+    } else if (!is_balanced(same)) {
+      for (const TriangleEdge& edge : same) part_of(edge.triangle).can_close = false;
+    }
+  });
+  return parts;
+}
+
+/// Every vertex of a border has as many edges that enter as leave. Where borders touch, a walk comes back to a
+/// vertex: the way since then is a loop.
+std::vector<Loop> find_loops(Part& part) {
   std::vector<Loop> loops;
-  for (auto& [first, ways] : next) {
+  for (auto& [first, ways] : part.next) {
     while (!ways.empty()) {
       std::vector<int> walk = {first};
-      while (!walk.empty()) {
-        std::vector<int>& onwards = next[walk.back()];
-        if (onwards.empty() && walk.size() == 1) break;
-        if (onwards.empty()) return {};
+      std::map<int, std::size_t> place = {{first, 0}};  // of each vertex in the walk
+      while (!part.next[walk.back()].empty()) {
+        std::vector<int>& onwards = part.next[walk.back()];
         const int to = onwards.back();
         onwards.pop_back();
-        const auto since = std::find(walk.begin(), walk.end(), to);
-        if (since == walk.end()) {
+        const auto [since, is_new] = place.try_emplace(to, walk.size());
+        if (is_new) {
           walk.push_back(to);
           continue;
         }
-        loops.emplace_back(since, walk.end());
-        walk.erase(since + 1, walk.end());
+        loops.emplace_back(walk.begin() + since->second, walk.end());
+        while (walk.back() != to) {
+          place.erase(walk.back());
+          walk.pop_back();
+        }
       }
     }
   }
   return loops;
 }
 
-double compute_area(const TriangleMesh& mesh, const Loop& loop) {
-  const Vec3& from = mesh.positions[loop[0]];
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k)
-    sum += (mesh.positions[loop[k]] - from).cross(mesh.positions[loop[k + 1]] - from);
-  return 0.5 * sum.norm();
+std::vector<Triangle> fill(const TriangleMesh& mesh, const Loop& loop) {
+  std::vector<Vec3> corners;
+  for (const int v : loop) corners.push_back(mesh.positions[v]);
+  std::vector<Triangle> triangles;
+  for (const auto& [a, b, c] : triangulate(corners)) triangles.push_back({loop[a], loop[b], loop[c]});
+  return triangles;
+}
+
+double compute_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (int t = 0; t < mesh.num_triangles(); ++t) area += triangle_area(mesh, t);
+  return area;
+}
+
+/// Whether the triangle's height is below a millionth of its longest edge.
+bool has_no_area(const TriangleMesh& mesh, int t) {
+  constexpr double kFlat = 1e-6;
+  const auto [i, j, k] = mesh.triangles[t];
+  const std::vector<Vec3>& x = mesh.positions;
+  const double longest_sq =
+      std::max({(x[i] - x[j]).squaredNorm(), (x[j] - x[k]).squaredNorm(), (x[k] - x[i]).squaredNorm()});
+  return !(2 * triangle_area(mesh, t) > kFlat * longest_sq);
 }
 
 }  // namespace
 
-FilledHoles fill_holes(TriangleMesh& mesh, double most) {
+FilledHoles fill_holes(TriangleMesh& mesh, double max_share) {
+  constexpr double kNoVolume = 1e-6;  // of the area to the power of 3/2
   FilledHoles filled;
-  for (const Shell& shell : find_shells(mesh)) {
-    if (shell.is_closed) continue;
-    const std::vector<Loop> loops = find_loops(mesh, shell);
-    double area = 0, of_holes = 0;
-    for (const int t : shell.triangles) area += triangle_area(mesh, t);
-    for (const Loop& loop : loops) of_holes += compute_area(mesh, loop);
-    if (of_holes > most * area) continue;
+  for (Part& part : find_parts(mesh)) {
+    if (part.next.empty() || !part.can_close) continue;
+    TriangleMesh surface{mesh.positions, {}}, filling{mesh.positions, {}};
+    for (const int t : part.triangles) surface.triangles.push_back(mesh.triangles[t]);
+    const std::vector<Loop> loops = find_loops(part);
+    double largest = 0;
     for (const Loop& loop : loops) {
-      std::vector<Vec3> corners;
-      for (const int v : loop) corners.push_back(mesh.positions[v]);
-      for (const auto& [a, b, c] : triangulate(corners))
-        mesh.triangles.push_back({loop[a], loop[b], loop[c]});
-      ++filled.count;
-      filled.largest = std::max(filled.largest, 2 * std::sqrt(compute_area(mesh, loop) / std::numbers::pi));
+      const TriangleMesh one{mesh.positions, fill(mesh, loop)};
+      filling.triangles.insert(filling.triangles.end(), one.triangles.begin(), one.triangles.end());
+      largest = std::max(largest, 2 * std::sqrt(compute_area(one) / std::numbers::pi));
     }
+    const double area = compute_area(surface);
+    if (compute_area(filling) > max_share * area) continue;
+    bool is_flat = false;
+    for (int t = 0; t < filling.num_triangles(); ++t) is_flat |= has_no_area(filling, t);
+    surface.triangles.insert(surface.triangles.end(), filling.triangles.begin(), filling.triangles.end());
+    if (is_flat || std::abs(compute_signed_volume(surface)) <= kNoVolume * std::pow(area, 1.5)) continue;
+    mesh.triangles.insert(mesh.triangles.end(), filling.triangles.begin(), filling.triangles.end());
+    filled.count += static_cast<int>(loops.size());
+    filled.largest = std::max(filled.largest, largest);
   }
   return filled;
 }

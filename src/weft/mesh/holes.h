@@ -1,19 +1,22 @@
 #pragma once
-/// Holes in the shells of a mesh, and their filling.
+/// Holes in the surface of a solid, and their filling.
 
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft::engine {
 
 struct FilledHoles {
-  int count = 0;       // holes that were filled
-  double largest = 0;  // diameter of the circle of the largest one's area [m]
+  int count = 0;
+  double largest = 0;  // diameter of a circle with the area of the largest one [m]
 };
 
-/// Fills the holes of shells whose holes have at most `most` times the area of the shell itself, and makes these
-/// shells closed: triangles between the vertices of each border, appended to the mesh. Triangles must face
-/// consistently (see orient_triangles()); the area of a hole is that of its border's vector area. Left open are
-/// shells with borders that end at edges of more than two triangles.
-FilledHoles fill_holes(TriangleMesh& mesh, double most);
+/// Fills holes with triangles between the vertices of their borders, appended to the mesh. Parts of the mesh, which
+/// edges of two triangles connect, are judged one by one. A part stays open
+/// - if its holes have more than `max_share` of its own area [1],
+/// - if it would enclose no volume, such as a flat sheet,
+/// - if it has an edge of more than two triangles, not as many in one direction as in the other,
+/// - or if a filling triangle would have no area.
+/// Triangles must face consistently (see orient_triangles()).
+FilledHoles fill_holes(TriangleMesh& mesh, double max_share);
 
 }  // namespace weft::engine

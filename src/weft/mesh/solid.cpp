@@ -1,9 +1,11 @@
 #include "weft/mesh/solid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
+
+#include "weft/mesh/triangle_edges.h"
 
 namespace weft::engine {
 namespace {
@@ -34,63 +36,37 @@ int cross_upwards(const std::vector<Vec3>& x, const Triangle& tri, const Vec3& p
   return 0;
 }
 
-/// An edge of a triangle: its vertices in ascending order, and whether the triangle runs along it that way.
-struct TriangleEdge {
-  int a = 0, b = 0;
-  bool is_ascending = true;
-  int triangle = 0;
-};
-
-/// The edges of all triangles, those of the same edge one after another.
-std::vector<TriangleEdge> find_triangle_edges(const TriangleMesh& mesh) {
-  std::vector<TriangleEdge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), from < to, t});
-    }
-  }
-  std::sort(edges.begin(), edges.end(), [](const TriangleEdge& e, const TriangleEdge& f) {
-    return std::tie(e.a, e.b, e.triangle) < std::tie(f.a, f.b, f.triangle);
-  });
-  return edges;
-}
-
-/// Calls visit(edges of one and the same edge) for each edge.
-template <class Visit>
-void for_each_edge(const std::vector<TriangleEdge>& edges, const Visit& visit) {
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].a == edges[begin].a && edges[end].b == edges[begin].b) ++end;
-    visit(std::span(edges).subspan(begin, end - begin));
-  }
-}
-
-bool is_balanced(std::span<const TriangleEdge> same) {
-  return 2 * std::ranges::count(same, true, &TriangleEdge::is_ascending) == std::ssize(same);
-}
-
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   TriangleMesh part{mesh.positions, {}};
   for (const int t : triangles) part.triangles.push_back(mesh.triangles[t]);
   return part;
 }
 
-/// Whether nearly all vertices of a closed shell are inside the other ones.
-bool is_hollow(const TriangleMesh& mesh, const std::vector<int>& shell) {
+/// Whether nearly all vertices of a closed shell are inside the other closed ones.
+bool is_hollow(const TriangleMesh& mesh, const std::vector<Shell>& shells, const Shell& shell) {
   constexpr double kNearlyAll = 0.99;
-  std::vector<char> is_own(mesh.triangles.size(), 0);
-  for (const int t : shell) is_own[t] = 1;
   TriangleMesh others{mesh.positions, {}};
-  for (const Shell& other : find_shells(mesh)) {
-    if (!other.is_closed || is_own[other.triangles[0]]) continue;
+  for (const Shell& other : shells) {
+    if (!other.is_closed || &other == &shell) continue;
     for (const int t : other.triangles) others.triangles.push_back(mesh.triangles[t]);
   }
   std::vector<Vec3> points;
-  for (const int t : shell) points.push_back(mesh.positions[mesh.triangles[t][0]]);
+  for (const int t : shell.triangles) points.push_back(mesh.positions[mesh.triangles[t][0]]);
   const std::vector<int> winding = compute_winding_numbers(others, points);
   const auto outside = std::count(winding.begin(), winding.end(), 0);
   return static_cast<double>(outside) < (1 - kNearlyAll) * static_cast<double>(points.size());
+}
+
+TriangleMesh find_shells_of(const TriangleMesh& mesh, bool is_closed) {
+  std::vector<char> is_wanted(mesh.triangles.size(), 0);
+  for (const Shell& shell : find_shells(mesh)) {
+    for (const int t : shell.triangles) is_wanted[t] = shell.is_closed == is_closed ? 1 : 0;
+  }
+  TriangleMesh part{mesh.positions, {}};
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    if (is_wanted[t]) part.triangles.push_back(mesh.triangles[t]);
+  }
+  return part;
 }
 
 }  // namespace
@@ -107,42 +83,34 @@ SurfaceEdges count_surface_edges(const TriangleMesh& mesh) {
 }
 
 std::vector<Shell> find_shells(const TriangleMesh& mesh) {
-  std::vector<int> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
+  const std::vector<TriangleEdge> edges = find_triangle_edges(mesh);
+  std::vector<int> joined(mesh.triangles.size());
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto root = [&](int t) {
+    while (joined[t] != t) t = joined[t] = joined[joined[t]];
+    return t;
   };
-  for (const Triangle& t : mesh.triangles) {
-    for (const int v : {t[1], t[2]}) parent[root(v)] = root(t[0]);
-  }
+  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+    for (const TriangleEdge& edge : same) joined[root(edge.triangle)] = root(same[0].triangle);
+  });
   std::vector<Shell> shells;
-  std::vector<int> number(mesh.positions.size(), -1);
+  std::vector<int> number(mesh.triangles.size(), -1);
   for (int t = 0; t < mesh.num_triangles(); ++t) {
-    int& shell = number[root(mesh.triangles[t][0])];
+    int& shell = number[root(t)];
     if (shell < 0) {
       shell = static_cast<int>(shells.size());
       shells.emplace_back();
     }
     shells[shell].triangles.push_back(t);
   }
-  for_each_edge(find_triangle_edges(mesh), [&](std::span<const TriangleEdge> same) {
-    if (!is_balanced(same)) shells[number[root(same[0].a)]].is_closed = false;
+  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+    if (!is_balanced(same)) shells[number[root(same[0].triangle)]].is_closed = false;
   });
   return shells;
 }
 
-TriangleMesh find_solid_part(const TriangleMesh& mesh) {
-  std::vector<char> is_solid(mesh.triangles.size(), 0);
-  for (const Shell& shell : find_shells(mesh)) {
-    for (const int t : shell.triangles) is_solid[t] = shell.is_closed ? 1 : 0;
-  }
-  TriangleMesh part{mesh.positions, {}};
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    if (is_solid[t]) part.triangles.push_back(mesh.triangles[t]);
-  }
-  return part;
-}
+TriangleMesh find_solid_part(const TriangleMesh& mesh) { return find_shells_of(mesh, true); }
+TriangleMesh find_open_part(const TriangleMesh& mesh) { return find_shells_of(mesh, false); }
 
 int orient_triangles(TriangleMesh& mesh) {
   // Neighbours across edges of two triangles, and whether both run along them in the same direction.
@@ -191,13 +159,12 @@ double compute_signed_volume(const TriangleMesh& mesh) {
   return compute_signed_volume(mesh.triangles, [&](int v) { return mesh.positions[v]; });
 }
 
-Shells turn_shells_outwards(TriangleMesh& mesh) {
-  Shells result;
-  for (const Shell& shell : find_shells(mesh)) {
-    if (!shell.is_closed) continue;
-    ++result.count;
-    const TriangleMesh part = part_of(mesh, shell.triangles);
-    if (compute_signed_volume(part) >= 0 || is_hollow(mesh, shell.triangles)) continue;
+TurnedShells turn_shells_outwards(TriangleMesh& mesh) {
+  const std::vector<Shell> shells = find_shells(mesh);
+  TurnedShells result{.count = static_cast<int>(shells.size())};
+  for (const Shell& shell : shells) {
+    if (!shell.is_closed || compute_signed_volume(part_of(mesh, shell.triangles)) >= 0) continue;
+    if (is_hollow(mesh, shells, shell)) continue;
     for (const int t : shell.triangles) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     ++result.turned;
   }
@@ -205,19 +172,38 @@ Shells turn_shells_outwards(TriangleMesh& mesh) {
 }
 
 std::vector<int> compute_winding_numbers(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
-  // Points sorted by x: each triangle tests only those in its range of x.
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int l, int r) {
-    return points[l].x() != points[r].x() ? points[l].x() < points[r].x() : l < r;
-  });
   std::vector<int> winding(points.size(), 0);
-  for (const Triangle& tri : mesh.triangles) {
-    const auto& x = mesh.positions;
-    const auto [low, high] = std::minmax({x[tri[0]].x(), x[tri[1]].x(), x[tri[2]].x()});
-    auto p = std::lower_bound(order.begin(), order.end(), low,
-                              [&](int i, double limit) { return points[i].x() < limit; });
-    for (; p != order.end() && points[*p].x() <= high; ++p) winding[*p] += cross_upwards(x, tri, points[*p]);
+  const std::vector<Vec3>& x = mesh.positions;
+  if (mesh.triangles.empty() || points.empty()) return winding;
+  Vec3 low = x[mesh.triangles[0][0]], high = low;
+  for (const Triangle& t : mesh.triangles) {
+    for (const int v : t) {
+      low = low.cwiseMin(x[v]);
+      high = high.cwiseMax(x[v]);
+    }
+  }
+  // Points in the cells of a grid seen from above: each triangle tests those in the cells it may cover.
+  constexpr int kMaxCells = 1024;  // along an axis
+  const int n = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(points.size()))), 1, kMaxCells);
+  const auto cell_along = [&](int axis, double coordinate) {
+    const double share = (coordinate - low[axis]) / (high[axis] - low[axis]);
+    return share > 0 ? static_cast<int>(std::min(n - 1.0, share * n)) : 0;
+  };
+  std::vector<std::vector<int>> cells(static_cast<std::size_t>(n) * n);
+  for (int p = 0; p < static_cast<int>(points.size()); ++p) {
+    const Vec3& at = points[p];
+    if ((at.array() < low.array()).any() || (at.array() > high.array()).any()) continue;
+    cells[cell_along(0, at.x()) * n + cell_along(2, at.z())].push_back(p);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 least = x[t[0]].cwiseMin(x[t[1]]).cwiseMin(x[t[2]]),
+               most = x[t[0]].cwiseMax(x[t[1]]).cwiseMax(x[t[2]]);
+    const int last_i = cell_along(0, most.x()), last_k = cell_along(2, most.z());
+    for (int i = cell_along(0, least.x()); i <= last_i; ++i) {
+      for (int k = cell_along(2, least.z()); k <= last_k; ++k) {
+        for (const int p : cells[i * n + k]) winding[p] += cross_upwards(x, t, points[p]);
+      }
+    }
   }
   return winding;
 }

@@ -40,7 +40,7 @@ double compute_signed_volume(std::span<const Triangle> triangles, const At& at) 
 }
 double compute_signed_volume(const TriangleMesh& mesh);
 
-/// A part of a mesh that vertices connect.
+/// A part of a mesh that edges connect.
 struct Shell {
   std::vector<int> triangles;  // ascending
   bool is_closed = true;       // every edge is balanced
@@ -49,20 +49,21 @@ struct Shell {
 /// In the order of their first triangles.
 std::vector<Shell> find_shells(const TriangleMesh& mesh);
 
-/// The same vertices with the triangles of closed shells only: what has an inside.
+/// The same vertices with the triangles of closed shells only, which have an inside; and with all others.
 TriangleMesh find_solid_part(const TriangleMesh& mesh);
+TriangleMesh find_open_part(const TriangleMesh& mesh);
 
 /// Flips triangles that face another way than most in their part, where edges of two triangles connect parts.
 /// Returns their number. A part with one side only, such as a Möbius strip, stays.
 int orient_triangles(TriangleMesh& mesh);
 
-struct Shells {
-  int count = 0;   // closed ones
-  int turned = 0;  // those that faced inwards
+struct TurnedShells {
+  int count = 0;   // of all shells
+  int turned = 0;  // closed ones that faced inwards
 };
 
-/// Flips closed shells that face inwards, except hollows: those completely inside other ones.
-Shells turn_shells_outwards(TriangleMesh& mesh);
+/// Flips closed shells that face inwards, except hollows, which are inside other ones.
+TurnedShells turn_shells_outwards(TriangleMesh& mesh);
 
 /// Winding number of a closed mesh around each point (num_points): 1 inside where it faces outwards, -1 where
 /// it faces inwards, 0 outside and in hollows, 2 where two parts overlap. Found from the triangles above the

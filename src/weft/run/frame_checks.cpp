@@ -120,13 +120,16 @@ void add_passages(const std::vector<verify::FeaturePair>& passages, const verify
 class AnimationFrames {
  public:
   explicit AnimationFrames(const Animation& meshes) : meshes_(meshes) {
+    std::vector<std::vector<Triangle>> solid;
     for (const AnimatedBody& body : meshes.bodies)
-      solid_.push_back(body.shape ? std::vector<Triangle>()
-                                  : verify::find_solid_triangles(body.mesh.triangles));
+      solid.push_back(body.shape ? std::vector<Triangle>()
+                                 : verify::find_solid_triangles(body.mesh.triangles));
+    solid_ = std::make_shared<const std::vector<std::vector<Triangle>>>(std::move(solid));
   }
 
   FrameToCheck at(const AnimationFrame& frame) const {
     FrameToCheck result;
+    result.solid = solid_;
     for (std::size_t c = 0; c < meshes_.cloths.size(); ++c) {
       const AnimatedCloth& cloth = meshes_.cloths[c];
       add_cloth(cloth.name, cloth.triangles, to_positions(frame.cloths[c]), result);
@@ -138,7 +141,7 @@ class AnimationFrames {
       const Solid shape = body.shape
                               ? std::visit(placement, *body.shape)
                               : Solid(place_mesh(moved.empty() ? body.mesh.positions : to_positions(moved),
-                                                 body.mesh.triangles, solid_[b], placement, result));
+                                                 body.mesh.triangles, (*solid_)[b], placement, result));
       result.frame.colliders.push_back({body.name, shape, placement.rotation});
     }
     result.frame.non_colliding = meshes_.passing;
@@ -147,27 +150,30 @@ class AnimationFrames {
 
  private:
   const Animation& meshes_;
-  std::vector<std::vector<Triangle>> solid_;  // (bodies) triangles of meshes with an inside
+  std::shared_ptr<const std::vector<std::vector<Triangle>>> solid_;  // see FrameToCheck
 };
 
 }  // namespace
 
 WorldFrames::WorldFrames(const World& world) : world_(world) {
+  std::vector<std::vector<Triangle>> solid;
   for (const Collider& collider : world.colliders()) {
     const auto* mesh = std::get_if<MeshShape>(&collider.shape);
-    solid_.push_back(mesh ? verify::find_solid_triangles(mesh->mesh->triangles) : std::vector<Triangle>());
+    solid.push_back(mesh ? verify::find_solid_triangles(mesh->mesh->triangles) : std::vector<Triangle>());
   }
+  solid_ = std::make_shared<const std::vector<std::vector<Triangle>>>(std::move(solid));
 }
 
 FrameToCheck WorldFrames::at(double time) const {
   FrameToCheck result;
+  result.solid = solid_;
   for (int c = 0; c < world_.num_cloths(); ++c) {
     add_cloth(world_.name(world_.cloth(c)), world_.model(world_.cloth(c)).topology->mesh.triangles,
               positions_of(world_.state(world_.cloth(c))), result);
   }
   for (std::size_t k = 0; k < world_.colliders().size(); ++k) {
     const Collider& collider = world_.colliders()[k];
-    const Solid shape = place(shape_at(collider, time), solid_[k], result);
+    const Solid shape = place(shape_at(collider, time), (*solid_)[k], result);
     result.frame.colliders.push_back({collider.name, shape, collider.motion.at(time).rotation});
   }
   result.frame.non_colliding = world_.non_colliding_pairs();

@@ -1,6 +1,7 @@
 #pragma once
 /// Frames of worlds and of animation files as input for the independent checker.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace weft::engine {
 
-/// A frame for the checker, with the positions that it refers to. Movable, not copyable.
+/// A frame for the checker, with the positions and triangles that it refers to. Movable, not copyable.
 struct FrameToCheck {
   FrameToCheck() = default;
   FrameToCheck(FrameToCheck&&) = default;
@@ -19,6 +20,7 @@ struct FrameToCheck {
 
   verify::Frame frame;
   std::vector<std::vector<Vec3>> positions;  // of cloths, then of meshes among the colliders
+  std::shared_ptr<const std::vector<std::vector<Triangle>>> solid;  // of colliders: triangles with an inside
 };
 
 /// Frames of a world.
@@ -34,7 +36,7 @@ class WorldFrames {
 
  private:
   const World& world_;
-  std::vector<std::vector<Triangle>> solid_;  // (colliders) triangles of meshes with an inside
+  std::shared_ptr<const std::vector<std::vector<Triangle>>> solid_;  // see FrameToCheck
 };
 
 /// Results of the checker for one frame.

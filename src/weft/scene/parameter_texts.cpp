@@ -54,8 +54,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
     {"cloth.layer", "",
-     "Order of garments over each other at the start. A higher one is moved outside of lower ones, away from "
-     "the body. Equal: no order."},
+     "Order of garments over each other at the start. Where solver.untangle is on, a higher one is moved outside "
+     "of lower ones, away from the body. Equal: no order."},
     {"cloth.seam", "",
      "Seams of panels: stretches of border that draw together, and hold. Not on grids of springs."},
     {"cloth.seam_time", "", "Time in which the seams close. Longer: gentler."},
@@ -234,7 +234,7 @@ constexpr ParameterText kTexts[] = {
     {"collider.frame_rate", "mesh", "Frames per second of a deforming body. Higher: it moves faster."},
     {"collider.frames", "mesh",
      "OBJ, PLY or STL files of a deforming body, named with one star, in the order of their names. All have "
-     "the same triangles."},
+     "the same faces."},
     {"collider.rest", "mesh",
      "OBJ, PLY or STL file of the pose from which the body moves to its first one during `settle`."},
     {"collider.solid", "mesh",

@@ -279,6 +279,9 @@ std::vector<std::string> find_keys_for_restart(const SceneDesc& now, const Scene
     compare(a.color == b.color, cloth + "color");
     compare(a.pins == b.pins, cloth + "pin");
     compare(a.stiffened == b.stiffened, cloth + "stiffen");
+    compare(a.layer == b.layer, cloth + "layer");
+    compare(a.seams == b.seams && a.seam_time == b.seam_time && a.seam_stiffness == b.seam_stiffness,
+            cloth + "seam");
   }
   compare(next.colliders == wanted.colliders, "collider");
   compare(next.contacts == wanted.contacts, "contact");

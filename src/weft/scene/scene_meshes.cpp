@@ -68,8 +68,6 @@ Springs make_springs(const ClothMaterial& m) {
           .friction = m.friction};
 }
 
-constexpr const char* kSameFaces = "; all frames must have the same vertices and faces, in the same order";
-
 std::vector<MeshFrame> copy_frames(const PlacedMesh& placed, std::size_t num_vertices,
                                    const std::string& owner) {
   std::vector<MeshFrame> frames;
@@ -98,7 +96,7 @@ std::vector<MeshFrame> read_frames(const PlacedMesh& placed, const MeshFromFile&
                         k == 0 ? from_engine(first.mesh.positions)
                                : read_vertices_in_metres(placed.frames[k], placed.source, first)});
     } catch (const InputError& error) {
-      throw InputError(owner + ": frame " + std::to_string(k) + ": " + error.what() + kSameFaces);
+      throw InputError(owner + ": frame " + std::to_string(k) + ": " + error.what());
     }
   }
   return frames;
@@ -112,7 +110,7 @@ void prepend_rest(const PlacedMesh& placed, double settle, const MeshFromFile& f
     frames.insert(frames.begin(), {{-settle, read_vertices_in_metres(placed.rest, placed.source, first)},
                                    {-kStill * settle, from_engine(first.mesh.positions)}});
   } catch (const InputError& error) {
-    throw InputError(owner + ": its rest pose: " + error.what() + kSameFaces);
+    throw InputError(owner + ": its rest pose: " + error.what());
   }
 }
 
@@ -186,11 +184,6 @@ TriangleMesh at_pose(const MeshShape& shape) {
   return mesh;
 }
 
-int count_inside(const TriangleMesh& closed, const std::vector<Vec3>& points) {
-  const std::vector<int> winding = compute_winding_numbers(closed, points);
-  return static_cast<int>(winding.size() - std::count(winding.begin(), winding.end(), 0));
-}
-
 }  // namespace
 
 std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc) {
@@ -243,15 +236,15 @@ int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points) {
       points.begin(), points.end(), [&](const Vec3& p) { return signed_distance(shape, p).distance < 0; }));
 }
 
-int count_inside_holes(const MeshShape& shape, const std::vector<Vec3>& points) {
-  const TriangleMesh mesh = at_pose(shape);
-  TriangleMesh open{mesh.positions, {}};
-  for (const Shell& shell : find_shells(mesh)) {
-    if (shell.is_closed) continue;
-    for (const int t : shell.triangles) open.triangles.push_back(mesh.triangles[t]);
-  }
+TriangleMesh fill_open_shells(const MeshShape& shape) {
+  TriangleMesh open = find_open_part(at_pose(shape));
   fill_holes(open, std::numeric_limits<double>::infinity());
-  return count_inside(find_solid_part(open), points);
+  return find_solid_part(open);
+}
+
+int count_inside(const TriangleMesh& closed, const std::vector<Vec3>& points) {
+  const std::vector<int> winding = compute_winding_numbers(closed, points);
+  return static_cast<int>(winding.size() - std::count(winding.begin(), winding.end(), 0));
 }
 
 }  // namespace weft::engine

@@ -26,7 +26,10 @@ ColliderDesc describe_collider(const ColliderSceneDesc& desc, double settle,
 /// Number of points inside the shape, of a mesh inside its closed shells.
 int count_inside(const ColliderShape& shape, const std::vector<Vec3>& points);
 
-/// Number of points that would be inside a mesh if the holes of its open shells were filled; 0 without such shells.
-int count_inside_holes(const MeshShape& shape, const std::vector<Vec3>& points);
+/// The open shells of a mesh, with their holes filled; no triangles without such shells.
+TriangleMesh fill_open_shells(const MeshShape& shape);
+
+/// Number of points inside a closed mesh.
+int count_inside(const TriangleMesh& closed, const std::vector<Vec3>& points);
 
 }  // namespace weft::engine

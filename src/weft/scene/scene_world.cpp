@@ -142,23 +142,24 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
   }
 }
 
-/// Cloth that an open body would have inside it: contact holds it there.
-void warn_about_open_bodies(const World& world, std::vector<std::string>& warnings) {
+/// Cloth inside an open body, where contact keeps it.
+void warn_about_open_bodies(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
   const auto non_colliding = world.non_colliding_pairs();
-  for (const Collider& collider : world.colliders()) {
-    const ColliderShape shape = shape_at(collider, world.time());
-    const MeshShape* mesh = std::get_if<MeshShape>(&shape);
-    if (!mesh) continue;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const PlacedMesh* placed = std::get_if<PlacedMesh>(&scene.colliders[k].shape);
+    if (!placed || placed->solid) continue;
+    const std::string& body = world.colliders()[k].name;
+    const TriangleMesh filled =
+        fill_open_shells(std::get<MeshShape>(shape_at(world.colliders()[k], world.time())));
     for (int c = 0; c < world.num_cloths(); ++c) {
       const std::string& cloth = world.name(world.cloth(c));
-      const std::array<std::string, 2> pair{cloth, collider.name};
-      if (std::ranges::find(non_colliding, pair) != non_colliding.end()) continue;
-      const int inside = count_inside_holes(*mesh, positions_of(world.state(world.cloth(c))));
+      if (std::ranges::find(non_colliding, std::array{cloth, body}) != non_colliding.end()) continue;
+      const int inside = count_inside(filled, positions_of(world.state(world.cloth(c))));
       if (inside == 0) continue;
-      warnings.push_back(
-          std::to_string(inside) + (inside == 1 ? " particle" : " particles") + " of cloth \"" + cloth +
-          "\" start within collider \"" + collider.name +
-          "\", which is open, and stay there; solid = true fills its holes, and cloth is moved out");
+      warnings.push_back(std::to_string(inside) + (inside == 1 ? " particle" : " particles") +
+                         " of cloth \"" + cloth + "\" start within collider \"" + body +
+                         "\", which is open: contact keeps them there; solid = true fills its holes, solid = "
+                         "false accepts this");
     }
   }
 }
@@ -255,7 +256,7 @@ PublicScene build_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
   const OnPreparation now_and_then = at_intervals(on_preparation);
   PublicScene result = place_scene(scene, std::move(jobs), now_and_then);
   if (start) set_start(*start, result);
-  if (scene.contact) warn_about_open_bodies(WorldAccess::engine(result.world), result.warnings);
+  if (scene.contact) warn_about_open_bodies(scene, WorldAccess::engine(result.world), result.warnings);
   const bool is_repaired = scene.untangle && scene.contact;
   World& world = WorldAccess::engine(result.world);
   is_repaired ? untangle(world, now_and_then, result) : warn_about_start(world, result.warnings);

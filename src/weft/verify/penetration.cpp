@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -215,27 +213,39 @@ double depth_in(const OrientedBox& box, const Corners& triangle) {
 }
 
 std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles) {
-  std::map<int, int> joined;  // each vertex to another one of its part, or to itself
-  const auto part_of = [&](int v) {
-    while (joined.at(v) != v) v = joined.at(v) = joined.at(joined.at(v));
-    return v;
-  };
-  std::map<std::pair<int, int>, int> balance;  // of edges: how often more in one direction than in the other
-  for (const Triangle& t : triangles) {
+  std::vector<std::tuple<int, int, int, int>> edges;  // low, high, triangle, ±1 for the direction
+  std::vector<int> joined;  // each triangle to another one of its part, or to itself
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    joined.push_back(t);
     for (int k = 0; k < 3; ++k) {
-      joined.try_emplace(t[k], t[k]);
-      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      balance[{low, high}] += t[k] == low ? 1 : -1;
+      const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      edges.emplace_back(std::min(from, to), std::max(from, to), t, from < to ? 1 : -1);
     }
-    for (const int v : {t[1], t[2]}) joined[part_of(v)] = part_of(t[0]);
   }
-  std::set<int> open;
-  for (const auto& [edge, excess] : balance) {
-    if (excess != 0) open.insert(part_of(edge.first));
+  const auto part_of = [&](int t) {
+    while (joined[t] != t) t = joined[t] = joined[joined[t]];
+    return t;
+  };
+  std::sort(edges.begin(), edges.end());
+  std::vector<int> unbalanced;  // a triangle of each such edge
+  int balance = 0;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto& [low, high, triangle, direction] = edges[e];
+    balance += direction;
+    const bool goes_on =
+        e + 1 < edges.size() && std::get<0>(edges[e + 1]) == low && std::get<1>(edges[e + 1]) == high;
+    if (goes_on) {
+      joined[part_of(std::get<2>(edges[e + 1]))] = part_of(triangle);
+      continue;
+    }
+    if (balance != 0) unbalanced.push_back(triangle);
+    balance = 0;
   }
+  std::vector<char> is_open(triangles.size(), 0);
+  for (const int t : unbalanced) is_open[part_of(t)] = 1;
   std::vector<Triangle> solid;
-  for (const Triangle& t : triangles) {
-    if (!open.contains(part_of(t[0]))) solid.push_back(t);
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    if (!is_open[part_of(t)]) solid.push_back(triangles[t]);
   }
   return solid;
 }

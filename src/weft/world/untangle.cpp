@@ -162,7 +162,7 @@ UntangleReport World::untangle(const std::function<void(int round)>& on_round) {
     state.history.step = 0;
   }
   const Intersections left = find_intersections();
-  if (left.size() < crossed.size()) {
+  if (left.is_better_than(crossed)) {
     report.left = describe(left);
   } else {
     restore(before);

@@ -148,10 +148,10 @@ class World {
   void set_division(const StepDivision& division);
   void set_jobs(std::shared_ptr<JobSystem> jobs);  // throws InputError for null
 
-  /// Repairs intersections of cloth with itself, other cloth or colliders, so that none is left from the next
-  /// step on: solids that cloth is in become thinner and grow back (untangle.cpp). Pinned particles stay.
-  /// Velocities are kept, and all positions are unchanged if the repair does not help. Takes seconds for
-  /// thousands of particles; a no-op without intersections. Calls on_round with the number of each round.
+  /// Repairs intersections of cloth with itself, other cloth or colliders, and the order of layers: solids
+  /// that cloth is in become thinner and grow back (untangle.cpp). Pinned particles stay. Velocities are kept,
+  /// and all positions are unchanged if the repair does not help. Takes seconds for thousands of particles,
+  /// otherwise it is a no-op. Calls on_round with the number of each round.
   UntangleReport untangle(const std::function<void(int round)>& on_round = {});
 
   /// Advances the world by dt > 0 [s].
