@@ -274,22 +274,6 @@ TEST(Untangle, HasNoOrderOfLayersWithoutABody) {
   EXPECT_EQ(world.untangle().rounds, 0);
 }
 
-/// As trousers on a waist that is pinned inside the skin.
-TEST(Untangle, PutsLayersInOrderBesidePinsInsideABody) {
-  World world;
-  const std::vector<ClothId> ids = add_sleeves(world, std::array{Sleeve{0.050, 0, 0}, Sleeve{0.0485, 0, 1}});
-  std::vector<Vec3> positions = positions_of(world.state(ids[0]));
-  Pin held;
-  for (int k = 0; k < kAround; ++k) {
-    positions[k] = Vec3(positions[k].x(), 0.7 * positions[k].y(), 0.7 * positions[k].z());
-    held.particles.push_back(k);
-  }
-  world.set_positions(ids[0], positions);
-  world.set_pins(ids[0], {held});
-  world.untangle();
-  expect_order(world, ids[0], ids[1]);
-}
-
 TEST(Untangle, LeavesLayersInOrderAlone) {
   World world;
   add_sleeves(world, std::array{Sleeve{0.045, 0, 0}, Sleeve{0.0485, 0, 1}});

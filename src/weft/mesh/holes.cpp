@@ -15,55 +15,40 @@ namespace {
 
 using Loop = std::vector<int>;  // vertices of a border, against the direction of its triangles
 
-/// Triangles that edges of two triangles connect, with their borders.
-struct Part {
-  std::vector<int> triangles;
-  std::map<int, std::vector<int>> next;  // vertices of the border: the following ones, against the triangles
+/// The border of an open shell.
+struct Border {
+  std::map<int, std::vector<int>> next;  // vertices to the following ones, against the triangles
   bool can_close = true;
 };
 
-std::vector<Part> find_parts(const TriangleMesh& mesh) {
-  const std::vector<TriangleEdge> edges = find_triangle_edges(mesh);
-  std::vector<int> joined(mesh.triangles.size());
-  for (std::size_t t = 0; t < joined.size(); ++t) joined[t] = static_cast<int>(t);
-  const auto root = [&](int t) {
-    while (joined[t] != t) t = joined[t] = joined[joined[t]];
-    return t;
-  };
-  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
-    if (same.size() == 2) joined[root(same[1].triangle)] = root(same[0].triangle);
-  });
-  std::vector<Part> parts;
-  std::vector<int> number(mesh.triangles.size(), -1);
-  const auto part_of = [&](int t) -> Part& { return parts[number[root(t)]]; };
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    if (number[root(t)] < 0) {
-      number[root(t)] = static_cast<int>(parts.size());
-      parts.emplace_back();
-    }
-    part_of(t).triangles.push_back(t);
+/// (shells)
+std::vector<Border> find_borders(const TriangleMesh& mesh, const std::vector<Shell>& shells) {
+  std::vector<int> shell_of(mesh.triangles.size());
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    for (const int t : shells[s].triangles) shell_of[t] = static_cast<int>(s);
   }
-  for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+  std::vector<Border> borders(shells.size());
+  for_each_edge(find_triangle_edges(mesh), [&](std::span<const TriangleEdge> same) {
     const auto& [a, b, is_ascending, triangle] = same[0];
     if (same.size() == 1) {
-      part_of(triangle).next[is_ascending ? b : a].push_back(is_ascending ? a : b);
+      borders[shell_of[triangle]].next[is_ascending ? b : a].push_back(is_ascending ? a : b);
     } else if (!is_balanced(same)) {
-      for (const TriangleEdge& edge : same) part_of(edge.triangle).can_close = false;
+      for (const TriangleEdge& edge : same) borders[shell_of[edge.triangle]].can_close = false;
     }
   });
-  return parts;
+  return borders;
 }
 
 /// Every vertex of a border has as many edges that enter as leave. Where borders touch, a walk comes back to a
 /// vertex: the way since then is a loop.
-std::vector<Loop> find_loops(Part& part) {
+std::vector<Loop> find_loops(Border border) {
   std::vector<Loop> loops;
-  for (auto& [first, ways] : part.next) {
+  for (auto& [first, ways] : border.next) {
     while (!ways.empty()) {
       std::vector<int> walk = {first};
       std::map<int, std::size_t> place = {{first, 0}};  // of each vertex in the walk
-      while (!part.next[walk.back()].empty()) {
-        std::vector<int>& onwards = part.next[walk.back()];
+      while (!border.next[walk.back()].empty()) {
+        std::vector<int>& onwards = border.next[walk.back()];
         const int to = onwards.back();
         onwards.pop_back();
         const auto [since, is_new] = place.try_emplace(to, walk.size());
@@ -111,11 +96,13 @@ bool has_no_area(const TriangleMesh& mesh, int t) {
 FilledHoles fill_holes(TriangleMesh& mesh, double max_share) {
   constexpr double kNoVolume = 1e-6;  // of the area to the power of 3/2
   FilledHoles filled;
-  for (Part& part : find_parts(mesh)) {
-    if (part.next.empty() || !part.can_close) continue;
+  const std::vector<Shell> shells = find_shells(mesh);
+  const std::vector<Border> borders = find_borders(mesh, shells);
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (borders[s].next.empty() || !borders[s].can_close) continue;
     TriangleMesh surface{mesh.positions, {}}, filling{mesh.positions, {}};
-    for (const int t : part.triangles) surface.triangles.push_back(mesh.triangles[t]);
-    const std::vector<Loop> loops = find_loops(part);
+    for (const int t : shells[s].triangles) surface.triangles.push_back(mesh.triangles[t]);
+    const std::vector<Loop> loops = find_loops(borders[s]);
     double largest = 0;
     for (const Loop& loop : loops) {
       const TriangleMesh one{mesh.positions, fill(mesh, loop)};

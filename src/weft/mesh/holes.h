@@ -10,9 +10,8 @@ struct FilledHoles {
   double largest = 0;  // diameter of a circle with the area of the largest one [m]
 };
 
-/// Fills holes with triangles between the vertices of their borders, appended to the mesh. Parts of the mesh, which
-/// edges of two triangles connect, are judged one by one. A part stays open
-/// - if its holes have more than `max_share` of its own area [1],
+/// Fills holes with triangles between the vertices of their borders, appended to the mesh. A shell stays open
+/// - if its holes have more than `max_share` of its area [1],
 /// - if it would enclose no volume, such as a flat sheet,
 /// - if it has an edge of more than two triangles, not as many in one direction as in the other,
 /// - or if a filling triangle would have no area.

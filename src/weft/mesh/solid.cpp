@@ -91,6 +91,7 @@ std::vector<Shell> find_shells(const TriangleMesh& mesh) {
     return t;
   };
   for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
+    if (same.size() > 2 && !is_balanced(same)) return;
     for (const TriangleEdge& edge : same) joined[root(edge.triangle)] = root(same[0].triangle);
   });
   std::vector<Shell> shells;
@@ -104,7 +105,12 @@ std::vector<Shell> find_shells(const TriangleMesh& mesh) {
     shells[shell].triangles.push_back(t);
   }
   for_each_edge(edges, [&](std::span<const TriangleEdge> same) {
-    if (!is_balanced(same)) shells[number[root(same[0].triangle)]].is_closed = false;
+    for (const TriangleEdge& edge : same) {
+      int balance = 0;
+      for (const TriangleEdge& other : same)
+        balance += root(other.triangle) != root(edge.triangle) ? 0 : other.is_ascending ? 1 : -1;
+      if (balance != 0) shells[number[root(edge.triangle)]].is_closed = false;
+    }
   });
   return shells;
 }

@@ -40,10 +40,10 @@ double compute_signed_volume(std::span<const Triangle> triangles, const At& at) 
 }
 double compute_signed_volume(const TriangleMesh& mesh);
 
-/// A part of a mesh that edges connect.
+/// A part of a mesh that edges connect: those of two triangles, and balanced ones of more.
 struct Shell {
   std::vector<int> triangles;  // ascending
-  bool is_closed = true;       // every edge is balanced
+  bool is_closed = true;       // every edge is balanced, by its triangles alone
 };
 
 /// In the order of their first triangles.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -213,36 +214,32 @@ double depth_in(const OrientedBox& box, const Corners& triangle) {
 }
 
 std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles) {
-  std::vector<std::tuple<int, int, int, int>> edges;  // low, high, triangle, ±1 for the direction
+  std::map<std::pair<int, int>, std::vector<std::pair<int, int>>>
+      edges;                // by ascending vertices: triangles, ±1
   std::vector<int> joined;  // each triangle to another one of its part, or to itself
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     joined.push_back(t);
     for (int k = 0; k < 3; ++k) {
       const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
-      edges.emplace_back(std::min(from, to), std::max(from, to), t, from < to ? 1 : -1);
+      edges[std::minmax(from, to)].emplace_back(t, from < to ? 1 : -1);
     }
   }
   const auto part_of = [&](int t) {
     while (joined[t] != t) t = joined[t] = joined[joined[t]];
     return t;
   };
-  std::sort(edges.begin(), edges.end());
-  std::vector<int> unbalanced;  // a triangle of each such edge
-  int balance = 0;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto& [low, high, triangle, direction] = edges[e];
-    balance += direction;
-    const bool goes_on =
-        e + 1 < edges.size() && std::get<0>(edges[e + 1]) == low && std::get<1>(edges[e + 1]) == high;
-    if (goes_on) {
-      joined[part_of(std::get<2>(edges[e + 1]))] = part_of(triangle);
-      continue;
-    }
-    if (balance != 0) unbalanced.push_back(triangle);
-    balance = 0;
+  for (const auto& [edge, sides] : edges) {
+    int excess = 0;
+    for (const auto& [t, direction] : sides) excess += direction;
+    if (sides.size() > 2 && excess != 0) continue;
+    for (const auto& [t, direction] : sides) joined[part_of(t)] = part_of(sides[0].first);
   }
   std::vector<char> is_open(triangles.size(), 0);
-  for (const int t : unbalanced) is_open[part_of(t)] = 1;
+  for (const auto& [edge, sides] : edges) {
+    std::map<int, int> balance;  // of the edge in each part
+    for (const auto& [t, direction] : sides) balance[part_of(t)] += direction;
+    for (const auto& [part, excess] : balance) is_open[part] |= excess != 0 ? 1 : 0;
+  }
   std::vector<Triangle> solid;
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     if (!is_open[part_of(t)]) solid.push_back(triangles[t]);

@@ -39,8 +39,8 @@ struct MeshView {
   std::span<const Triangle> solid = {};  // those with an inside: see find_solid_triangles()
 };
 
-/// The triangles of closed parts, which have an inside: of those that edges connect, with every edge equally often
-/// in both directions.
+/// The triangles of closed parts, which have an inside: of those that edges connect (of two
+/// triangles, or of as many in both directions), with every edge equally often in both directions.
 std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles);
 
 using Solid = std::variant<Sphere, Plane, Capsule, OrientedBox, MeshView>;
