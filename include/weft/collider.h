@@ -2,6 +2,7 @@
 /// Colliders: solid bodies that are fixed, move along key frames, or are moved by the program.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>

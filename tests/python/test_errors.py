@@ -343,7 +343,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: weft.World.load(hanging(2).save()[:-1]), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(damaged()), "not a saved world, or a damaged one"),
     (lambda: weft.World.load(of_version(99)),
-     "the saved world has format version 99; this library reads version 8"),
+     "the saved world has format version 99; this library reads version 9"),
     # Pictures.
     (lambda: weft.Camera(position=(0, 0, 0)).render(empty(), color=False),
      "a camera's position and target: expected two different points"),
@@ -475,8 +475,8 @@ FILES: list[tuple[Callable[[Path], object], str]] = [
      'cloth "cloth": a pin\'s region contains no particle; regions are in world coordinates [m], after position and '
      "rotation"),
     (lambda t: world_of(two_meshes(t), t),
-     'collider "body": frame 1: {}/m_1.obj:10: face 1 is not that of the first file; all frames must have the same '
-     "vertices and faces, in the same order"),
+     'collider "body": frame 1: {}/m_1.obj:19: face 1 is not that of the first file; all files of a sequence must '
+     "have the same vertices and faces, in the same order"),
     (lambda t: run_of(GRID_OF_FOUR, out="/dev/null/x"),
      "cannot create folder /dev/null/x: Not a directory"),
     (lambda t: run_of(GRID_OF_FOUR, glb=False).picture(), "the run has no animation.glb; run it with glb=True"),

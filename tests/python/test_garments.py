@@ -41,7 +41,7 @@ def radii(cloth: weft.Cloth) -> np.ndarray:
 
 def test_cloth_leaves_a_body_whose_ends_are_filled() -> None:
     world = dressed((0.035, 0), solid=True)
-    assert world["arm"].notes[0].startswith("has 2 holes, up to 79.")
+    assert world["arm"].notes[0].startswith('collider "arm": has 2 holes, up to 79.')
     assert world.untangle() == []
     assert radii(world.cloths[0]).min() > 0.0399
 

@@ -141,11 +141,10 @@ TEST_F(DeformingMesh, OfAnotherTopologyIsRefusedWithFileFrameAndCounts) {
     build();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "collider \"body\": frame 1: " + (folder_ / "body_01.obj").string() +
-            ": has 11 faces, the first file 12; all frames must have the same vertices and faces, in the "
-            "same order");
+    EXPECT_EQ(std::string(error.what()), "collider \"body\": frame 1: " + (folder_ / "body_01.obj").string() +
+                                             ": has 11 faces, the first file 12; all files of a sequence "
+                                             "must have the same vertices and faces, "
+                                             "in the same order");
   }
 }
 
