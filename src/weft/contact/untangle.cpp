@@ -315,8 +315,8 @@ class Untangler {
            !std::ranges::all_of(input_.solids, is_ground);
   }
 
-  /// Away from the nearest solid that a vertex outside of all solids collides with. Planes do not count: they are
-  /// ground, and wear no cloth.
+  /// Away from the nearest solid that a vertex outside of all solids collides with. Planes do not count: they
+  /// are ground, and wear no cloth.
   const Vec3& outward(int v) {
     Outward& known = outwards_[v];
     if (known.holds_at(x_[v])) return known.way;
@@ -388,8 +388,8 @@ class Untangler {
     return d.s * kLayerReach;
   }
 
-  /// The end of an edge that is on the wrong side of another layer. Empty if the layers have no order, lie across
-  /// the way out, or have been inside a solid.
+  /// The end of an edge that is on the wrong side of another layer. Empty if the layers have no order, lie
+  /// across the way out, or have been inside a solid.
   std::optional<int> find_wrong_by_layer(const EdgeFaceIntersection& p) {
     const Triangle& t = surface_.triangles[p.triangle];
     const auto& [i, j] = surface_.edges[p.edge];

@@ -29,8 +29,8 @@ std::string to_millimetres(double length) {
   return text;
 }
 
-/// Makes shells solid where possible: orients triangles, fills holes, flips inside-out shells. Warns of the changes,
-/// and of what remains open. `solid` as in ColliderDesc.
+/// Makes shells solid where possible: orients triangles, fills holes, flips inside-out shells. Warns of the
+/// changes, and of shells that remain open. `solid` as in ColliderDesc.
 void make_solid(TriangleMesh& mesh, std::optional<bool> solid, std::vector<std::string>& warnings) {
   constexpr double kMaxShare = 0.05;  // of a shell's area in holes, by default
   const auto they_were = [](int count) { return std::string(count == 1 ? "it was " : "they were "); };

@@ -15,8 +15,8 @@ namespace weft::engine {
 /// case.
 MeshFromFile read_mesh(const std::filesystem::path& file);
 
-/// The vertices of a file that has the same number of vertices and the same faces as `first`. Throws InputError for
-/// others.
+/// The vertices of a file that has the same number of vertices and the same faces as `first`. Throws
+/// InputError for others.
 std::vector<Vec3> read_vertices(const std::filesystem::path& file, const MeshFromFile& first);
 
 /// A point of a file with this unit, in metres and with y up: `up_is_z` says that the file's z axis is vertical.

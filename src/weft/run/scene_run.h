@@ -23,7 +23,8 @@ namespace weft::engine {
 class SceneRun {
  public:
   /// Builds the world and passes the start to the sinks, which must outlive this. `num_frames` overrides the
-  /// scene's duration; `start` and `on_preparation` as in build_scene(). Throws InputError like build_scene() and the sinks.
+  /// scene's duration; `start` and `on_preparation` as in build_scene(). Throws InputError like build_scene()
+  /// and the sinks.
   SceneRun(SceneDesc scene, std::shared_ptr<JobSystem> jobs, std::vector<FrameSink*> sinks = {},
            std::optional<int> num_frames = {}, const SceneStart* start = nullptr,
            const OnPreparation& on_preparation = {});

@@ -54,8 +54,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
     {"cloth.layer", "",
-     "Order of garments over each other at the start. Where solver.untangle is on, a higher one is moved outside "
-     "of lower ones, away from the body. Equal: no order."},
+     "Order of garments over each other at the start. Where solver.untangle is on, a higher one is moved "
+     "outside of lower ones, away from the body. Equal: no order."},
     {"cloth.seam", "",
      "Seams of panels: stretches of border that draw together, and hold. Not on grids of springs."},
     {"cloth.seam_time", "", "Time in which the seams close. Longer: gentler."},

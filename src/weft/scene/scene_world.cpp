@@ -125,14 +125,17 @@ void hold_cloth(const ClothSceneDesc& desc, ClothId id, weft::World& built) {
   if (desc.pressure != 0 || desc.is_sealed) built.set_pressure(id, desc.pressure, desc.is_sealed);
 }
 
+bool do_collide(const World& world, const std::string& cloth, const std::string& collider) {
+  const auto pairs = world.non_colliding_pairs();
+  return std::ranges::find(pairs, std::array{cloth, collider}) == pairs.end();
+}
+
 void warn_about_start(const World& world, std::vector<std::string>& warnings) {
-  const auto non_colliding = world.non_colliding_pairs();
   for (int c = 0; c < world.num_cloths(); ++c) {
     const std::string& cloth = world.name(world.cloth(c));
     const std::vector<Vec3> positions = positions_of(world.state(world.cloth(c)));
     for (const Collider& collider : world.colliders()) {
-      const std::array<std::string, 2> pair{cloth, collider.name};
-      if (std::find(non_colliding.begin(), non_colliding.end(), pair) != non_colliding.end()) continue;
+      if (!do_collide(world, cloth, collider.name)) continue;
       const int inside = count_inside(shape_at(collider, world.time()), positions);
       if (inside == 0) continue;
       warnings.push_back("cloth \"" + cloth + "\" starts with " + std::to_string(inside) +
@@ -144,7 +147,6 @@ void warn_about_start(const World& world, std::vector<std::string>& warnings) {
 
 /// Cloth inside an open body, where contact keeps it.
 void warn_about_open_bodies(const SceneDesc& scene, const World& world, std::vector<std::string>& warnings) {
-  const auto non_colliding = world.non_colliding_pairs();
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const PlacedMesh* placed = std::get_if<PlacedMesh>(&scene.colliders[k].shape);
     if (!placed || placed->solid) continue;
@@ -153,7 +155,7 @@ void warn_about_open_bodies(const SceneDesc& scene, const World& world, std::vec
         fill_open_shells(std::get<MeshShape>(shape_at(world.colliders()[k], world.time())));
     for (int c = 0; c < world.num_cloths(); ++c) {
       const std::string& cloth = world.name(world.cloth(c));
-      if (std::ranges::find(non_colliding, std::array{cloth, body}) != non_colliding.end()) continue;
+      if (!do_collide(world, cloth, body)) continue;
       const int inside = count_inside(filled, positions_of(world.state(world.cloth(c))));
       if (inside == 0) continue;
       warnings.push_back(std::to_string(inside) + (inside == 1 ? " particle" : " particles") +
@@ -200,7 +202,7 @@ void settle(const SceneDesc& scene, const OnPreparation& on_preparation, PublicS
   }
 }
 
-/// The same, called at most every tenth of a second.
+/// Calls on_preparation, which must outlive it, at most every tenth of a second.
 OnPreparation at_intervals(const OnPreparation& on_preparation) {
   using Clock = std::chrono::steady_clock;
   if (!on_preparation) return {};

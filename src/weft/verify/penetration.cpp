@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 #include <utility>
 
@@ -214,31 +213,45 @@ double depth_in(const OrientedBox& box, const Corners& triangle) {
 }
 
 std::vector<Triangle> find_solid_triangles(std::span<const Triangle> triangles) {
-  std::map<std::pair<int, int>, std::vector<std::pair<int, int>>>
-      edges;                // by ascending vertices: triangles, ±1
+  struct Side {
+    int low, high, triangle, direction;  // direction: 1 from the low to the high vertex, else -1
+  };
+  std::vector<Side> sides;
   std::vector<int> joined;  // each triangle to another one of its part, or to itself
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     joined.push_back(t);
     for (int k = 0; k < 3; ++k) {
       const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
-      edges[std::minmax(from, to)].emplace_back(t, from < to ? 1 : -1);
+      sides.push_back({std::min(from, to), std::max(from, to), t, from < to ? 1 : -1});
     }
   }
   const auto part_of = [&](int t) {
     while (joined[t] != t) t = joined[t] = joined[joined[t]];
     return t;
   };
-  for (const auto& [edge, sides] : edges) {
+  const auto edge_of = [](const Side& side) { return std::pair(side.low, side.high); };
+  std::ranges::sort(sides, {}, edge_of);
+  std::vector<std::span<const Side>> edges;
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end =
+        std::find_if(begin, sides.end(), [&](const Side& s) { return edge_of(s) != edge_of(*begin); });
+    edges.emplace_back(begin, end);
+    begin = end;
+  }
+  for (const std::span<const Side> edge : edges) {
     int excess = 0;
-    for (const auto& [t, direction] : sides) excess += direction;
-    if (sides.size() > 2 && excess != 0) continue;
-    for (const auto& [t, direction] : sides) joined[part_of(t)] = part_of(sides[0].first);
+    for (const Side& side : edge) excess += side.direction;
+    if (edge.size() > 2 && excess != 0) continue;
+    for (const Side& side : edge) joined[part_of(side.triangle)] = part_of(edge[0].triangle);
   }
   std::vector<char> is_open(triangles.size(), 0);
-  for (const auto& [edge, sides] : edges) {
-    std::map<int, int> balance;  // of the edge in each part
-    for (const auto& [t, direction] : sides) balance[part_of(t)] += direction;
-    for (const auto& [part, excess] : balance) is_open[part] |= excess != 0 ? 1 : 0;
+  for (const std::span<const Side> edge : edges) {
+    for (const Side& side : edge) {
+      const int part = part_of(side.triangle);
+      int excess = 0;  // of the edge in this part
+      for (const Side& other : edge) excess += part_of(other.triangle) == part ? other.direction : 0;
+      if (excess != 0) is_open[part] = 1;
+    }
   }
   std::vector<Triangle> solid;
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {

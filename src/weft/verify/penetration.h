@@ -54,8 +54,8 @@ struct Penetration {
   int solid = -1;     // index
 };
 
-/// The deepest penetration of all cloths in all solids. In closed parts of meshes particles are tested, not triangles:
-/// inside means a nonzero winding number (exact, for any degenerate ray), depth the distance to the nearest
+/// The deepest penetration of all cloths in all solids. In closed parts of meshes particles are tested, not
+/// triangles: inside means a nonzero winding number (exact, for any degenerate ray), depth the distance to the nearest
 /// triangle. Open parts are skipped. Empty if no solid has an inside.
 std::optional<Penetration> find_deepest(std::span<const SurfaceView> cloths, std::span<const Solid> solids);
 
