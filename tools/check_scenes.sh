@@ -31,6 +31,7 @@ check contact/stack 0.000001 15
 
 # Flat panels that are sewn on a walking body.
 check garments/sewn_dress 0.000001 45
+check garments/elastic_waist 0.000001 30
 
 # A skinned body and cloth that holds on to it. A run of it that is killed five times ends with the same bytes.
 check garments/walk 0.000001 150

@@ -28,6 +28,10 @@ done
 "$weft" render garments/sewn_dress --frames 0,10,24,170 --columns 4 --size 400x560 --look-at 0,0.95,0.1 --distance 3 \
   --out "$images/sewn_dress.jpg"
 
+# Elastic: a skirt that is shorter at rest around the waist.
+"$weft" render garments/elastic_waist --frames 0,100,200 --columns 3 --size 400x560 --look-at 0,0.95,0.1 --distance 3 \
+  --out "$images/elastic_waist.jpg"
+
 # Gas in closed cloth.
 "$weft" render pressure/cushion --frame 25 --camera 25,8 --look-at 0,0.2,0 --distance 1.2 --size 960x540 --out "$images/pressure.jpg"
 

@@ -52,11 +52,26 @@ struct Seam {
   bool operator==(const Seam&) const = default;
 };
 
+/// A part of a cloth that is smaller or larger at rest: elastic, gathers, shrinkage. Factors multiply where parts
+/// overlap; a triangle has the mean of its corners' factors.
+struct RestScale {
+  std::vector<int> vertices = {};  // of the shape
+  double warp = 1, weft = 1;       // factors of lengths along warp and weft, > 0 [1]
+
+  bool operator==(const RestScale&) const = default;
+};
+
 struct ClothDesc {
   std::string name = {};  // for reports; empty: "cloth", "cloth 2", …
 
-  /// Rest shape, in the cloth's own coordinates.
+  /// Shape at the start, in the cloth's own coordinates, and at rest without `rest` and `rest_scales`.
   std::variant<Grid, TriangleMesh> shape = {};
+
+  /// Triangles at rest: of each of the mesh's the places of its corners, in its order. Only lengths count, so they
+  /// may lie anywhere, apart from each other too. rest_from_uv() gives a pattern's. Empty: those of the mesh.
+  std::vector<TriangleCorners> rest = {};
+  std::vector<RestScale> rest_scales = {};  // for cloth made of a fabric
+
   std::string source = {};  // file of the mesh, for messages: "shirt.obj"; may be empty
 
   /// A fabric in SI units (find_fabric("denim"), or your own numbers), or springs.

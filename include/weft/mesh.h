@@ -2,6 +2,7 @@
 /// Shapes of cloth and of mesh colliders: grids and triangle meshes; intersections of surfaces.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "weft/export.h"
@@ -46,6 +47,15 @@ struct TriangleMesh {
   int num_vertices() const { return static_cast<int>(positions.size()); }
   int num_triangles() const { return static_cast<int>(triangles.size()); }
 };
+
+/// The places of a triangle's corners [m].
+using TriangleCorners = std::array<Vec3, 3>;
+
+/// The triangles of a garment's pattern, for ClothDesc::rest: those of the mesh's texture coordinates times `scale`
+/// [m]; empty: the scale at which they have the area of the mesh. Throws InputError for a mesh without texture
+/// coordinates, for some without area, and for a scale that is not above 0.
+WEFT_API std::vector<TriangleCorners> rest_from_uv(const TriangleMesh& mesh,
+                                                   std::optional<double> scale = {});
 
 /// A triangle mesh in one frame.
 struct Surface {

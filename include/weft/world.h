@@ -188,7 +188,7 @@ class WEFT_API World {
   int num_particles(ClothId cloth) const;
   const std::vector<Triangle>& triangles(ClothId cloth) const;  // of particles
   std::vector<CornerUv> uv(ClothId cloth) const;                // (num_triangles), or empty
-  std::vector<Vec3> rest_positions(ClothId cloth) const;        // in the cloth's own coordinates [m]
+  std::vector<Vec3> rest_positions(ClothId cloth) const;        // of the shape, in its own coordinates [m]
   std::vector<Vec3> positions(ClothId cloth) const;             // [m]
   std::vector<Vec3> velocities(ClothId cloth) const;            // [m/s]
   std::vector<double> masses(ClothId cloth) const;              // [kg]

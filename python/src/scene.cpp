@@ -277,6 +277,16 @@ void bind_convert(nb::module_& m) {
       nb::arg("first_frame"), nb::arg("last_frame").none(), nb::arg("mesh"));
 }
 
+void bind_rest(nb::module_& m) {
+  m.def(
+      "rest_from_uv",
+      [](const Vectors& vertices, const Triangles& faces, const std::optional<CornerUvs>& uv,
+         std::optional<double> scale) {
+        return make_array<double>(rest_from_uv(to_mesh(vertices, faces, uv), scale), {3, 3});
+      },
+      nb::arg("vertices"), nb::arg("faces"), nb::arg("uv").none(), nb::arg("scale").none());
+}
+
 void bind_crossings(nb::module_& m) {
   m.def(
       "find_crossings",
@@ -303,6 +313,7 @@ void bind_scene(nb::module_& m) {
   bind_scene_class(m);
   bind_gltf(m);
   bind_meshes(m);
+  bind_rest(m);
   bind_point_caches(m);
   bind_convert(m);
   bind_crossings(m);

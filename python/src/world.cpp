@@ -1,6 +1,7 @@
 /// Worlds and batches of worlds.
 
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
 #include <memory>
@@ -143,7 +144,8 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
         [](LockedWorld& own, const std::string& name, nb::handle shape, const std::string& source,
            nb::handle fabric, const std::string& fabric_name, const std::string& membrane,
            std::optional<Vec3> warp, const std::string& model, const Vec3& position, const Matrix& rotation,
-           const Vec3& velocity, std::optional<double> weld, double sew,
+           const Vec3& velocity, std::optional<double> weld, double sew, const std::optional<Vectors>& rest,
+           const std::vector<std::tuple<Indices, double, double>>& rest_scales,
            const std::vector<std::pair<Indices, Indices>>& seams, double seam_time,
            std::optional<double> seam_stiffness, int layer, bool fits_thickness) {
           ClothDesc desc{.name = name,
@@ -161,6 +163,14 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
                          .seam_stiffness = seam_stiffness,
                          .layer = layer,
                          .fits_thickness = fits_thickness};
+          for (std::size_t c = 0; rest && c < rest->shape(0); c += 3) {
+            const auto at = [&](std::size_t k) {
+              return Vec3{(*rest)(c + k, 0), (*rest)(c + k, 1), (*rest)(c + k, 2)};
+            };
+            desc.rest.push_back({at(0), at(1), at(2)});
+          }
+          for (const auto& [vertices, warp_factor, weft_factor] : rest_scales)
+            desc.rest_scales.push_back({to_indices(vertices), warp_factor, weft_factor});
           for (const auto& [a, b] : seams) desc.seams.push_back({to_indices(a), to_indices(b)});
           if (nb::isinstance<Grid>(shape)) {
             desc.shape = nb::cast<Grid>(shape);

@@ -53,7 +53,7 @@ from ._core import (
 from ._core import version as __version__
 from ._convert import convert
 from ._errors import FileWarning, SimulationError, SimulationWarning
-from ._mesh import Mesh, Polygons, find_crossings, grid, read_gltf, read_mesh, read_obj, write_mesh, write_obj
+from ._mesh import Mesh, Polygons, find_crossings, grid, read_gltf, read_mesh, read_obj, rest_from_uv, write_mesh, write_obj
 from ._pictures import Camera, Picture, Rendering
 from ._scene import Run, Scene, Section, load_scene, open_run, run, scenes
 from ._world import Cloth, Collider, SurfacePoint, World
@@ -79,5 +79,5 @@ __all__ = [
     "SimulationError", "SimulationWarning", "Snapshot", "Sphere", "Springs", "StepDivision", "StepReport",
     "StepWarning", "SurfacePoint", "Wind", "WindKey", "World", "XpbdSettings", "__version__", "convert", "fabric_from",
     "fabric_presets", "fabric_sources", "find_crossings", "find_fabric", "grid", "integrator_names", "load_scene", "open_run",
-    "parameters", "read_gltf", "read_mesh", "read_obj", "run", "scenes", "write_mesh", "write_obj",
+    "parameters", "read_gltf", "read_mesh", "read_obj", "rest_from_uv", "run", "scenes", "write_mesh", "write_obj",
 ]  # fmt: skip

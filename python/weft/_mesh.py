@@ -199,6 +199,20 @@ def read_gltf(file: str | os.PathLike[str], *, node: str = "", clip: str = "", s
     return mesh
 
 
+def rest_from_uv(mesh: Any, *, scale: float | None = None) -> NDArray[np.float64]:
+    """The triangles of a garment's pattern, for `rest` of `World.add_cloth`: (num_faces, 3, 3) corners [m].
+
+    They are the mesh's texture coordinates times `scale` [m]; None: the scale at which they have the area of the mesh.
+    Raises InputError for a mesh without texture coordinates, or with some without area.
+
+    >>> square = Mesh([(0, 0, 0), (1, 0, 0), (1, 0, 1)], [(0, 2, 1)], uv=[(0, 0), (5, 0), (5, 5)])
+    >>> rest_from_uv(square).round(9).tolist()
+    [[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]]]
+    """
+    own = as_mesh(mesh)
+    return _core.rest_from_uv(own.vertices, own.faces, own.uv, None if scale is None else real(scale, "scale"))
+
+
 def find_crossings(cloths: Iterable[Any], *, colliders: Iterable[Any] = ()) -> NDArray[np.int32]:
     """Pairs of triangles that cross, by the exact, independent checker of runs: (k, 4) surface, triangle, other surface,
     other triangle. Surfaces are counted through cloths, then colliders; the first one of a pair is a cloth.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arguments import choose, indices, output, real, rotation, vector, vectors, whole, whole_numbers
+from ._arguments import choose, indices, numbers, output, real, rotation, vector, vectors, whole, whole_numbers
 from ._errors import tell
 from ._mesh import Mesh, as_mesh
 
@@ -486,19 +486,23 @@ class World:
         model: SpringModel = "alternating",
         weld: float | None = None,
         sew: float = 0.0,
+        rest: ArrayLike | None = None,
+        rest_scales: Sequence[tuple[Sequence[int], float, float]] = (),
         seams: Sequence[tuple[Sequence[int], Sequence[int]]] = (),
         seam_time: float = 1.0,
         seam_stiffness: float | None = None,
         layer: int = 0,
         fits_thickness: bool = True,
     ) -> Cloth:
-        """Adds a cloth: a `grid`, a `Mesh`, or any object with `vertices` and `faces`, its rest shape.
+        """Adds a cloth: a `grid`, a `Mesh`, or any object with `vertices` and `faces`.
 
         fabric: a preset's name, Fabric or Springs. position [m] and rotation: its pose. A rotation is a (3, 3)
         matrix, a quaternion (w, x, y, z), 3 angles in degrees about fixed x, then y, then z, or SciPy's Rotation.
         velocity: of all particles [m/s]. membrane: elements on triangles, or springs fitted to the fabric. warp: its
         direction in the cloth's own coordinates. model: springs of a grid, and how its cells are cut. weld: merges
-        vertices within this distance. sew: joins borders within this distance [m]. seams: pairs of
+        vertices within this distance. sew: joins borders within this distance [m]. rest: another rest shape than the
+        mesh, as the corners of each face, (num_faces, 3, 3) [m]; `rest_from_uv` gives that of a pattern. rest_scales:
+        (vertices, warp, weft), factors of lengths at rest along warp and weft: elastic, gathers. seams: pairs of
         stretches of border that draw together within seam_time [s], and hold; each stretch is a list of vertices on a
         border, in order, from each to the next the shorter way; the first of one is sewn to the first of the other.
         seam_stiffness: tension per opening [N/m²]; None: that of the cloth's edges. layer: order of garments over
@@ -515,7 +519,7 @@ class World:
             str(name), shape, "", material, fabric_name, str(membrane),
             None if warp is None else vector(warp, "warp"), str(model), vector(position, "position"),
             _rotation(rotation), vector(velocity, "velocity"), None if weld is None else real(weld, "weld"),
-            real(sew, "sew"), _seams(seams),
+            real(sew, "sew"), None if rest is None else _corners(rest), _rest_scales(rest_scales), _seams(seams),
             real(seam_time, "seam_time"), None if seam_stiffness is None else real(seam_stiffness, "seam_stiffness"),
             whole(layer, "layer"), bool(fits_thickness),
         )  # fmt: skip
@@ -794,6 +798,24 @@ class World:
 
 
 _rotation = rotation  # the function, where an argument has its name
+
+
+def _corners(rest: ArrayLike) -> NDArray[np.float64]:
+    array = numbers(rest, "rest")
+    if array.ndim != 3 or array.shape[1:] != (3, 3):
+        raise _core.InputError(f"rest: expected shape (num_faces, 3, 3), found {array.shape}")
+    return np.ascontiguousarray(array.reshape(-1, 3))
+
+
+def _rest_scales(scales: Any) -> list[tuple[Any, float, float]]:
+    choose(scales, "rest_scales", Sequence, "a list of (vertices, warp, weft)")
+    found = []
+    for scale in scales:
+        if not isinstance(scale, Sequence) or len(scale) != 3:
+            raise _core.InputError(f"rest_scales: expected (vertices, warp, weft), found {scale!r:.60}")
+        vertices, warp, weft = scale
+        found.append((whole_numbers(vertices, "rest_scales"), real(warp, "rest_scales"), real(weft, "rest_scales")))
+    return found
 
 
 def _seams(seams: Any) -> list[tuple[Any, Any]]:

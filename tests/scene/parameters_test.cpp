@@ -37,6 +37,8 @@ fabric = { g = 45 }
 [[cloth.pin]]
 select = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
 motion = [{ time = 0 }]
+[[cloth.rest_scale]]
+select = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
 [[cloth.seam]]
 a = [0, 4]
 b = [20, 24]
@@ -83,11 +85,18 @@ keys = [{ time = 0, velocity = [1, 0, 0] }]
 format = 1
 [[cloth]]
 mesh = "garments/tshirt.obj"
+rest = { mesh = "garments/tshirt.obj" }
 [[cloth.pin]]
 select = { sphere = { center = [0, 0, 0], radius = 1 } }
 [[collider]]
 shape = "box"
 half_size = [1, 1, 1]
+)",
+    R"([scene]
+format = 1
+[[cloth]]
+mesh = "garments/tshirt.obj"
+rest = {}
 )",
     R"([scene]
 format = 1

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "tests/message_of.h"
 #include "weft/core/angle.h"
 #include "weft/error.h"
 #include "weft/face/world_impl.h"
@@ -136,6 +137,66 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
                              "cloth \"cloth\" (pieces.obj): sewed 1 seam: 5 vertices, 1 edge divided"});
   EXPECT_EQ(scene.world.model(scene.world.cloth(0)).num_particles(), 6);
   EXPECT_EQ(scene.world.model(scene.world.cloth(0)).topology->mesh.num_triangles(), 5);
+}
+
+/// A square of 0.1 m, whose texture coordinates are 0.08 by 0.12; a second file of the same faces, 1 by 1.
+class RestShapes : public ::testing::Test {
+ protected:
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "weft_scene_world_rest";
+
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    const char* faces = "f 1/1 3/3 4/4 2/2\n";
+    std::ofstream(folder_ / "square.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\n"
+                                             "vt 0 0\nvt 0.08 0\nvt 0 0.12\nvt 0.08 0.12\ng hem\n"
+                                          << faces;
+    std::ofstream(folder_ / "unit.obj")
+        << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
+        << faces;
+    std::ofstream(folder_ / "other.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  SceneDesc read(const std::string& keys) const {
+    return parse_scene("[scene]\nformat = 1\n[[cloth]]\nmesh = \"square.obj\"\nfabric = \"denim\"\n" + keys,
+                       folder_ / "scene.toml");
+  }
+
+  /// Mass over density [m²].
+  double area(const std::string& keys) const {
+    const SceneWorld scene = build_world(read(keys), make_serial_jobs());
+    const ClothModel& model = scene.world.model(scene.world.cloth(0));
+    double mass = 0;
+    for (const double m : model.mass) mass += m;
+    return mass / model.material.density;
+  }
+};
+
+TEST_F(RestShapes, AreReadInEveryForm) {
+  EXPECT_NEAR(area(""), 0.01, 1e-15);
+  EXPECT_NEAR(area("rest = \"uv\""), 0.01, 1e-15) << "of the area of the mesh";
+  EXPECT_NEAR(area("rest = { uv_scale = 2 }"), 4 * 0.08 * 0.12, 1e-15);
+  EXPECT_NEAR(area("rest = { mesh = \"unit.obj\" }"), 1, 1e-14);
+  EXPECT_NEAR(area("rest = { mesh = \"unit.obj\", scale = 0.2, up = \"z\" }"), 0.04, 1e-15);
+  EXPECT_NEAR(area("[[cloth.rest_scale]]\nselect = \"group:hem\"\nweft = 0.5\n"), 0.005, 1e-15);
+  // Two of the three corners of each triangle lie in the sphere around a corner of the diagonal: factor 5/6 or 4/6.
+  EXPECT_NEAR(area("position = [5, 0, 0]\n[[cloth.rest_scale]]\nwarp = 0.5\n"
+                   "select = { box = { min = [4.99, -1, -1], max = [5.01, 1, 1] } }"),
+              0.005 * (4.0 / 6 + 5.0 / 6), 1e-15);
+}
+
+TEST_F(RestShapes, OfOtherFacesAreRefused) {
+  const auto refusal = [&](const std::string& keys) {
+    return message_of([&] { build_world(read(keys), make_serial_jobs()); });
+  };
+  EXPECT_NE(refusal("rest = { mesh = \"other.obj\" }").find("cloth \"cloth\": its rest shape: "),
+            std::string::npos)
+      << refusal("rest = { mesh = \"other.obj\" }");
+  EXPECT_NE(refusal("rest = \"pattern\"").find("expected \"uv\", { uv_scale = 0.01 }"), std::string::npos);
+  EXPECT_NE(refusal("rest = { scale = 2 }").find("requires \"mesh\"; texture coordinates have \"uv_scale\""),
+            std::string::npos);
+  EXPECT_NE(refusal("rest = { mesh = \"unit.obj\", uv_scale = 2 }").find("a mesh has \"scale\""),
+            std::string::npos);
 }
 
 /// Two pieces with a seam between them, as groups; one vertex has a face without area only.

@@ -107,6 +107,7 @@ up = "z"
 scale = 0.01
 weld = 0.0005
 sew = 0.002
+rest = { uv_scale = 0.8 }
 fabric = { base = "denim", friction = 0.77 }
 membrane = "springs"
 warp = [1, 0, 0.5]
@@ -114,9 +115,23 @@ seam_time = 0.5
 seam_stiffness = 1e5
 layer = 3
 pins = ['group:left "cuff"', { group = "waist", follow = "dancer", stiffness = 50, damping = 0.1 }]
+[[cloth.rest_scale]]
+select = "group:waist"
+weft = 0.7
+[[cloth.rest_scale]]
+select = { sphere = { center = [1, 2, 3], radius = 4 } }
+warp = 1.25
 [[cloth.seam]]
 a = [0, 4, 9]
 b = [17, 12]
+[[cloth]]
+mesh = "a.obj"
+rest = "uv"
+fabric = "silk"
+[[cloth]]
+mesh = "a.obj"
+rest = { mesh = "a.obj", up = "z", scale = 0.5 }
+fabric = "silk"
 [[cloth]]
 grid = { size = [1, 1], cells = [2, 2] }
 fabric = { name = "mine", density = 0.2, c11 = 500, c22 = 400, g = 30, stretch_warp = [[0.01, 5], [0.02, 12]], strain_limit = 0.2, bend_hysteresis_warp = 0.001, bend_hysteresis_weft = 0.002, bend_set = 500 }

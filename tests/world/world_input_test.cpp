@@ -64,7 +64,7 @@ TEST(WorldInput, ShapesThatCannotBe) {
 TEST(WorldInput, ClothThatCannotBe) {
   World world;
   expect_names(error_of([&] { world.add_cloth({.name = "it"}); }), "cloth \"it\" has no topology");
-  EXPECT_THROW(build_mesh_topology({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 7}}}), InputError);
+  EXPECT_THROW(build_mesh_topology(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 7}}}), InputError);
   EXPECT_THROW(build_grid_topology({.size_x = 0}, SpringModel::simplified), InputError);
   EXPECT_THROW(build_grid_topology({.cells_z = 0}, SpringModel::simplified), InputError);
   const auto sheet = build_grid_topology(square(4), SpringModel::simplified);

@@ -36,10 +36,10 @@ class OtherSide {
     tree_.build(boxes, {}, *make_serial_jobs());
   }
 
-  double inner_radius(const Vec3& p, const Vec3& normal) const {
+  double inner_radius(const Vec3& p, const Vec3& normal, double most) const {
     constexpr int kMaxRounds = 20;
     constexpr double kEnough = 1e-3;  // relative change of the radius that ends the search
-    double radius = 1;                // [m]
+    double radius = most;
     for (int round = 0; round < kMaxRounds; ++round) {
       const Vec3 q = nearest(p - radius * normal, normal);
       const double along = normal.dot(p - q);
@@ -91,20 +91,20 @@ void smooth(const TriangleMesh& mesh, std::vector<Vec3>& values) {
 
 }  // namespace
 
-std::vector<double> compute_inner_radii(const TriangleMesh& mesh) {
+std::vector<double> compute_inner_radii(const TriangleMesh& mesh, double most) {
   const std::vector<Vec3> normals = compute_normals(mesh);
   const OtherSide other_side(mesh);
   std::vector<double> radii;
   for (std::size_t v = 0; v < normals.size(); ++v)
-    radii.push_back(other_side.inner_radius(mesh.positions[v], normals[v]));
+    radii.push_back(other_side.inner_radius(mesh.positions[v], normals[v], most));
   return radii;
 }
 
 std::vector<Vec3> shrink(const TriangleMesh& mesh, const std::vector<double>& inner_radii, double depth) {
-  constexpr double kMaxShare = 0.9;  // of the radius
   constexpr int kSmoothings = 4;
   std::vector<Vec3> inwards = compute_normals(mesh);
-  for (std::size_t v = 0; v < inwards.size(); ++v) inwards[v] *= -std::min(depth, kMaxShare * inner_radii[v]);
+  for (std::size_t v = 0; v < inwards.size(); ++v)
+    inwards[v] *= -std::min(depth, kMaxShrinkage * inner_radii[v]);
   for (int pass = 0; pass < kSmoothings; ++pass) smooth(mesh, inwards);
   std::vector<Vec3> places;
   for (std::size_t v = 0; v < inwards.size(); ++v) places.push_back(mesh.positions[v] + inwards[v]);

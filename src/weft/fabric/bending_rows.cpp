@@ -119,35 +119,39 @@ struct FlatRing {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-FlatRing lay_flat(const TriangleMesh& mesh, int center, const Ring& ring) {
+FlatRing lay_flat(const RestMesh& mesh, int center, const Ring& ring) {
   FlatRing flat;
-  const auto spoke = [&](std::size_t k) -> Vec3 {
-    return mesh.positions[ring.vertices[k % ring.vertices.size()]] - mesh.positions[center];
+  const std::size_t n = ring.vertices.size();
+  // To a vertex of the ring, in triangle t of it.
+  const auto spoke = [&](std::size_t t, std::size_t k) {
+    return mesh.between(ring.triangles[t], center, ring.vertices[k % n]);
   };
   double total = 0;
   Vec3 normal = Vec3::Zero();
-  for (std::size_t k = 0; k < ring.vertices.size(); ++k) {
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 first = spoke(k, k), second = spoke(k, k + 1);
     flat.angle.push_back(total);
-    flat.length.push_back(spoke(k).norm());
-    total += angle_between(spoke(k), spoke(k + 1));
-    normal += spoke(k).cross(spoke(k + 1));
+    flat.length.push_back(0.5 * (first.norm() + spoke((k + n - 1) % n, k).norm()));
+    total += angle_between(first, second);
+    normal += first.cross(second);
   }
   flat.scale = 2 * kPi / total;
   for (double& a : flat.angle) a *= flat.scale;
-  flat.axis = (spoke(0) - spoke(0).dot(normal) * normal / normal.squaredNorm()).normalized();
+  const Vec3 axis = spoke(0, 0);
+  flat.axis = (axis - axis.dot(normal) * normal / normal.squaredNorm()).normalized();
   flat.across = normal.normalized().cross(flat.axis);
   return flat;
 }
 
 /// The warp's angle in the flat ring: mean over its triangles, by area, of undirected axes.
-double warp_angle(const TriangleMesh& mesh, int center, const Ring& ring, const FlatRing& flat,
+double warp_angle(const RestMesh& mesh, int center, const Ring& ring, const FlatRing& flat,
                   const WarpField& warp) {
   double c = 0, s = 0;
   for (std::size_t k = 0; k < ring.triangles.size(); ++k) {
     const int t = ring.triangles[k];
-    const auto& [i, j, l] = mesh.triangles[t];
-    const Vec3 normal = (mesh.positions[j] - mesh.positions[i]).cross(mesh.positions[l] - mesh.positions[i]);
-    const Vec3 spoke = (mesh.positions[ring.vertices[k]] - mesh.positions[center]).normalized();
+    const TriangleCorners p = mesh.corners(t);
+    const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+    const Vec3 spoke = mesh.between(t, center, ring.vertices[k]).normalized();
     const double cosine = spoke.dot(warp.warp[t]);
     const double sine = normal.normalized().dot(spoke.cross(warp.warp[t]));
     const double doubled = 2 * (flat.angle[k] + std::atan2(sine, cosine));
@@ -192,7 +196,7 @@ struct BorderVertex {
   double area = 0;              // its share for each inner neighbour [m²]
 };
 
-std::vector<BorderVertex> find_border(const TriangleMesh& mesh, const std::vector<Ring>& rings) {
+std::vector<BorderVertex> find_border(const RestMesh& mesh, const std::vector<Ring>& rings) {
   std::vector<Vec3> first(mesh.positions.size(), Vec3::Zero()), last = first;
   std::vector<int> num_inner(mesh.positions.size(), 0);
   for (const Edge& e : build_edges(mesh)) {
@@ -200,7 +204,7 @@ std::vector<BorderVertex> find_border(const TriangleMesh& mesh, const std::vecto
     num_inner[e.a] += inner_b;
     num_inner[e.b] += inner_a;
     if (e.num_triangles != 1) continue;
-    const Vec3 along = (mesh.positions[e.b] - mesh.positions[e.a]).normalized();
+    const Vec3 along = mesh.between(e.triangles[0], e.a, e.b).normalized();
     (first[e.a].norm() == 0 ? first : last)[e.a] = along;
     (first[e.b].norm() == 0 ? first : last)[e.b] = -along;
   }
@@ -227,7 +231,7 @@ struct VertexCurvature {
   std::vector<AlongBorder> borders;
 };
 
-VertexCurvature find_curvature(const TriangleMesh& mesh, int center, const Ring& ring, const WarpField& warp,
+VertexCurvature find_curvature(const RestMesh& mesh, int center, const Ring& ring, const WarpField& warp,
                                const std::vector<BorderVertex>& border) {
   const FlatRing flat = lay_flat(mesh, center, ring);
   const double warp_at = warp_angle(mesh, center, ring, flat, warp);
@@ -260,19 +264,19 @@ struct LinearHinge {
   double area = 0;               // of its triangles [m²]
 };
 
-LinearHinge linearise(const HingeElement& hinge, const TriangleMesh& mesh) {
+LinearHinge linearise(const HingeElement& hinge, const RestMesh& mesh) {
   LinearHinge linear{.weight = {0, 0, 0, 0}};
   const auto& [a, b, p, q] = hinge.vertices;
-  const Vec3 origin = mesh.positions[a], edge = mesh.positions[b] - origin;
-  linear.length = edge.norm();
   for (const int side : {2, 3}) {
-    const Vec3 tip = mesh.positions[hinge.vertices[side]] - origin;
+    const int t = hinge.triangles[side - 2];
+    const Vec3 edge = mesh.between(t, a, b), tip = mesh.between(t, a, hinge.vertices[side]);
+    linear.length += 0.5 * edge.norm();
     const double along = tip.dot(edge) / edge.squaredNorm();
     const double height = (tip - along * edge).norm();
     linear.weight[side] = 1 / height;
     linear.weight[0] -= (1 - along) * linear.weight[side];
     linear.weight[1] -= along * linear.weight[side];
-    linear.area += 0.5 * linear.length * height;
+    linear.area += 0.5 * edge.norm() * height;
   }
   return linear;
 }
@@ -295,7 +299,7 @@ bool is_full(const HingeElement& hinge, const std::vector<char>& is_reached) {
 
 /// Hinges, linearised at rest: with full rigidity if no stencil reaches a vertex next to the edge, else with
 /// a small share, so that small or narrow meshes have no bending mode of zero energy.
-void add_hinges(BendingRows& rows, const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+void add_hinges(BendingRows& rows, const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
                 const std::vector<char>& is_reached) {
   for (const HingeElement& hinge : build_hinges(mesh, warp, fabric)) {
     const double share = is_full(hinge, is_reached) ? 1.0 : kHingeShare;
@@ -331,7 +335,7 @@ void visit_thread_stencils(const Grid& grid, int i, int j, const Visit& visit) {
         false, area * share_x, {{{grid.index(i, j - 1), wz}, {at, -2 * wz}, {grid.index(i, j + 1), wz}}}});
 }
 
-std::vector<Ring> find_rings(const TriangleMesh& mesh) {
+std::vector<Ring> find_rings(const RestMesh& mesh) {
   const Neighbourhood neighbourhood(mesh);
   std::vector<Ring> rings;
   for (int v = 0; v < mesh.num_vertices(); ++v) rings.push_back(neighbourhood.ring(v));
@@ -361,8 +365,8 @@ void add_thread_row(ThreadBends& rows, int center, double friction, double stiff
   rows.stiffness.push_back(stiffness);
 }
 
-void add_thread_hinges(ThreadBends& rows, const TriangleMesh& mesh, const WarpField& warp,
-                       const Fabric& fabric, const std::vector<char>& is_reached) {
+void add_thread_hinges(ThreadBends& rows, const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
+                       const std::vector<char>& is_reached) {
   const std::vector<HingeElement> elastic = build_hinges(mesh, warp, fabric);
   const std::vector<HingeElement> friction = build_hinges(mesh, warp, friction_as_rigidity(fabric));
   for (std::size_t h = 0; h < elastic.size(); ++h) {
@@ -404,7 +408,7 @@ BendingRows build_grid_bending(const Grid& grid, GridWarp warp, const Fabric& fa
   return rows;
 }
 
-BendingRows build_mesh_bending(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
+BendingRows build_mesh_bending(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric) {
   const std::vector<Ring> rings = find_rings(mesh);
   const std::vector<BorderVertex> border = find_border(mesh, rings);
   BendingRows rows;
@@ -438,7 +442,7 @@ ThreadBends build_grid_thread_bends(const Grid& grid, GridWarp warp, const Fabri
   return rows;
 }
 
-ThreadBends build_mesh_thread_bends(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric) {
+ThreadBends build_mesh_thread_bends(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric) {
   ThreadBends rows{.set = fabric.bend_set};
   if (!has_bending_memory(fabric)) return rows;
   const Fabric friction = friction_as_rigidity(fabric);

@@ -52,7 +52,7 @@ BendingRows build_grid_bending(const Grid& grid, GridWarp warp, const Fabric& fa
 /// Stencils of any mesh. Border vertices bend along the border with the adjacent inner vertices. Linear
 /// hinges supplement the stencils with 2 % of the rigidity, and with all of it without a nearby inner vertex
 /// (ears, ribbons of one cell). Non-manifold vertices count as border.
-BendingRows build_mesh_bending(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
+BendingRows build_mesh_bending(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric);
 
 /// Curvatures of warp and weft threads, for friction between threads and creases (forces/thread_bends.h). A row is a
 /// curvature with sign, n·Σ_k weight_k x_{vertex_k}, n the normal of the cloth at vertex `center`.
@@ -77,7 +77,7 @@ ThreadBends build_grid_thread_bends(const Grid& grid, GridWarp warp, const Fabri
 
 /// Of the curvatures of BendingRows along warp and weft, along borders, and across the edges that have a hinge of
 /// full rigidity.
-ThreadBends build_mesh_thread_bends(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric);
+ThreadBends build_mesh_thread_bends(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric);
 
 /// Hessian of the rows: the same scalars for x, y and z, in CSR format, columns ascending.
 struct BendingMatrix {

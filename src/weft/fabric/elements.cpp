@@ -10,15 +10,7 @@ namespace {
 
 constexpr double kMinSine = 1e-6;  // minimum for the angle between a direction and a triangle's normal
 
-struct TriangleCorners3 {
-  Vec3 a, b, c;
-  Vec3 normal() const { return (b - a).cross(c - a); }
-};
-
-TriangleCorners3 corners(const TriangleMesh& mesh, int t) {
-  const auto& [a, b, c] = mesh.triangles[t];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-}
+Vec3 normal_of(const TriangleCorners& p) { return (p[1] - p[0]).cross(p[2] - p[0]); }
 
 /// Projection on the plane of the triangle, normalised, or zero.
 Vec3 project(const Vec3& direction, const Vec3& normal) {
@@ -33,42 +25,60 @@ Vec3 any_axis(const Vec3& normal) {
 }
 
 /// ∂x/∂u at constant v, up to a positive factor.
-Vec3 along_u(const TriangleCorners3& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+Vec3 along_u(const TriangleCorners& p, const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 ab = b - a, ac = c - a;
   const double area = ab.x() * ac.y() - ab.y() * ac.x();
-  return ((p.b - p.a) * ac.y() - (p.c - p.a) * ab.y()) * (area < 0 ? -1.0 : 1.0) * (area != 0 ? 1.0 : 0.0);
+  return ((p[1] - p[0]) * ac.y() - (p[2] - p[0]) * ab.y()) * (area < 0 ? -1.0 : 1.0) *
+         (area != 0 ? 1.0 : 0.0);
 }
 
 }  // namespace
 
-WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<Vec2>& uv) {
+WarpField warp_from_uv(const RestMesh& mesh, const std::vector<Vec2>& uv) {
   std::vector<CornerUv> by_corner;
   for (const auto& [a, b, c] : mesh.triangles) by_corner.push_back({uv[a], uv[b], uv[c]});
   return warp_from_uv(mesh, by_corner);
 }
 
-WarpField warp_from_uv(const TriangleMesh& mesh, const std::vector<CornerUv>& uv) {
+WarpField warp_from_uv(const RestMesh& mesh, const std::vector<CornerUv>& uv) {
   WarpField field;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const TriangleCorners3 p = corners(mesh, t);
+    const TriangleCorners p = mesh.corners(t);
     const Vec3 direction = along_u(p, uv[t][0], uv[t][1], uv[t][2]);
     const bool is_given = direction.allFinite() && direction.norm() > 0;
-    field.warp.push_back(is_given ? Vec3(direction.normalized()) : any_axis(p.normal()));
+    field.warp.push_back(is_given ? Vec3(direction.normalized()) : any_axis(normal_of(p)));
     field.num_guessed += !is_given;
   }
   return field;
 }
 
-WarpField warp_from_direction(const TriangleMesh& mesh, const Vec3& direction) {
+WarpField warp_from_direction(const RestMesh& mesh, const Vec3& direction) {
   WarpField field;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const Vec3 normal = corners(mesh, t).normal();
+    const Vec3 normal = normal_of(mesh.corners(t));
     const Vec3 warp = project(direction, normal);
     const bool is_given = warp.norm() > 0.5;
     field.warp.push_back(is_given ? warp : any_axis(normal));
     field.num_guessed += !is_given;
   }
   return field;
+}
+
+void scale_rest(RestMesh& mesh, const WarpField& warp, const std::vector<Vec2>& factors) {
+  std::vector<TriangleCorners> scaled;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const Vec2 factor = (factors[a] + factors[b] + factors[c]) / 3;
+    TriangleCorners p = mesh.corners(t);
+    const Vec3 axis_1 = warp.warp[t], axis_2 = normal_of(p).normalized().cross(axis_1);
+    const Vec3 origin = p[0];
+    for (Vec3& x : p) {
+      const Vec3 d = x - origin;
+      x = origin + factor.x() * d.dot(axis_1) * axis_1 + factor.y() * d.dot(axis_2) * axis_2;
+    }
+    scaled.push_back(p);
+  }
+  mesh.at_rest = std::move(scaled);
 }
 
 Mat3 membrane_stiffness(const Fabric& fabric) {
@@ -80,13 +90,13 @@ Mat3 membrane_stiffness(const Fabric& fabric) {
   return c;
 }
 
-std::vector<MembraneElement> build_membranes(const TriangleMesh& mesh, const WarpField& warp) {
+std::vector<MembraneElement> build_membranes(const RestMesh& mesh, const WarpField& warp) {
   std::vector<MembraneElement> membranes;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const TriangleCorners3 p = corners(mesh, t);
-    const Vec3 axis_1 = warp.warp[t], axis_2 = p.normal().normalized().cross(axis_1);
-    const auto flat = [&](const Vec3& x) { return Vec2((x - p.a).dot(axis_1), (x - p.a).dot(axis_2)); };
-    membranes.push_back({mesh.triangles[t], make_rest_triangle(flat(p.a), flat(p.b), flat(p.c))});
+    const TriangleCorners p = mesh.corners(t);
+    const Vec3 axis_1 = warp.warp[t], axis_2 = normal_of(p).normalized().cross(axis_1);
+    const auto flat = [&](const Vec3& x) { return Vec2((x - p[0]).dot(axis_1), (x - p[0]).dot(axis_2)); };
+    membranes.push_back({mesh.triangles[t], make_rest_triangle(flat(p[0]), flat(p[1]), flat(p[2]))});
   }
   return membranes;
 }
@@ -107,7 +117,7 @@ int find_edge(const Triangle& triangle, int a, int b) {
   return -1;
 }
 
-std::vector<Candidate> find_candidates(const TriangleMesh& mesh, const WarpField& warp,
+std::vector<Candidate> find_candidates(const RestMesh& mesh, const WarpField& warp,
                                        const std::vector<MembraneElement>& membranes) {
   constexpr double kSameWarp = 0.94;                       // cosine of 20 degrees
   std::map<std::pair<int, int>, std::vector<int>> around;  // triangles of each edge
@@ -123,14 +133,15 @@ std::vector<Candidate> find_candidates(const TriangleMesh& mesh, const WarpField
     const bool is_oriented =
         (find_edge(mesh.triangles[s], a, b) >= 0) != (find_edge(mesh.triangles[t], a, b) >= 0);
     if (!is_oriented) continue;
-    const Vec3 along = (mesh.positions[b] - mesh.positions[a]).normalized();
     // Warp in the axes along the edge and across it, in each triangle's plane.
-    const auto in_plane = [&](int k) {
-      const Vec3 across = corners(mesh, k).normal().normalized().cross(along);
+    const auto in_plane = [&, a = a, b = b](int k) {
+      const Vec3 along = mesh.between(k, a, b).normalized();
+      const Vec3 across = normal_of(mesh.corners(k)).normalized().cross(along);
       return Vec2(warp.warp[k].dot(along), warp.warp[k].dot(across));
     };
     if (in_plane(s).dot(in_plane(t)) < kSameWarp) continue;
-    const double length_sq = (mesh.positions[b] - mesh.positions[a]).squaredNorm();
+    const double length_sq =
+        0.5 * (mesh.between(s, a, b).squaredNorm() + mesh.between(t, a, b).squaredNorm());
     candidates.push_back(
         {s, t, std::min(2.0, length_sq / (membranes[s].rest.area + membranes[t].rest.area))});
   }
@@ -202,7 +213,7 @@ std::vector<MembranePatch> make_single_patches(const std::vector<MembraneElement
   return patches;
 }
 
-std::vector<MembranePatch> pair_triangles(const TriangleMesh& mesh, const WarpField& warp,
+std::vector<MembranePatch> pair_triangles(const RestMesh& mesh, const WarpField& warp,
                                           const std::vector<MembraneElement>& membranes) {
   const std::vector<int> partner = match(find_candidates(mesh, warp, membranes), mesh.num_triangles());
   std::vector<MembranePatch> patches;
@@ -215,31 +226,23 @@ std::vector<MembranePatch> pair_triangles(const TriangleMesh& mesh, const WarpFi
   return patches;
 }
 
-std::vector<HingeElement> build_hinges(const TriangleMesh& mesh, const WarpField& warp,
-                                       const Fabric& fabric) {
-  // Triangle at each edge, by the opposite vertex.
-  std::map<std::array<int, 3>, int> triangle_of;  // (a, b, opposite), a < b
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const Triangle& v = mesh.triangles[t];
-    for (int k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(v[k], v[(k + 1) % 3]);
-      triangle_of[{a, b, v[(k + 2) % 3]}] = t;
-    }
-  }
+std::vector<HingeElement> build_hinges(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric) {
   std::vector<HingeElement> hinges;
   for (const Edge& e : build_edges(mesh)) {
     if (e.num_triangles != 2 || e.opposite[0] == e.opposite[1]) continue;
-    const Vec3 edge = mesh.positions[e.b] - mesh.positions[e.a];
-    double rigidity = 0, area = 0;
-    for (const int opposite : e.opposite) {
-      const int t = triangle_of.at({e.a, e.b, opposite});
+    double rigidity = 0, area = 0, length_sq = 0;
+    for (const int t : e.triangles) {
+      const Vec3 edge = mesh.between(t, e.a, e.b);
+      length_sq += 0.5 * edge.squaredNorm();
       // Bending is across the edge: the cosine of its direction to warp is the edge's sine.
       const double along = edge.normalized().dot(warp.warp[t]);
       const double across = std::sqrt(std::max(0.0, 1 - along * along));
       rigidity += 0.5 * bending_rigidity(fabric, across, along);
       area += triangle_area(mesh, t);
     }
-    hinges.push_back({{e.a, e.b, e.opposite[0], e.opposite[1]}, rigidity * edge.squaredNorm() / area});
+    hinges.push_back({{e.a, e.b, e.opposite[0], e.opposite[1]},
+                      {e.triangles[0], e.triangles[1]},
+                      rigidity * length_sq / area});
   }
   return hinges;
 }

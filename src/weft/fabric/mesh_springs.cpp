@@ -21,7 +21,7 @@ struct Side {
 };
 
 /// Of each edge; a side without a triangle is zero.
-std::vector<std::array<Side, 2>> find_sides(const TriangleMesh& mesh, const WarpField& warp,
+std::vector<std::array<Side, 2>> find_sides(const RestMesh& mesh, const WarpField& warp,
                                             const std::vector<Edge>& edges) {
   std::vector<std::array<Side, 2>> sides(edges.size());
   const auto find_edge = [&](int i, int j) {
@@ -31,10 +31,10 @@ std::vector<std::array<Side, 2>> find_sides(const TriangleMesh& mesh, const Warp
   };
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     const auto& [i, j, k] = mesh.triangles[t];
-    const auto& x = mesh.positions;
-    const Vec3 weft = (x[j] - x[i]).cross(x[k] - x[i]).normalized().cross(warp.warp[t]);
+    const TriangleCorners x = mesh.corners(t);
+    const Vec3 weft = (x[1] - x[0]).cross(x[2] - x[0]).normalized().cross(warp.warp[t]);
     for (const auto& [p, q] : {std::pair(i, j), std::pair(j, k), std::pair(k, i)}) {
-      const Vec3 edge = x[q] - x[p];
+      const Vec3 edge = mesh.between(t, p, q);
       const double along = edge.dot(warp.warp[t]), across = edge.dot(weft);
       const Vec3 a = Vec3(along * along, across * across, along * across) / edge.norm();
       const auto e = find_edge(p, q);
@@ -95,7 +95,7 @@ class Fit {
 
 }  // namespace
 
-MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+MeshSprings make_mesh_springs(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
                               const std::string& name) {
   const std::vector<Edge> edges = build_edges(mesh);
   const std::vector<std::array<Side, 2>> sides = find_sides(mesh, warp, edges);

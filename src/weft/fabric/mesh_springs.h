@@ -24,7 +24,7 @@ struct MeshSprings {
 };
 
 /// Warnings call the fabric `name`.
-MeshSprings make_mesh_springs(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+MeshSprings make_mesh_springs(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
                               const std::string& name);
 
 }  // namespace weft::engine

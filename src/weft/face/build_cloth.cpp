@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "weft/error.h"
+#include "weft/fabric/spring_warnings.h"
 #include "weft/face/convert.h"
 #include "weft/mesh/border_path.h"
 #include "weft/mesh/clean.h"
@@ -25,6 +26,9 @@ std::optional<GridWarp> grid_warp(const ClothDesc& desc) {
   if (std::abs(direction.z()) > kAlong) return GridWarp::second_axis;
   return {};
 }
+
+/// What only meshes have; a grid with it is treated as one.
+bool needs_mesh(const ClothDesc& desc) { return !desc.seams.empty() || !desc.rest_scales.empty(); }
 
 CellDiagonals cell_diagonals(SpringModel model) {
   switch (model) {
@@ -48,20 +52,20 @@ bool stands_upright(const TriangleMesh& mesh) {
   return upright > 0;
 }
 
-/// Along the given direction, or by the mesh's texture coordinates; without either, along the body in
+/// Along the given direction, or by the texture coordinates of the triangles; without either, along the body in
 /// garments.
-WarpField find_warp(const ClothDesc& desc, const RestShape& rest, const std::string& who,
-                    std::vector<std::string>& warnings) {
-  const TriangleMesh& mesh = rest.topology->mesh;
+WarpField find_warp(const ClothDesc& desc, const RestMesh& mesh, const std::vector<CornerUv>& uv,
+                    const std::string& who, std::vector<std::string>& warnings) {
   std::optional<Vec3> direction;
   if (desc.warp) direction = to_engine(*desc.warp);
-  if (!direction && rest.uv.empty()) {
+  if (!direction && std::holds_alternative<Grid>(desc.shape)) direction = Vec3::UnitX();
+  if (!direction && uv.empty()) {
     const bool stands = stands_upright(mesh);
     direction = stands ? Vec3::UnitY() : Vec3::UnitX();
     warnings.push_back(who + "its mesh has no texture coordinates to define warp; it is set " +
                        (stands ? "upwards, warp = [0, 1, 0]" : "along x, warp = [1, 0, 0]"));
   }
-  WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, rest.uv);
+  WarpField warp = direction ? warp_from_direction(mesh, *direction) : warp_from_uv(mesh, uv);
   if (warp.num_guessed == 0) return warp;
   warnings.push_back(
       who + (direction ? "warp is perpendicular to " : "texture coordinates do not define warp in ") +
@@ -96,7 +100,7 @@ ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const R
   const auto warn = [&](const std::vector<std::string>& messages) {
     for (const std::string& message : messages) warnings.push_back(who + message);
   };
-  if (const Grid* grid = std::get_if<Grid>(&desc.shape); grid && desc.seams.empty()) {
+  if (const Grid* grid = std::get_if<Grid>(&desc.shape); grid && !needs_mesh(desc)) {
     const std::optional<GridWarp> warp = grid_warp(desc);
     if (!warp)
       throw InputError(who +
@@ -109,7 +113,7 @@ ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const R
     return {material, build_grid_bending_elements(*grid, *warp, fabric)};
   }
   const ClothTopology& topology = *rest.topology;
-  const WarpField warp = find_warp(desc, rest, who, warnings);
+  const WarpField warp = find_warp(desc, topology.mesh, rest.uv, who, warnings);
   const MeshSprings springs = make_mesh_springs(topology.mesh, warp, fabric, desc.fabric_name);
   warn(springs.warnings);
   set_fabric_springs(springs, topology, fabric, material);
@@ -121,20 +125,21 @@ ClothSubstance make_triangles(const ClothDesc& desc, const Fabric& fabric, const
   const ClothTopology& topology = *rest.topology;
   const auto elements =
       topology.grid ? build_grid_elements(*topology.grid, topology.mesh, *grid_warp(desc), fabric)
-                    : build_mesh_elements(topology.mesh, find_warp(desc, rest, who, warnings), fabric);
+                    : build_mesh_elements(topology.mesh,
+                                          find_warp(desc, topology.mesh, rest.uv, who, warnings), fabric);
   return {make_material(fabric), elements};
 }
 
 /// At most half the mean edge length, so that few neighbours are nearer than the thickness.
-double fit_thickness(double thickness, const TriangleMesh& mesh) {
+double fit_thickness(double thickness, const RestMesh& mesh) {
   constexpr double kShareOfEdge = 0.5;
   const std::vector<Edge> edges = build_edges(mesh);
   double sum = 0;
-  for (const Edge& e : edges) sum += (mesh.positions[e.b] - mesh.positions[e.a]).norm();
+  for (const Edge& e : edges) sum += edge_length(mesh, e);
   return std::min(thickness, kShareOfEdge * sum / static_cast<double>(edges.size()));
 }
 
-/// The particles of a seam's vertices.
+/// The particles of vertices.
 std::vector<int> find_particles(const std::vector<int>& vertices,
                                 const std::vector<int>& particle_of_vertex) {
   std::vector<int> particles;
@@ -177,15 +182,94 @@ Seams build_seams(const ClothDesc& desc, const TriangleMesh& mesh, const ClothNo
   return seams;
 }
 
+/// The corners of parts of triangles: of each its source's, by weights.
+std::vector<TriangleCorners> cut_corners(const std::vector<weft::TriangleCorners>& sources,
+                                         const CleanMesh& clean) {
+  std::vector<TriangleCorners> parts;
+  for (std::size_t t = 0; t < clean.mesh.triangles.size(); ++t) {
+    const weft::TriangleCorners& source = sources[clean.source_triangle[t]];
+    TriangleCorners& part = parts.emplace_back();
+    for (int c = 0; c < 3; ++c) {
+      const Vec3& weights = clean.corner_weights[t][c];
+      part[c] = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) part[c] += weights[k] * to_engine(source[k]);
+    }
+  }
+  return parts;
+}
+
+/// Gives the prepared mesh the triangles at rest of the given one.
+void set_rest(const std::vector<weft::TriangleCorners>& given, const weft::TriangleMesh& mesh,
+              const CleanMesh& clean, RestMesh& prepared, ClothNotes& notes) {
+  if (given.size() != mesh.triangles.size())
+    throw InputError("its rest shape has " + std::to_string(given.size()) + " triangles, but the mesh has " +
+                     std::to_string(mesh.triangles.size()));
+  const int num_without = engine::set_rest(prepared, cut_corners(given, clean));
+  if (num_without > 0)
+    notes.warnings.push_back(std::to_string(num_without) +
+                             (num_without == 1 ? " triangle has" : " triangles have") +
+                             " no area in the rest shape, and the shape of the mesh instead");
+}
+
+/// Multiplies lengths at rest by the factors of `desc`; notes.particle_of_vertex is known.
+void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv, const ClothNotes& notes,
+                  RestMesh& mesh) {
+  if (desc.rest_scales.empty()) return;
+  if (!std::holds_alternative<Fabric>(desc.fabric))
+    throw InputError("rest_scales follow warp and weft, which springs lack; give it a fabric");
+  std::vector<Vec2> factors(mesh.positions.size(), Vec2::Ones());
+  for (std::size_t s = 0; s < desc.rest_scales.size(); ++s) {
+    const RestScale& scale = desc.rest_scales[s];
+    const std::string who = "rest scale " + std::to_string(s) + ": ";
+    for (const double factor : {scale.warp, scale.weft}) {
+      if (!std::isfinite(factor) || factor <= 0) throw InputError(who + "its factors must be above 0");
+    }
+    std::vector<char> is_inside(mesh.positions.size(), 0);
+    try {
+      for (const int p : find_particles(scale.vertices, notes.particle_of_vertex)) is_inside[p] = 1;
+    } catch (const InputError& error) {
+      throw InputError(who + error.what());
+    }
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      if (is_inside[i]) factors[i] = factors[i].cwiseProduct(Vec2(scale.warp, scale.weft));
+    }
+  }
+  std::vector<std::string> known;  // build_substance() reports them
+  scale_rest(mesh, find_warp(desc, mesh, uv, "", known), factors);
+}
+
+/// What the rest shape does to the edges of the mesh.
+void report_rest(const RestMesh& mesh, ClothNotes& notes) {
+  constexpr double kFar = 1.25;        // factor of lengths between the mesh and its rest shape
+  constexpr double kMostEdges = 0.05;  // share of edges that may be beyond it
+  if (mesh.at_rest.empty()) return;
+  std::vector<double> stretches;
+  for (const Edge& e : build_edges(mesh))
+    stretches.push_back((mesh.positions[e.b] - mesh.positions[e.a]).norm() / edge_length(mesh, e));
+  std::ranges::sort(stretches);
+  const auto at = [&](double share) {
+    return short_text(stretches[static_cast<std::size_t>(share * static_cast<double>(stretches.size() - 1))]);
+  };
+  notes.done.push_back("its edges start at " + at(0.05) + " to " + at(0.95) +
+                       " times their lengths at rest (of nine in ten; median " + at(0.5) + ")");
+  const auto num_far = std::ranges::count_if(stretches, [&](double s) { return s > kFar || s < 1 / kFar; });
+  if (static_cast<double>(num_far) > kMostEdges * static_cast<double>(stretches.size()))
+    notes.warnings.push_back(std::to_string(num_far) + " of " + std::to_string(stretches.size()) +
+                             " edges start at more than 1.25 or less than 0.8 times their length at rest; is "
+                             "this the pattern of this mesh, and its scale right?");
+}
+
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
   for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
-  // A grid with warp along neither axis, or with seams, is treated as a mesh.
   const bool has_fabric = std::holds_alternative<Fabric>(desc.fabric);
   if (!has_fabric && !desc.seams.empty())
     throw InputError("a grid of springs has no seams; give it a fabric");
-  if (desc.seams.empty() && (!has_fabric || grid_warp(desc)))
-    return {build_grid_topology(grid, desc.model), {}, {}};
-  TriangleMesh mesh = build_grid_mesh(grid, diagonals_of(desc.model));
+  if (!desc.rest.empty()) throw InputError("only the triangles of a mesh have another rest shape");
+  const bool is_turned = has_fabric && !grid_warp(desc);  // the kernels of grids require warp along an axis
+  if (!is_turned && !needs_mesh(desc)) return {build_grid_topology(grid, desc.model), {}, {}};
+  RestMesh mesh = build_grid_mesh(grid, diagonals_of(desc.model));
+  apply_scales(desc, {}, notes, mesh);
+  report_rest(mesh, notes);
   Seams seams = build_seams(desc, mesh, notes);
   return {build_mesh_topology(std::move(mesh), std::move(seams)), {}, {}};
 }
@@ -237,11 +321,15 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
     rest.uv.push_back(interpolate(uv[clean.source_triangle[t]], clean.corner_weights[t]));
   rest.added = find_added(mesh, clean);
   rest.vertices = find_vertices(mesh, clean);
-  notes.particle_of_vertex = std::move(clean.vertex_of_source);
-  Seams seams = build_seams(desc, clean.mesh, notes);
-  rest.topology = build_mesh_topology(std::move(clean.mesh), std::move(seams));
-  notes.warnings = std::move(clean.warnings);
-  notes.done = std::move(clean.notes);
+  notes.particle_of_vertex = clean.vertex_of_source;
+  notes.warnings = clean.warnings;
+  notes.done = clean.notes;
+  RestMesh prepared = clean.mesh;
+  if (!desc.rest.empty()) set_rest(desc.rest, mesh, clean, prepared, notes);
+  apply_scales(desc, rest.uv, notes, prepared);
+  report_rest(prepared, notes);
+  Seams seams = build_seams(desc, prepared, notes);
+  rest.topology = build_mesh_topology(std::move(prepared), std::move(seams));
   return rest;
 }
 
@@ -260,8 +348,9 @@ RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothN
   if (desc.warp && !(std::isfinite(length(*desc.warp)) && length(*desc.warp) > 0))
     throw InputError(who + "warp must be a direction, finite and not zero");
   try {
-    if (const Grid* grid = std::get_if<Grid>(&desc.shape)) return build_from_grid(desc, *grid, notes);
-    RestShape rest = build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);
+    const Grid* grid = std::get_if<Grid>(&desc.shape);
+    RestShape rest = grid ? build_from_grid(desc, *grid, notes)
+                          : build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);
     for (auto* list : {&notes.warnings, &notes.done}) {
       for (std::string& message : *list) message = mesh_who + message;
     }

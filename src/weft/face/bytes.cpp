@@ -89,9 +89,14 @@ void describe(Archive& archive, weft::Seam& s) {
   members(archive, s.a, s.b);
 }
 template <class Archive>
+void describe(Archive& archive, weft::RestScale& s) {
+  members(archive, s.vertices, s.warp, s.weft);
+}
+template <class Archive>
 void describe(Archive& archive, ClothDesc& d) {
-  members(archive, d.name, d.shape, d.source, d.fabric, d.fabric_name, d.membrane, d.warp, d.model, d.pose,
-          d.velocity, d.weld, d.sew, d.layer, d.seams, d.seam_time, d.seam_stiffness, d.fits_thickness);
+  members(archive, d.name, d.shape, d.rest, d.rest_scales, d.source, d.fabric, d.fabric_name, d.membrane,
+          d.warp, d.model, d.pose, d.velocity, d.weld, d.sew, d.layer, d.seams, d.seam_time, d.seam_stiffness,
+          d.fits_thickness);
 }
 template <class Archive>
 void describe(Archive& archive, weft::Sphere& s) {
@@ -262,7 +267,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 9;         // of the format
+constexpr std::uint32_t kVersion = 10;        // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.

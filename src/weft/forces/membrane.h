@@ -23,8 +23,6 @@
 
 namespace weft::engine {
 
-using TriangleCorners = std::array<Vec3, 3>;
-
 /// Green strain (ε11, ε22, 2 ε12) [1].
 Vec3 membrane_strain(const RestTriangle& rest, const TriangleCorners& x);
 

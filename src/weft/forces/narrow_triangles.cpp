@@ -114,7 +114,7 @@ void NarrowTriangles::fit(std::shared_ptr<const ClothTopology> topology, const P
 }
 
 void NarrowTriangles::fit_mesh() {
-  const TriangleMesh& mesh = topology_->mesh;
+  const RestMesh& mesh = topology_->mesh;
   const int num_slices = round_up_to_pack(mesh.num_triangles()) / kLanes;
   corner_.assign(3 * kLanes * num_slices, 0);
   rest_.assign(3 * kLanes * num_slices, 0.0f);
@@ -124,8 +124,8 @@ void NarrowTriangles::fit_mesh() {
     };
     rest_[at(0)] = rest_[at(2)] = -1;  // wide where there is no triangle
     if (t >= mesh.num_triangles()) continue;
-    const auto& [a, b, c] = mesh.triangles[t];
-    const Vec3 d1 = mesh.positions[b] - mesh.positions[a], d2 = mesh.positions[c] - mesh.positions[a];
+    const TriangleCorners rest = mesh.corners(t);
+    const Vec3 d1 = rest[1] - rest[0], d2 = rest[2] - rest[0];
     const double gram[] = {d1.squaredNorm(), d1.dot(d2), d2.squaredNorm()};
     for (int k = 0; k < 3; ++k) {
       corner_[at(k)] = mesh.triangles[t][k];

@@ -73,7 +73,10 @@ std::vector<Edge> build_edges(const TriangleMesh& mesh) {
     if (edges.empty() || edges.back().a != h.a || edges.back().b != h.b)
       edges.push_back({h.a, h.b, {-1, -1}, 0});
     Edge& edge = edges.back();
-    if (edge.num_triangles < 2) edge.opposite[edge.num_triangles] = h.opposite;
+    if (edge.num_triangles < 2) {
+      edge.opposite[edge.num_triangles] = h.opposite;
+      edge.triangles[edge.num_triangles] = h.triangle;
+    }
     ++edge.num_triangles;
   }
   return edges;

@@ -12,6 +12,9 @@ namespace weft::engine {
 /// Texture coordinates of a triangle's corners: a vertex on a texture seam has several.
 using CornerUv = std::array<Eigen::Vector2d, 3>;
 
+/// The places of a triangle's corners [m].
+using TriangleCorners = std::array<Vec3, 3>;
+
 /// Corners of a part of a triangle, in it: barycentric coordinates by corner, each summing to 1.
 using CornerWeights = std::array<Vec3, 3>;
 
@@ -49,6 +52,7 @@ struct Edge {
   int a = 0, b = 0;
   int opposite[2] = {-1, -1};
   int num_triangles = 0;
+  int triangles[2] = {-1, -1};  // with the opposite vertices
 };
 
 /// Every edge once, sorted by (a, b).

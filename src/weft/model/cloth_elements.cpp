@@ -30,7 +30,7 @@ StrainLimit find_limit(const std::vector<MembraneElement>& membranes, const Fabr
   return make_strain_limit(fabric, area, std::sqrt(2 * area / static_cast<double>(membranes.size())));
 }
 
-ClothElements make_elements(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+ClothElements make_elements(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
                             BendingModel bending) {
   ClothElements elements;
   elements.stiffness = membrane_stiffness(fabric);
@@ -51,7 +51,7 @@ void bend_by_stencils(const Grid& grid, GridWarp warp, const Fabric& fabric, Clo
   elements.thread_bends = build_grid_thread_bends(grid, warp, fabric);
 }
 
-void bend_by_stencils(const TriangleMesh& mesh, const WarpField& warp, const Fabric& fabric,
+void bend_by_stencils(const RestMesh& mesh, const WarpField& warp, const Fabric& fabric,
                       ClothElements& elements) {
   elements.bending = build_mesh_bending(mesh, warp, fabric);
   elements.thread_bends = build_mesh_thread_bends(mesh, warp, fabric);
@@ -59,7 +59,7 @@ void bend_by_stencils(const TriangleMesh& mesh, const WarpField& warp, const Fab
 
 }  // namespace
 
-std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
+std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const RestMesh& mesh,
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending) {
   const Vec3 direction = warp == GridWarp::first_axis ? Vec3::UnitX() : Vec3::UnitZ();
@@ -80,8 +80,7 @@ std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& gri
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
-std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleMesh& mesh,
-                                                                 const WarpField& warp,
+std::shared_ptr<const ClothElements> build_mesh_bending_elements(const RestMesh& mesh, const WarpField& warp,
                                                                  const Fabric& fabric) {
   ClothElements elements;
   bend_by_stencils(mesh, warp, fabric, elements);
@@ -89,7 +88,7 @@ std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleM
   return std::make_shared<ClothElements>(std::move(elements));
 }
 
-std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
+std::shared_ptr<const ClothElements> build_mesh_elements(const RestMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric, BendingModel bending) {
   ClothElements elements = make_elements(mesh, warp, fabric, bending);
   elements.patches = pair_triangles(mesh, warp, elements.membranes);

@@ -43,7 +43,7 @@ enum class BendingModel {
 };
 
 /// Elements of a grid and its mesh. The stencils are the grid's, independent of its cells' diagonals.
-std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const TriangleMesh& mesh,
+std::shared_ptr<const ClothElements> build_grid_elements(const Grid& grid, const RestMesh& mesh,
                                                          GridWarp warp, const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 
@@ -52,10 +52,10 @@ std::shared_ptr<const ClothElements> build_grid_bending_elements(const Grid& gri
                                                                  const Fabric& fabric);
 
 /// A mesh's bending only, likewise. There is no strain limit.
-std::shared_ptr<const ClothElements> build_mesh_bending_elements(const TriangleMesh& mesh,
-                                                                 const WarpField& warp, const Fabric& fabric);
+std::shared_ptr<const ClothElements> build_mesh_bending_elements(const RestMesh& mesh, const WarpField& warp,
+                                                                 const Fabric& fabric);
 
-std::shared_ptr<const ClothElements> build_mesh_elements(const TriangleMesh& mesh, const WarpField& warp,
+std::shared_ptr<const ClothElements> build_mesh_elements(const RestMesh& mesh, const WarpField& warp,
                                                          const Fabric& fabric,
                                                          BendingModel bending = BendingModel::stencils);
 

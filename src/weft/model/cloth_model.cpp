@@ -52,7 +52,7 @@ std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, Sprin
   return topology;
 }
 
-std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh, Seams seams) {
+std::shared_ptr<const ClothTopology> build_mesh_topology(RestMesh mesh, Seams seams) {
   require_valid(mesh);
   auto topology = std::make_shared<ClothTopology>();
   topology->mesh = std::move(mesh);

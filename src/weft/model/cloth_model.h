@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "weft/mesh/grid.h"
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/rest_mesh.h"
 #include "weft/model/cloth_elements.h"
 #include "weft/model/gas.h"
 #include "weft/model/neighbour_table.h"
@@ -42,7 +42,7 @@ struct ClothMaterial {
 };
 
 struct ClothTopology {
-  TriangleMesh mesh;            // at rest
+  RestMesh mesh;
   std::vector<Spring> springs;  // every spring once
   std::vector<double> area;     // of each particle (num_particles) [m²]
   std::optional<Grid> grid;     // set: the fast kernels use stencils, not `table`
@@ -56,9 +56,8 @@ struct ClothTopology {
 /// Throws InputError for an invalid grid.
 std::shared_ptr<const ClothTopology> build_grid_topology(const Grid& grid, SpringModel model);
 
-/// The mesh must be clean (see clean_mesh). Its positions are the rest shape. Throws InputError for an
-/// invalid mesh.
-std::shared_ptr<const ClothTopology> build_mesh_topology(TriangleMesh mesh, Seams seams = {});
+/// The mesh must be clean (see clean_mesh). Throws InputError for an invalid mesh.
+std::shared_ptr<const ClothTopology> build_mesh_topology(RestMesh mesh, Seams seams = {});
 
 struct ClothModel {
   std::uint64_t id = 0;  // unique in the process: a cache key for data computed from a model without `gas`

@@ -1,8 +1,38 @@
 #include "weft/model/springs.h"
 
+#include <array>
 #include <cmath>
 
 namespace weft::engine {
+namespace {
+
+/// Of the two vertices opposite to an edge, at rest: with the angle of the mesh between the triangles.
+double distance_across(const RestMesh& mesh, const Edge& edge) {
+  const Vec3 &p = mesh.positions[edge.opposite[0]], &q = mesh.positions[edge.opposite[1]];
+  if (mesh.at_rest.empty()) return (p - q).norm();
+  struct Tip {
+    double along, height;  // from the edge's middle, and from the edge [m]
+  };
+  const auto lay = [](const Vec3& tip, const Vec3& end) {
+    const Vec3 axis = end.normalized();
+    return Tip{tip.dot(axis) - 0.5 * end.norm(), tip.cross(axis).norm()};
+  };
+  std::array<Tip, 2> tips;
+  std::array<Vec3, 2> upright;  // from the edge to the tips in the mesh
+  for (int side = 0; side < 2; ++side) {
+    const int t = edge.triangles[side], tip = edge.opposite[side];
+    tips[side] = lay(mesh.between(t, edge.a, tip), mesh.between(t, edge.a, edge.b));
+    const Vec3 axis = (mesh.positions[edge.b] - mesh.positions[edge.a]).normalized(),
+               to = mesh.positions[tip] - mesh.positions[edge.a];
+    upright[side] = (to - to.dot(axis) * axis).normalized();
+  }
+  const auto& [first, second] = tips;
+  const double along = first.along - second.along;
+  return std::sqrt(along * along + first.height * first.height + second.height * second.height -
+                   2 * first.height * second.height * upright[0].dot(upright[1]));
+}
+
+}  // namespace
 
 std::string_view to_string(SpringModel model) {
   switch (model) {
@@ -44,16 +74,15 @@ std::vector<Spring> build_grid_springs(const Grid& grid, SpringModel model) {
   return springs;
 }
 
-std::vector<Spring> build_mesh_springs(const TriangleMesh& mesh) {
+std::vector<Spring> build_mesh_springs(const RestMesh& mesh) {
   std::vector<Spring> springs;
-  const auto add = [&](int i, int j, SpringKind kind) {
-    springs.push_back({i, j, kind, (mesh.positions[i] - mesh.positions[j]).norm()});
-  };
   const std::vector<Edge> edges = build_edges(mesh);
-  for (const Edge& edge : edges) add(edge.a, edge.b, SpringKind::structural);
+  for (const Edge& edge : edges)
+    springs.push_back({edge.a, edge.b, SpringKind::structural, edge_length(mesh, edge)});
   for (const Edge& edge : edges) {
     const bool inner = edge.num_triangles == 2 && edge.opposite[0] != edge.opposite[1];
-    if (inner) add(edge.opposite[0], edge.opposite[1], SpringKind::bend);
+    if (inner)
+      springs.push_back({edge.opposite[0], edge.opposite[1], SpringKind::bend, distance_across(mesh, edge)});
   }
   return springs;
 }

@@ -17,7 +17,7 @@
 
 #include "weft/cloth.h"
 #include "weft/mesh/grid.h"
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/rest_mesh.h"
 
 namespace weft::engine {
 
@@ -34,6 +34,6 @@ struct Spring {
 GridDiagonals diagonals_of(SpringModel model);
 
 std::vector<Spring> build_grid_springs(const Grid& grid, SpringModel model);
-std::vector<Spring> build_mesh_springs(const TriangleMesh& mesh);
+std::vector<Spring> build_mesh_springs(const RestMesh& mesh);
 
 }  // namespace weft::engine

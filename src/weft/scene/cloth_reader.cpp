@@ -54,19 +54,49 @@ MeshSource read_mesh(TomlTable& cloth, const std::filesystem::path& folder) {
   return mesh;
 }
 
+/// "uv", { uv_scale = … } or { mesh = … }.
+std::optional<RestDesc> read_rest(TomlTable& cloth, const std::filesystem::path& folder) {
+  constexpr std::string_view kForms = "\"uv\", { uv_scale = 0.01 } or { mesh = \"pattern.obj\" }";
+  const TomlValue value = cloth.get("rest", {.kind = ParameterKind::table});
+  std::string name;
+  if (value && value.is_string()) {
+    value.read(name);
+    if (name != "uv") value.expected(kForms);
+    return RestDesc{};
+  }
+  if (value && !value.is_table()) value.expected(kForms);
+  TomlTable table = cloth.table("rest");
+  const bool has_mesh = table.has("mesh");
+  RestDesc rest;
+  MeshSource mesh = read_mesh_file(table, "mesh", folder);
+  if (has_mesh) {
+    rest.mesh = std::move(mesh);
+    table.refuse("uv_scale", "is the unit of texture coordinates; a mesh has \"scale\"");
+    return rest;
+  }
+  for (const char* key : {"up", "scale"})
+    table.refuse(key, "requires \"mesh\"; texture coordinates have \"uv_scale\"");
+  constexpr NumberRule rule = above_zero("m per unit of texture coordinates");
+  if (const TomlValue scale = table.get("uv_scale", make_note(rule)))
+    scale.read(rest.uv_scale.emplace(), rule);
+  return value ? std::optional(rest) : std::nullopt;
+}
+
 /// Keys of the other kind of cloth are refused with the reason, not as unknown.
-std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, const std::filesystem::path& folder) {
+std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, std::optional<RestDesc>& rest,
+                                const std::filesystem::path& folder) {
   cloth.require({"grid", "mesh"}, "grid = { size = [1, 1], cells = [32, 32] } or mesh = \"file.obj\"");
   const TomlValue grid = cloth.get("grid"), mesh = cloth.get("mesh");
   if (mesh && !grid) {
     cloth.refuse("model", "only a grid has it; the springs of a mesh are its edges");
     cloth.set_form("mesh");
+    rest = read_rest(cloth, folder);
     return read_mesh(cloth, folder);
   }
   cloth.set_form("grid");
   read_model(cloth, model);
   const bool is_grid = grid && !mesh;
-  for (const char* key : {"up", "scale", "weld", "sew"}) {
+  for (const char* key : {"up", "scale", "weld", "sew", "rest"}) {
     if (is_grid) cloth.refuse(key, "only a mesh has it; a grid is in m, rotated by \"rotation\"");
     if (!is_grid) cloth.get(key);
   }
@@ -155,7 +185,7 @@ void read_warp(TomlTable& cloth, FabricDesc& fabric) {
 /// Keys that require a fabric; material and model that follow from a fabric.
 void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   if (!desc.fabric) {
-    for (const char* key : {"membrane", "warp"})
+    for (const char* key : {"membrane", "warp", "rest_scale"})
       cloth.refuse(key, "requires a fabric by name, file or SI values; this one has spring stiffnesses");
     return;
   }
@@ -214,7 +244,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   ClothSceneDesc cloth;
   cloth.name = number == 1 ? "cloth" : "cloth " + std::to_string(number);
   table.read("name", cloth.name);
-  const std::optional<Shape> shape = read_shape(table, cloth.model, folder);
+  const std::optional<Shape> shape = read_shape(table, cloth.model, cloth.rest, folder);
   table.set_form("");
   if (shape) cloth.shape = *shape;
   cloth.fabric = read_fabric(table, cloth.material, folder);
@@ -233,6 +263,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   if (cloth.fabric && cloth.fabric->membrane == Membrane::triangle)
     table.refuse("stiffen", "requires springs: set spring stiffnesses, or membrane = \"springs\"");
   cloth.stiffened = read_stiffened(table, shape ? &*shape : nullptr);
+  cloth.rest_scales = read_rest_scales(table, shape ? &*shape : nullptr);
   table.read("layer", cloth.layer, IntegerRule{-100, 100});
   cloth.seams = read_seams(table);
   table.read("seam_time", cloth.seam_time, not_negative("s"));

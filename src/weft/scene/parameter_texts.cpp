@@ -53,6 +53,8 @@ constexpr ParameterText kTexts[] = {
      "corners, only meshes groups."},
     {"cloth.pin", "", "Regions of particles that are held still or moved along key frames."},
     {"cloth.stiffen", "", "Regions of stiffer or softer springs. Factors multiply where regions overlap."},
+    {"cloth.rest_scale", "",
+     "Regions of a fabric that are shorter or longer at rest: elastic, gathers. Overlapping ones multiply."},
     {"cloth.layer", "",
      "Order of garments over each other at the start. Where solver.untangle is on, a higher one is moved "
      "outside of lower ones, away from the body. Equal: no order."},
@@ -80,6 +82,14 @@ constexpr ParameterText kTexts[] = {
      "Distance within which borders of pieces are joined, on vertices or between them. Larger: wider seams "
      "are "
      "closed; layers stay apart."},
+
+    {"cloth.rest", "mesh",
+     "Rest shape, where it is not the mesh: \"uv\", the pattern in its texture coordinates, with the area of "
+     "the mesh; or a table."},
+    {"cloth.rest.uv_scale", "", "Length of a unit of the texture coordinates. Larger: a larger pattern."},
+    {"cloth.rest.mesh", "", "File with the same faces, whose triangles are those at rest."},
+    {"cloth.rest.up", "", "Axis of that file that points upwards."},
+    {"cloth.rest.scale", "", "Length of that file's unit."},
 
     {"cloth.grid.size", "", "Lengths of the two sides of the grid."},
     {"cloth.grid.cells", "",
@@ -196,6 +206,10 @@ constexpr ParameterText kTexts[] = {
      "Region of the springs, as for pins. It has the springs with both ends inside."},
     {"cloth.stiffen.factor", "",
      "Multiplier of the stiffness of these springs. Above 1: stiffer, as in seams."},
+    {"cloth.rest_scale.select", "",
+     "Region of the cloth, as for pins. Triangles have the mean factor of their corners."},
+    {"cloth.rest_scale.warp", "", "Factor of lengths along warp at rest. Below 1: shorter."},
+    {"cloth.rest_scale.weft", "", "Factor of lengths along weft at rest. Elastic of a waist: 0.7."},
     {"cloth.seam.a", "",
      "Vertices on a border, in order, two or more; from each to the next the shorter way along the border."},
     {"cloth.seam.b", "",

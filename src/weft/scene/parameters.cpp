@@ -26,6 +26,7 @@ c11 = 1
 select = { box = {} }
 motion = [{}]
 [[cloth.stiffen]]
+[[cloth.rest_scale]]
 [[cloth.seam]]
 [[collider]]
 shape = "sphere"
@@ -48,6 +49,7 @@ gusts = {}
     R"([scene]
 [[cloth]]
 mesh = 0
+[cloth.rest]
 [cloth.fabric]
 spring_structural = 1
 [[cloth.pin]]

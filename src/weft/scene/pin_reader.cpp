@@ -194,6 +194,20 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSo
   return pins;
 }
 
+std::vector<RestScaleDesc> read_rest_scales(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
+  const Pinnable pinnable(shape);
+  std::vector<RestScaleDesc> scales;
+  for (TomlTable& table : cloth.tables("rest_scale")) {
+    RestScaleDesc scale;
+    const auto selection = read_select(table, pinnable);
+    table.read("warp", scale.warp, above_zero());
+    table.read("weft", scale.weft, above_zero());
+    if (selection) scale.select = *selection;
+    scales.push_back(scale);
+  }
+  return scales;
+}
+
 std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
   const Pinnable pinnable(shape);
   std::vector<StiffenDesc> stiffened;

@@ -280,6 +280,8 @@ std::vector<std::string> find_keys_for_restart(const SceneDesc& now, const Scene
     compare(a.pins == b.pins, cloth + "pin");
     compare(a.stiffened == b.stiffened, cloth + "stiffen");
     compare(a.layer == b.layer, cloth + "layer");
+    compare(a.rest == b.rest, cloth + "rest");
+    compare(a.rest_scales == b.rest_scales, cloth + "rest_scale");
     compare(a.seams == b.seams && a.seam_time == b.seam_time && a.seam_stiffness == b.seam_stiffness,
             cloth + "seam");
   }

@@ -75,6 +75,20 @@ struct MeshSource {
   bool operator==(const MeshSource&) const = default;
 };
 
+/// Another rest shape of a mesh: the pattern in its texture coordinates, or a mesh with the same faces.
+struct RestDesc {
+  std::optional<MeshSource> mesh;  // empty: texture coordinates
+  std::optional<double> uv_scale;  // as in rest_from_uv(), > 0 [m]
+  bool operator==(const RestDesc&) const = default;
+};
+
+/// A part of a cloth that is smaller or larger at rest.
+struct RestScaleDesc {
+  ParticleSelection select;
+  double warp = 1, weft = 1;  // as in RestScale, > 0 [1]
+  bool operator==(const RestScaleDesc&) const = default;
+};
+
 /// A collider's mesh with its initial pose.
 struct PlacedMesh {
   MeshSource source;                               // of a sequence: the first frame's
@@ -121,6 +135,8 @@ struct FabricDesc {
 struct ClothSceneDesc {
   std::string name;  // default: "cloth", "cloth 2", …
   std::variant<Grid, MeshSource> shape;
+  std::optional<RestDesc> rest;                 // of a mesh; empty: the mesh
+  std::vector<RestScaleDesc> rest_scales;       // with a fabric; factors multiply where selections overlap
   SpringModel model = SpringModel::simplified;  // of a fabric on a grid: alternating
   ClothMaterial material;                       // with a fabric: only its density, thickness and friction
   bool has_own_thickness = false;               // else the material's, at most half of the mean edge

@@ -46,11 +46,42 @@ void add_warnings(const MeshFromFile& mesh, const MeshSource& source, const std:
     warnings.push_back(owner + " (" + source.file.filename().string() + "): " + warning);
 }
 
-weft::TriangleMesh read_mesh(const MeshSource& source, const std::string& owner,
-                             std::vector<std::string>& warnings) {
-  const MeshFromFile mesh = read_in_metres(source, owner);
-  add_warnings(mesh, source, owner, warnings);
-  return from_engine(mesh.mesh, mesh.uv);
+/// The triangles of another mesh with the faces of `first`.
+std::vector<weft::TriangleCorners> read_rest_mesh(const MeshSource& source, const MeshFromFile& first,
+                                                  const std::string& owner) {
+  try {
+    const std::vector<weft::Vec3> positions = source.mesh
+                                                  ? from_engine(read_in_metres(source, owner).mesh.positions)
+                                                  : read_vertices_in_metres(source.file, source, first);
+    if (positions.size() != first.mesh.positions.size())
+      throw InputError("it has " + std::to_string(positions.size()) + " vertices, the mesh " +
+                       std::to_string(first.mesh.positions.size()));
+    std::vector<weft::TriangleCorners> rest;
+    for (const auto& [i, j, k] : first.mesh.triangles)
+      rest.push_back({positions[i], positions[j], positions[k]});
+    return rest;
+  } catch (const InputError& error) {
+    throw InputError(owner + ": its rest shape: " + error.what());
+  }
+}
+
+/// The shape and the rest shape of a cloth.
+void describe_mesh(const MeshSource& source, const std::optional<RestDesc>& rest, const std::string& owner,
+                   ClothDesc& cloth, std::vector<std::string>& warnings) {
+  const MeshFromFile read = read_in_metres(source, owner);
+  add_warnings(read, source, owner, warnings);
+  const weft::TriangleMesh mesh = from_engine(read.mesh, read.uv);
+  if (rest) {
+    try {
+      cloth.rest = rest->mesh ? read_rest_mesh(*rest->mesh, read, owner) : rest_from_uv(mesh, rest->uv_scale);
+    } catch (const InputError& error) {
+      throw InputError(rest->mesh ? error.what() : owner + ": " + error.what());
+    }
+  }
+  cloth.shape = mesh;
+  cloth.source = source.file.filename().string();
+  if (source.weld) cloth.weld = source.weld_distance;
+  cloth.sew = source.sew_distance;
 }
 
 weft::Pose make_pose(const Vec3& position, const Vec3& rotation_deg) {
@@ -194,10 +225,7 @@ std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc) {
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
   ClothDesc cloth{.name = desc.name};
   if (const MeshSource* file = std::get_if<MeshSource>(&desc.shape)) {
-    cloth.shape = read_mesh(*file, "cloth \"" + desc.name + '"', warnings);
-    cloth.source = file->file.filename().string();
-    if (file->weld) cloth.weld = file->weld_distance;
-    cloth.sew = file->sew_distance;
+    describe_mesh(*file, desc.rest, "cloth \"" + desc.name + '"', cloth, warnings);
   } else {
     cloth.shape = std::get<Grid>(desc.shape);
   }

@@ -12,7 +12,7 @@
 
 namespace weft::engine {
 
-/// Without pins and stiffened regions. Throws InputError, beginning with the name of the cloth, if its file
+/// Without pins, stiffened regions and rest scales. Throws InputError, beginning with the name of the cloth, if its file
 /// cannot be read.
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings);
 

@@ -22,6 +22,9 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSo
 /// Regions of stiffer or softer springs; `shape` as for pins.
 std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
 
+/// Regions with another length at rest; `shape` as for pins.
+std::vector<RestScaleDesc> read_rest_scales(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape);
+
 /// The key "static_friction": at least `friction`.
 void read_static_friction(TomlTable& table, double friction, double& static_friction);
 

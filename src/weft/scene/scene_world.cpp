@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <optional>
 
 #include "weft/core/nearest_name.h"
@@ -51,12 +52,12 @@ struct Selector {
     for (const int index : selection.indices) {
       if (index < 0 || static_cast<std::size_t>(index) >= count) {
         throw InputError("cloth \"" + cloth.name + "\": there is no index " + std::to_string(index) +
-                         " to pin; the last one is " + std::to_string(count - 1));
+                         " to select; the last one is " + std::to_string(count - 1));
       }
       const int particle = particle_of_vertex[index];
       if (particle < 0) {
         throw InputError("cloth \"" + cloth.name + "\": vertex " + std::to_string(index) +
-                         " cannot be pinned: no triangle uses it");
+                         " cannot be selected: no triangle uses it");
       }
       selected.push_back(particle);
     }
@@ -93,6 +94,23 @@ std::vector<int> select(const Selector& selector, const ParticleSelection& selec
   throw InputError(
       "cloth \"" + selector.cloth.name + "\": " + what +
       " contains no particle; regions are in world coordinates [m], after position and rotation");
+}
+
+/// Rest scales, by vertices of the described shape.
+std::vector<RestScale> describe_scales(const ClothSceneDesc& desc, const ClothDesc& described) {
+  std::vector<RestScale> scales;
+  if (desc.rest_scales.empty()) return scales;
+  const Grid* grid = std::get_if<Grid>(&described.shape);
+  const std::vector<Vec3> positions =
+      place(grid ? build_grid_mesh(*grid, diagonals_of(described.model)).positions
+                 : to_engine(std::get<weft::TriangleMesh>(described.shape).positions),
+            desc);
+  std::vector<int> vertices(positions.size());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  for (const RestScaleDesc& scale : desc.rest_scales)
+    scales.push_back(
+        {select({desc, vertices, positions}, scale.select, "a rest scale"), scale.warp, scale.weft});
+  return scales;
 }
 
 /// The collider of the name; empty for a pin that follows none.
@@ -240,7 +258,9 @@ PublicScene place_scene(const SceneDesc& scene, std::shared_ptr<JobSystem> jobs,
     append(result.world.warnings(id), result.warnings);
   }
   for (const ClothSceneDesc& desc : scene.cloths) {
-    const ClothId id = result.world.add_cloth(describe_cloth(desc, scene.contact, result.warnings));
+    ClothDesc described = describe_cloth(desc, scene.contact, result.warnings);
+    described.rest_scales = describe_scales(desc, described);
+    const ClothId id = result.world.add_cloth(std::move(described));
     append(result.world.notes(id).warnings, result.warnings);
     append(result.world.notes(id).done, result.notes);
     hold_cloth(desc, id, result.world);

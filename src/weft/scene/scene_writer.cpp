@@ -283,6 +283,16 @@ std::string springs_text(const ClothSceneDesc& cloth) {
   return table.in_line();
 }
 
+std::string rest_text(const RestDesc& rest, const std::string& owner, MeshNames& files) {
+  Table table;
+  if (rest.mesh) {
+    table.add("mesh", files.name_of(*rest.mesh, owner + "_rest"));
+    add_mesh_keys(*rest.mesh, table);
+    return table.in_line();
+  }
+  return rest.uv_scale ? table.add("uv_scale", *rest.uv_scale).in_line() : toml(std::string("uv"));
+}
+
 std::string shape_lines(const ClothSceneDesc& cloth, MeshNames& files) {
   Table table;
   if (const Grid* grid = std::get_if<Grid>(&cloth.shape)) {
@@ -297,6 +307,7 @@ std::string shape_lines(const ClothSceneDesc& cloth, MeshNames& files) {
   if (mesh.weld && mesh.weld_distance == MeshSource().weld_distance) table.add("weld", true);
   if (mesh.weld && mesh.weld_distance != MeshSource().weld_distance) table.add("weld", mesh.weld_distance);
   table.add("sew", mesh.sew_distance, MeshSource().sew_distance);
+  if (cloth.rest) table.add_text("rest", rest_text(*cloth.rest, cloth.name, files));
   return table.lines();
 }
 
@@ -329,6 +340,12 @@ std::string cloth_text(const ClothSceneDesc& cloth, MeshNames& files) {
   for (const StiffenDesc& part : cloth.stiffened)
     text += "\n[[cloth.stiffen]]\n" +
             Table().add_text("select", selection_text(part.select)).add("factor", part.factor).lines();
+  for (const RestScaleDesc& scale : cloth.rest_scales)
+    text += "\n[[cloth.rest_scale]]\n" + Table()
+                                             .add_text("select", selection_text(scale.select))
+                                             .add("warp", scale.warp, RestScaleDesc().warp)
+                                             .add("weft", scale.weft, RestScaleDesc().weft)
+                                             .lines();
   for (const Seam& seam : cloth.seams)
     text += "\n[[cloth.seam]]\n" +
             Table().add_text("a", toml_array(seam.a)).add_text("b", toml_array(seam.b)).lines();

@@ -170,7 +170,19 @@ std::optional<Stretches> compute_principal_stretches(const ClothModel& model, co
   return all.max > 0 ? all : Stretches{1, 1};
 }
 
+namespace {
+
+/// The larger stretch of warp and weft in a triangle.
+double yarn_stretch(const RestTriangle& rest, const TriangleCorners& corners) {
+  const Vec3 green = membrane_strain(rest, corners);
+  return std::sqrt(1 + 2 * std::max(green.x(), green.y()));
+}
+
+}  // namespace
+
 YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state) {
+  const RestMesh& mesh = model.topology->mesh;
+  const bool is_at_rest = mesh.at_rest.empty();
   const double shortest = measurable_length(model);
   YarnStrain worst;
   const auto include = [&](double strain, int particle) {
@@ -179,26 +191,31 @@ YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state)
   if (model.elements && !model.elements->membranes.empty()) {
     for (const auto& [v, rest] : model.elements->membranes) {
       if (smallest_height(rest) < shortest) continue;
-      const Vec3 green = membrane_strain(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
-      include(std::sqrt(1 + 2 * std::max(green.x(), green.y())) - 1, v[0]);
+      const double now = yarn_stretch(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
+      const double given =
+          is_at_rest ? 1
+                     : yarn_stretch(rest, {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]});
+      include(now / std::max(1.0, given) - 1, v[0]);
     }
     return worst;
   }
   for (const Spring& s : model.topology->springs) {
-    if (s.kind == SpringKind::structural && s.rest_length >= shortest)
-      include((state.x.get(s.j) - state.x.get(s.i)).norm() / s.rest_length - 1, s.i);
+    if (s.kind != SpringKind::structural || s.rest_length < shortest) continue;
+    const double given = is_at_rest ? 0 : (mesh.positions[s.j] - mesh.positions[s.i]).norm();
+    include((state.x.get(s.j) - state.x.get(s.i)).norm() / std::max(s.rest_length, given) - 1, s.i);
   }
   return worst;
 }
 
 AreaShare compute_least_area(const ClothModel& model, const ClothState& state) {
   AreaShare least{std::numeric_limits<double>::infinity(), -1};
-  const TriangleMesh& mesh = model.topology->mesh;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const std::vector<Vec3>& rest = mesh.positions;
+  const RestMesh& mesh = model.topology->mesh;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const auto& [i, j, k] = mesh.triangles[t];
+    const TriangleCorners rest = mesh.corners(t);
     const Vec3 x = state.x.get(i);
     const double area = (state.x.get(j) - x).cross(state.x.get(k) - x).norm(),
-                 area_at_rest = (rest[j] - rest[i]).cross(rest[k] - rest[i]).norm();
+                 area_at_rest = (rest[1] - rest[0]).cross(rest[2] - rest[0]).norm();
     if (area < least.min * area_at_rest) least = {area / area_at_rest, i};
   }
   return least;

@@ -52,7 +52,7 @@ struct Stretches {
 std::optional<Stretches> compute_principal_stretches(const ClothModel& model, const ClothState& state);
 
 /// The largest strain along warp, weft or a structural spring, and a particle of it. Shear of membranes does
-/// not count [1].
+/// not count, nor does the stretch of the given shape where cloth is shorter at rest, as elastic is [1].
 struct YarnStrain {
   double max = 0;
   int particle = -1;

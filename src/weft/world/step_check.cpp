@@ -48,16 +48,18 @@ StepCheck check_stretch(const CheckedCloth& cloth, int index) {
 
 StepCheck check_area(const CheckedCloth& cloth, int index) {
   StepCheck worst{.fault = StepFault::collapse};
-  const TriangleMesh& mesh = cloth.model.topology->mesh;
+  const RestMesh& mesh = cloth.model.topology->mesh;
   const auto area_sq = [](const Vec3Array& at, const Triangle& t) {
     const Eigen::Vector3f o(at.x()[t[0]], at.y()[t[0]], at.z()[t[0]]);
     const Eigen::Vector3f a = Eigen::Vector3f(at.x()[t[1]], at.y()[t[1]], at.z()[t[1]]) - o,
                           b = Eigen::Vector3f(at.x()[t[2]], at.y()[t[2]], at.z()[t[2]]) - o;
     return static_cast<double>(a.cross(b).squaredNorm());
   };
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 &o = mesh.positions[t[0]], a = mesh.positions[t[1]] - o, b = mesh.positions[t[2]] - o;
-    const double rest_sq = a.cross(b).squaredNorm(), now_sq = area_sq(cloth.after.x, t);
+  for (int k = 0; k < mesh.num_triangles(); ++k) {
+    const Triangle& t = mesh.triangles[k];
+    const TriangleCorners rest = mesh.corners(k);
+    const double rest_sq = (rest[1] - rest[0]).cross(rest[2] - rest[0]).squaredNorm(),
+                 now_sq = area_sq(cloth.after.x, t);
     if (now_sq >= kMinArea * kMinArea * rest_sq) continue;
     const double kept = std::sqrt(now_sq / area_sq(cloth.before.x, t));
     const double severity = kAreaKept / std::max(kept, 1e-3);

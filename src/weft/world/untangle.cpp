@@ -9,6 +9,7 @@
 /// The state with fewer intersections, start or end, is kept.
 
 #include <algorithm>
+#include <cmath>
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/contact/shrink.h"
@@ -108,8 +109,9 @@ int World::thin_colliders(const Intersections& crossed, World& stage) const {
     stage.colliders_[c].friction = stage.colliders_[c].static_friction = 0;
     const MeshShape full = *shape;
     const TriangleMesh solid = find_solid_part(*full.mesh);
-    const std::vector<double> radii = compute_inner_radii(solid);
     double depth = kMoreThanDeep * depths[c] + kRoom;
+    const double most = depth * std::pow(kMoreNextTime, kMaxTrials - 1) / kMaxShrinkage;
+    const std::vector<double> radii = compute_inner_radii(solid, most);
     int steps = 0;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
       steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
