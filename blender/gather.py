@@ -14,6 +14,7 @@ from . import cache, units
 from .properties import NUMBERS
 from .refused import Refused
 
+_SOLID = {"AUTO": None, "SOLID": True, "OPEN": False}
 _NO_SHAPE = {"ARMATURE", "CAMERA", "EMPTY", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}  # never collide
 
 
@@ -108,6 +109,7 @@ class Gather:
         return ClothInput(
             cloth.name, str(file), _fabric(settings, scale), rest, start, faces, uv,
             None if uv is not None else ((0.0, 0.0, 1.0) if size[2] > 0.5 * size[:2].max() else (1.0, 0.0, 0.0)), pins, weights,
+            _sewing(mesh) if settings.sew else np.empty((0, 2), np.int32), settings.sew_time, settings.layer,
         )  # fmt: skip
 
     def _collider_input(self, body: bpy.types.Object, scale: float) -> ColliderInput:
@@ -119,7 +121,7 @@ class Gather:
             raise Refused(f'"{body.name}" has no faces')
         if np.linalg.det(self._matrix(body)[:3, :3]) < 0:  # mirrored
             faces = np.ascontiguousarray(faces[:, ::-1])
-        return ColliderInput(body.name, self._vertices(body, scale), faces, body.weft.friction)
+        return ColliderInput(body.name, self._vertices(body, scale), faces, body.weft.friction, _SOLID[body.weft.solid])
 
     # What moves.
 
@@ -180,6 +182,22 @@ def _triangles(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int3
         mesh.loop_triangles.foreach_get(name, flat)
         arrays.append(flat.reshape(-1, 3))
     return arrays[0], arrays[1]
+
+
+def _sewing(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Edges without faces between vertices of faces: (k, 2)."""
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    of_faces = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", of_faces)
+    is_loose = np.ones(len(mesh.edges), bool)
+    is_loose[of_faces] = False
+    has_face = np.zeros(len(mesh.vertices), bool)
+    has_face[corners] = True
+    edges = edges.reshape(-1, 2)
+    return edges[is_loose & has_face[edges].all(axis=1)]
 
 
 def _pins(cloth: bpy.types.Object) -> tuple[NDArray[np.int32], NDArray[np.float64]]:

@@ -40,12 +40,17 @@ class WEFT_PT_object(_Panel, bpy.types.Panel):
         layout.row().prop(settings, "role", expand=True)
         if settings.role == "COLLIDER":
             layout.prop(settings, "friction")
+            layout.prop(settings, "solid")
         if settings.role != "CLOTH":
             return
         layout.prop(settings, "fabric")
         layout.prop(settings, "thickness")
         layout.prop_search(settings, "pin_group", thing, "vertex_groups")
         layout.prop(settings, "rest")
+        layout.prop(settings, "layer")
+        layout.prop(settings, "sew")
+        if settings.sew:
+            layout.prop(settings, "sew_time")
 
 
 class WEFT_PT_fabric(_Panel, bpy.types.Panel):

@@ -67,6 +67,25 @@ class WeftObject(bpy.types.PropertyGroup):
     pin_group: StringProperty(
         name="Pins", description="Vertex group of pins: weight 1 is held, less is a spring that follows the mesh"
     )
+    layer: IntProperty(
+        name="Layer", default=0, min=-100, max=100,
+        description="Order of garments over each other: a higher one is put outside of lower ones at the start",
+    )  # fmt: skip
+    sew: BoolProperty(
+        name="Sew", default=True, description="Edges without faces draw together, as the sewing of Blender's cloth"
+    )
+    sew_time: FloatProperty(
+        name="Sewing time", default=0.5, min=0, unit="TIME_ABSOLUTE", description="Time in which sewing edges close (s)"
+    )
+    solid: EnumProperty(
+        name="Inside",
+        description="Whether the holes of a mesh are filled, so that it has an inside",
+        items=[
+            ("AUTO", "Small holes filled", "Holes of up to a twentieth of their shell's area are filled"),
+            ("SOLID", "All holes filled", "The mesh is a solid"),
+            ("OPEN", "Open", "Only closed shells are solid"),
+        ],
+    )
     rest: EnumProperty(
         name="Rest shape",
         description="Shape in which the cloth is free of tension",

@@ -1,6 +1,7 @@
 #pragma once
 /// Cloth: shape, material, initial state and pins.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -98,6 +99,9 @@ struct ClothDesc {
   /// Seams of panels, which draw together within `seam_time`, and then hold, with borders 1.2 thicknesses
   /// apart. For `newton` and `implicit_euler`; not on grids of springs.
   std::vector<Seam> seams = {};
+
+  /// Pairs of vertices that draw together likewise, such as the sewing edges of Blender. Empty: none.
+  std::vector<std::array<int, 2>> stitches = {};
   double seam_time = 1;  // from the start distance to closed, >= 0 [s]
 
   /// Tension per opening of the seams, >= 0; empty: that of the cloth's edges beside them [N/m²].

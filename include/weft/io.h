@@ -28,6 +28,8 @@ struct MeshFaces {
   std::vector<int> corners = {};               // vertices of the first face, then of the second, …
   std::vector<std::array<double, 2>> uv = {};  // (corners) u, v, NaN where there are none; or empty
   std::vector<MeshGroup> groups = {};          // in the order of their first faces
+  std::vector<std::array<int, 2>> lines =
+      {};  // vertices joined by a line l of an OBJ file, as Blender's sewing
 };
 
 struct MeshFromFile {

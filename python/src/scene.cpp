@@ -113,25 +113,27 @@ nb::dict run_scene(const Scene& scene, std::optional<int> frames, int threads, b
   return values;
 }
 
-/// Sizes, corners, texture coordinates of the corners, and groups as (name, is an object, faces).
+/// Sizes, corners, texture coordinates of the corners, groups as (name, is an object, faces), and lines.
 nb::tuple polygon_arrays(MeshFaces&& faces) {
   nb::list groups;
   for (MeshGroup& group : faces.groups)
     groups.append(nb::make_tuple(group.name, group.is_object, make_array<int>(std::move(group.faces), {})));
-  return nb::make_tuple(make_array<int>(std::move(faces.sizes), {}),
-                        make_array<int>(std::move(faces.corners), {}),
-                        make_array<double>(std::move(faces.uv), {2}), groups);
+  return nb::make_tuple(
+      make_array<int>(std::move(faces.sizes), {}), make_array<int>(std::move(faces.corners), {}),
+      make_array<double>(std::move(faces.uv), {2}), groups, make_array<int>(std::move(faces.lines), {2}));
 }
 
 using Uvs = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Groups = std::vector<std::tuple<std::string, bool, Indices>>;
+using Lines = nb::ndarray<const int, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
 MeshFaces to_faces(const Indices& sizes, const Indices& corners, const std::optional<Uvs>& uv,
-                   const Groups& groups) {
+                   const Groups& groups, const Lines& lines) {
   MeshFaces faces{.sizes = to_indices(sizes), .corners = to_indices(corners)};
   for (std::size_t c = 0; uv && c < uv->shape(0); ++c)
     faces.uv.push_back({uv->data()[2 * c], uv->data()[2 * c + 1]});
   for (const auto& [name, is_object, of] : groups) faces.groups.push_back({name, is_object, to_indices(of)});
+  for (std::size_t k = 0; k < lines.shape(0); ++k) faces.lines.push_back({lines(k, 0), lines(k, 1)});
   return faces;
 }
 
@@ -172,9 +174,10 @@ void write_arrays(const std::string& file, const Vectors& vertices, const Triang
 
 template <WritePolygons kWrite>
 void write_polygons(const std::string& file, const Vectors& vertices, const Indices& sizes,
-                    const Indices& corners, const std::optional<Uvs>& uv, const Groups& groups) {
+                    const Indices& corners, const std::optional<Uvs>& uv, const Groups& groups,
+                    const Lines& lines) {
   const std::vector<Vec3> positions = to_vectors(vertices);
-  const MeshFaces faces = to_faces(sizes, corners, uv, groups);
+  const MeshFaces faces = to_faces(sizes, corners, uv, groups, lines);
   const nb::gil_scoped_release release;
   kWrite(file, positions, faces);
 }
@@ -186,16 +189,17 @@ void bind_files(nb::module_& m, const std::string& name) {
         nb::sig(("def read_" + name +
                  "(file: str) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.float64], "
                  "tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64], "
-                 "list[tuple[str, bool, NDArray[numpy.int32]]]], list[str]]")
+                 "list[tuple[str, bool, NDArray[numpy.int32]]], NDArray[numpy.int32]], list[str]]")
                     .c_str()));
   m.def(("write_" + name).c_str(), write_arrays<kWrite>);
   m.def(("write_" + name + "_polygons").c_str(), write_polygons<kWritePolygons>, nb::arg(), nb::arg(),
-        nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
-        nb::sig(("def write_" + name +
-                 "_polygons(file: str, vertices: NDArray[numpy.float64], sizes: NDArray[numpy.int32], "
-                 "corners: NDArray[numpy.int32], uv: NDArray[numpy.float64] | None, "
-                 "groups: list[tuple[str, bool, NDArray[numpy.int32]]], /) -> None")
-                    .c_str()));
+        nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(),
+        nb::sig(
+            ("def write_" + name +
+             "_polygons(file: str, vertices: NDArray[numpy.float64], sizes: NDArray[numpy.int32], "
+             "corners: NDArray[numpy.int32], uv: NDArray[numpy.float64] | None, "
+             "groups: list[tuple[str, bool, NDArray[numpy.int32]]], lines: NDArray[numpy.int32], /) -> None")
+                .c_str()));
 }
 
 void bind_gltf(nb::module_& m) {

@@ -1,5 +1,6 @@
 /// Worlds and batches of worlds.
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -146,7 +147,8 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
            std::optional<Vec3> warp, const std::string& model, const Vec3& position, const Matrix& rotation,
            const Vec3& velocity, std::optional<double> weld, double sew, const std::optional<Vectors>& rest,
            const std::vector<std::tuple<Indices, double, double>>& rest_scales,
-           const std::vector<std::pair<Indices, Indices>>& seams, double seam_time,
+           const std::vector<std::pair<Indices, Indices>>& seams,
+           const std::vector<std::array<int, 2>>& stitches, double seam_time,
            std::optional<double> seam_stiffness, int layer, bool fits_thickness) {
           ClothDesc desc{.name = name,
                          .source = source,
@@ -159,6 +161,7 @@ void bind_bodies(nb::class_<LockedWorld>& c) {
                          .velocity = velocity,
                          .weld = weld,
                          .sew = sew,
+                         .stitches = stitches,
                          .seam_time = seam_time,
                          .seam_stiffness = seam_stiffness,
                          .layer = layer,

@@ -105,6 +105,17 @@ def whole_numbers(value: ArrayLike, name: str) -> Ints:
     return np.ascontiguousarray(array, np.int32)
 
 
+def pairs_of(value: ArrayLike, name: str) -> Ints:
+    """Pairs of whole numbers (n, 2)."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise _core.InputError(f"{name}: expected pairs of integers, found {_words(value)}") from None
+    if array.size and array.shape[1:] != (2,):
+        raise _core.InputError(f"{name}: expected shape (n, 2), found {array.shape}")
+    return whole_numbers(array.ravel(), name).reshape(-1, 2)
+
+
 def real(value: object, name: str) -> float:
     """A finite number."""
     try:

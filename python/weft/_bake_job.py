@@ -23,7 +23,7 @@ from . import _core
 FORMAT = 1
 _ARRAYS = {
     "rest": (np.float64, 3), "start": (np.float64, 3), "faces": (np.int32, 3), "uv": (np.float64, None),
-    "pins": (np.int32, 0), "weights": (np.float64, 0),
+    "pins": (np.int32, 0), "weights": (np.float64, 0), "stitches": (np.int32, 2),
 }  # fmt: skip
 
 
@@ -33,7 +33,8 @@ class ClothInput:
 
     rest: the rest shape (n, 3). start: positions at the first frame (n, 3). faces: triangles (t, 3). uv: (t, 3, 2), warp runs
     along u; None: `warp`, a direction of the rest shape. pins: pinned vertices (k,), and their weights (k,) in (0, 1]: 1 is
-    held, less is a spring (`pin_stiffness`). cache: the PC2 file that is written.
+    held, less is a spring (`pin_stiffness`). stitches: pairs of vertices that draw together within seam_time [s]. layer: order
+    of garments over each other. cache: the PC2 file that is written.
     """
 
     name: str
@@ -46,16 +47,21 @@ class ClothInput:
     warp: tuple[float, float, float] | None = None
     pins: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     weights: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    stitches: NDArray[np.int32] = field(default_factory=lambda: np.empty((0, 2), np.int32))
+    seam_time: float = 1.0
+    layer: int = 0
 
 
 @dataclass
 class ColliderInput:
-    """A mesh that cloth collides with. start: positions at the first frame (n, 3) [m]. faces: triangles (t, 3)."""
+    """A mesh that cloth collides with. start: positions at the first frame (n, 3) [m]. faces: triangles (t, 3). solid:
+    as in `World.add_collider`."""
 
     name: str
     start: NDArray[np.float64]
     faces: NDArray[np.int32]
     friction: float = 0.3
+    solid: bool | None = None
 
 
 @dataclass

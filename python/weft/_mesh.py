@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arguments import faces as as_faces
-from ._arguments import numbers, real, vectors, whole_numbers
+from ._arguments import numbers, pairs_of, real, vectors, whole_numbers
 from ._errors import tell_of_file
 
 
@@ -20,7 +20,8 @@ class Polygons:
 
     sizes: (num_polygons,) corners of each, 3 or more. corners: vertices of the first polygon, then of the second, ….
     uv: texture coordinates (num_corners, 2), NaN where the file has none. groups, objects: the polygons of each name,
-    ascending indices; of an OBJ file those behind its lines g and o. A polygon is in one object at most.
+    ascending indices; of an OBJ file those behind its lines g and o. A polygon is in one object at most. lines: pairs of
+    vertices (k, 2) that a line l of an OBJ file joins, such as the sewing of Blender.
 
     >>> quad = Polygons([4], [0, 1, 2, 3], groups={"hem": [0]})
     >>> quad
@@ -37,6 +38,7 @@ class Polygons:
         uv: ArrayLike | None = None,
         groups: Mapping[str, ArrayLike] | None = None,
         objects: Mapping[str, ArrayLike] | None = None,
+        lines: ArrayLike = (),
     ) -> None:
         self.sizes = whole_numbers(sizes, "sizes")
         self.corners = whole_numbers(corners, "corners")
@@ -49,6 +51,7 @@ class Polygons:
         self.uv = None if uv is None else self._as_uv(uv)
         self.groups = self._as_groups(groups, "groups")
         self.objects = self._as_groups(objects, "objects")
+        self.lines = pairs_of(lines, "lines")
 
     def _as_uv(self, uv: ArrayLike) -> NDArray[np.float64]:
         try:
@@ -248,12 +251,13 @@ def polygons_from(
     corners: NDArray[np.int32],
     uv: NDArray[np.float64],
     groups: list[tuple[str, bool, NDArray[np.int32]]],
+    lines: NDArray[np.int32],
 ) -> Polygons:
     """Polygons from what the module reads."""
     return Polygons(
         sizes, corners, uv=uv if len(uv) else None,
         groups={name: of for name, is_object, of in groups if not is_object},
-        objects={name: of for name, is_object, of in groups if is_object},
+        objects={name: of for name, is_object, of in groups if is_object}, lines=lines,
     )  # fmt: skip
 
 
@@ -284,9 +288,9 @@ def write_mesh(file: str | os.PathLike[str], mesh: Any) -> None:
 def _arrays(
     polygons: Polygons,
 ) -> tuple[
-    NDArray[np.int32], NDArray[np.int32], NDArray[np.float64] | None, list[tuple[str, bool, NDArray[np.int32]]]
+    NDArray[np.int32], NDArray[np.int32], NDArray[np.float64] | None, list[tuple[str, bool, NDArray[np.int32]]], NDArray[np.int32]
 ]:
     """Polygons as the module takes them."""
     groups = [(name, True, of) for name, of in polygons.objects.items()]
     groups += [(name, False, of) for name, of in polygons.groups.items()]
-    return polygons.sizes, polygons.corners, polygons.uv, groups
+    return polygons.sizes, polygons.corners, polygons.uv, groups, polygons.lines

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arguments import choose, indices, numbers, output, real, rotation, vector, vectors, whole, whole_numbers
+from ._arguments import choose, indices, numbers, output, pairs_of, real, rotation, vector, vectors, whole, whole_numbers
 from ._errors import tell
 from ._mesh import Mesh, as_mesh
 
@@ -489,6 +489,7 @@ class World:
         rest: ArrayLike | None = None,
         rest_scales: Sequence[tuple[Sequence[int], float, float]] = (),
         seams: Sequence[tuple[Sequence[int], Sequence[int]]] = (),
+        stitches: ArrayLike = (),
         seam_time: float = 1.0,
         seam_stiffness: float | None = None,
         layer: int = 0,
@@ -505,6 +506,7 @@ class World:
         (vertices, warp, weft), factors of lengths at rest along warp and weft: elastic, gathers. seams: pairs of
         stretches of border that draw together within seam_time [s], and hold; each stretch is a list of vertices on a
         border, in order, from each to the next the shorter way; the first of one is sewn to the first of the other.
+        stitches: pairs of vertices that draw together likewise (n, 2), such as `polygons.lines` of a mesh from a file.
         seam_stiffness: tension per opening [N/m²]; None: that of the cloth's edges. layer: order of garments over
         each other: `untangle` moves a cloth outside of those with lower numbers. fits_thickness: reduces the
         thickness to half of a mean edge where it is larger.
@@ -519,7 +521,7 @@ class World:
             str(name), shape, "", material, fabric_name, str(membrane),
             None if warp is None else vector(warp, "warp"), str(model), vector(position, "position"),
             _rotation(rotation), vector(velocity, "velocity"), None if weld is None else real(weld, "weld"),
-            real(sew, "sew"), None if rest is None else _corners(rest), _rest_scales(rest_scales), _seams(seams),
+            real(sew, "sew"), None if rest is None else _corners(rest), _rest_scales(rest_scales), _seams(seams), _stitches(stitches),
             real(seam_time, "seam_time"), None if seam_stiffness is None else real(seam_stiffness, "seam_stiffness"),
             whole(layer, "layer"), bool(fits_thickness),
         )  # fmt: skip
@@ -825,6 +827,11 @@ def _seams(seams: Any) -> list[tuple[Any, Any]]:
         if not isinstance(seam, Sequence) or len(seam) != 2:
             raise _core.InputError(f"seams: expected pairs of lists of vertices, found {seam!r:.60}")
         pairs.append((whole_numbers(seam[0], "seams"), whole_numbers(seam[1], "seams")))
+    return pairs
+
+
+def _stitches(stitches: ArrayLike) -> list[list[int]]:
+    pairs: list[list[int]] = pairs_of(stitches, "stitches").tolist()
     return pairs
 
 

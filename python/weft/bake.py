@@ -146,10 +146,13 @@ def _build_world(job: Job) -> World:
     part: ClothInput | ColliderInput
     try:
         for part in job.colliders:
-            world.add_collider(Mesh(part.start, part.faces), friction=part.friction, name=part.name)
+            world.add_collider(Mesh(part.start, part.faces), friction=part.friction, solid=part.solid, name=part.name)
         for part in job.cloths:
             mesh = Mesh(part.rest, part.faces, part.uv)
-            world.add_cloth(mesh, fabric=_core.Fabric(**part.fabric), warp=part.warp, name=part.name)
+            world.add_cloth(
+                mesh, fabric=_core.Fabric(**part.fabric), warp=part.warp, stitches=part.stitches, seam_time=part.seam_time,
+                layer=part.layer, name=part.name,
+            )  # fmt: skip
     except _core.InputError as error:
         raise error if part.name in str(error) else _core.InputError(f'"{part.name}": {error}') from None
     return world

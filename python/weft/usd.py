@@ -143,7 +143,7 @@ def _convert_from(source: _Source, out: Path, options: Options, notes: list[str]
         _check_size(source.name, faces.points, notes)
         if source.num_frames > 1 and options.frames == (0, None):
             notes.append(f"{source.name} is animated; {out} has its first frame (--frames)")
-        _core.write_mesh_polygons(str(out), faces.points, faces.counts, faces.vertices, faces.uv, [])
+        _core.write_mesh_polygons(str(out), faces.points, faces.counts, faces.vertices, faces.uv, [], np.empty((0, 2), np.int32))
         return
     start = source.positions(frames[0])
     _check_size(source.name, start, notes)
@@ -491,7 +491,7 @@ class _Shape:
 
 
 def _read_shape(file: Path, notes: list[str]) -> _Shape:
-    points, triangles, _, (counts, vertices, uv, groups), warnings = _core.read_mesh(str(file))
+    points, triangles, _, (counts, vertices, uv, groups, _lines), warnings = _core.read_mesh(str(file))
     notes += warnings
     _note_groups(str(file), len(groups), notes)
     return _Shape(_Faces(points, counts, vertices, uv if len(uv) else None), triangles)

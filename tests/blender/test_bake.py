@@ -123,6 +123,28 @@ def test_the_rest_shape_is_the_mesh_or_the_start(rest: str) -> None:
     assert abs(width[1] - 1.2) < 1e-3 if rest == "START" else width[1] < 1.15
 
 
+@pytest.mark.parametrize("sews", [True, False])
+def test_edges_without_faces_are_sewn(sews: bool) -> None:
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 40
+    scene.gravity = (0, 0, 0)
+    strip = [(0.05 * i, 0.05 * j, 0.0) for j in range(9) for i in range(5)]
+    vertices = strip + [(x + 0.3, y, z) for x, y, z in strip]
+    quads = [(a, a + 1, a + 6, a + 5) for k in (0, 45) for j in range(8) for i in range(4) for a in [k + 5 * j + i]]
+    sewing = [(5 * j + 4, 45 + 5 * j) for j in range(9)]
+    mesh = bpy.data.meshes.new("Panels")
+    mesh.from_pydata([*vertices, (9, 9, 9)], [*sewing, (0, 90)], quads)  # the last edge goes to a vertex without a face
+    mesh.update()
+    cloth = bpy.data.objects.new("Panels", mesh)
+    scene.collection.objects.link(cloth)
+    cloth.weft.role = "CLOTH"
+    cloth.weft.sew, cloth.weft.sew_time = sews, 0.3
+    bake()
+    ends = shown(cloth, 40)
+    apart = np.linalg.norm(ends[[a for a, _ in sewing]] - ends[[b for _, b in sewing]], axis=1)
+    assert apart.max() < 0.003 if sews else apart.min() > 0.09
+
+
 def test_keyed_and_skinned_colliders_are_not_crossed() -> None:
     scene = bpy.context.scene
     scene.frame_end = 24

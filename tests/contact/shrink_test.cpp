@@ -31,7 +31,7 @@ TriangleMesh bar(double radius) {
 
 TEST(Shrink, InnerRadiiOfABallAndABarAreTheirOwn) {
   for (const TriangleMesh& mesh : {ball(0.1), bar(0.1)}) {
-    const std::vector<double> radii = compute_inner_radii(mesh, 1);
+    const std::vector<double> radii = compute_inner_radii(mesh, 1, *make_serial_jobs());
     EXPECT_GT(*std::min_element(radii.begin(), radii.end()), 0.095);
     EXPECT_LT(*std::max_element(radii.begin(), radii.end()), 0.1005);
   }
@@ -39,7 +39,7 @@ TEST(Shrink, InnerRadiiOfABallAndABarAreTheirOwn) {
 
 TEST(Shrink, AShellAroundAnotherIsAsThickAsTheWhole) {
   const TriangleMesh head = ball(0.1), hair = ball(0.11);
-  const std::vector<double> radii = compute_inner_radii(join(head, hair), 1);
+  const std::vector<double> radii = compute_inner_radii(join(head, hair), 1, *make_serial_jobs());
   for (const double radius : radii) EXPECT_GT(radius, 0.095);
 }
 
@@ -47,7 +47,7 @@ TEST(Shrink, ABarBecomesThinnerByTheDepthAndNeverTurnsInsideOut) {
   constexpr double kRadius = 0.04;
   TriangleMesh mesh = bar(kRadius);
   const TriangleMesh full = mesh;
-  const std::vector<double> radii = compute_inner_radii(full, 1);
+  const std::vector<double> radii = compute_inner_radii(full, 1, *make_serial_jobs());
   for (const double depth : {0.01, 0.03, 0.1}) {
     mesh.positions = shrink(full, radii, depth);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {

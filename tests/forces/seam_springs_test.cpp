@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support.h"
+#include "weft/fabric/elements.h"
 #include "weft/model/seams.h"
 
 namespace weft::engine {
@@ -96,6 +97,27 @@ TEST(SeamSprings, OfADartLeaveItsTipAlone) {
   ASSERT_EQ(springs.size(), 2u);
   EXPECT_EQ(springs[0].particles[0], 1);
   EXPECT_EQ(springs[1].particles[0], 2);
+}
+
+TEST(SeamSprings, AreAsStiffAsTheirLengthAtRest) {
+  RestMesh mesh =
+      build_grid_mesh({.size_x = 1, .size_z = 1, .cells_x = 4, .cells_z = 4}, GridDiagonals::alternating);
+  const std::vector<std::array<int, 2>> pairs = {
+      {5, 9}, {0, 12}, {7, 7}};  // borders, a corner and the middle; none
+  const std::array<int, 3> a = {0, 5, 10}, b = {4, 9, 14};
+  const auto stitches = make_stitches(mesh, pairs, 1000.0, 0), seam = make_seam_springs(mesh, a, b, 1000);
+  ASSERT_EQ(stitches.size(), 2u);
+  EXPECT_NEAR(stitches[0].stiffness, 250, 1e-9);  // an edge of border at both ends
+  EXPECT_NEAR(make_stitches(mesh, pairs, {}, 50)[0].stiffness * 2,
+              50 * 2 * stitches[0].stiffness * 2 / (stitches[0].stiffness + stitches[1].stiffness), 1e-9)
+      << "the mean stitch has the stiffness of an edge";
+  const double mean = mean_edge(mesh, a, b);
+  scale_rest(mesh, warp_from_direction(mesh, Vec3::UnitX()), std::vector<Vec2>(25, Vec2(0.5, 0.5)));
+  EXPECT_NEAR(mean_edge(mesh, a, b), 0.5 * mean, 1e-12);
+  EXPECT_NEAR(make_stitches(mesh, pairs, 1000.0, 0)[0].stiffness, 125, 1e-9);
+  EXPECT_NEAR(make_seam_springs(mesh, a, b, 1000)[1].stiffness, 0.5 * seam[1].stiffness, 1e-9);
+  EXPECT_EQ(make_seam_springs(mesh, a, b, 1000)[1].start, seam[1].start)
+      << "the way they draw is that of the mesh";
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using test::square;
 /// The smallest area of a triangle over its rest area.
 double least_area(const ClothModel& model, const ClothState& state) {
   double least = 9;
-  const TriangleMesh& mesh = model.topology->mesh;
+  const RestMesh& mesh = model.topology->mesh;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const auto [wide, narrow] = principal_stretches(

@@ -168,6 +168,17 @@ TEST(ObjReader, NeedsNoMoreMemoryForGroupsThanTheFileHas) {
   for (const MeshGroup& group : groups) EXPECT_EQ(group.faces, (std::vector<FaceRange>{{0, 2000}}));
 }
 
+TEST(ObjReader, KeepsLinesAsPairsOfVertices) {
+  // Three vertices on a line, indices from the end and with texture coordinates, a vertex that comes later; mistakes.
+  const std::string text =
+      kFourVertices + "l 1 2 4\nl -1 1/1\nl 2 5\nl 1 9\nl 2 x 3\nl 3 3\nl 0 2\nv 5 5 5\nf 1 2 3\n";
+  const MeshFromFile read = parse_obj(text, "x.obj");
+  const std::vector<std::array<int, 2>> expected = {{0, 1}, {1, 3}, {3, 0}, {1, 4}};
+  EXPECT_EQ(read.faces.lines, expected);
+  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(parse_obj(obj_text(read.mesh.positions, read.faces), "y.obj").faces.lines, expected);
+}
+
 TEST(ObjReader, TellsUnknownKeywordsOnceAndStaysSilentOnKnownOnes) {
   const MeshFromFile known =
       parse_obj("mtllib a.mtl\no a\ng b\ns off\nusemtl c\nusemap d\nvn 0 0 1\nvt 0 0\n" + kFourVertices +

@@ -246,7 +246,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: cloth(rest_scales=[([9], 1, 1)]),
      'cloth "cloth": rest scale 0: vertex 9 is not one of the shape\'s 9'),
     (lambda: cloth(rest_scales=[([0], 1, 1)], fabric=weft.Springs()),
-     'cloth "cloth": rest_scales follow warp and weft, which springs lack; give it a fabric'),
+     'cloth "cloth": rest_scales follow warp and weft, which springs do not have; give it a fabric'),
     (lambda: weft.rest_from_uv(SQUARE),
      "a rest shape from texture coordinates requires them for each triangle; the mesh has 2 triangles, 0 with "
      "texture coordinates"),
@@ -254,6 +254,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
      "the texture coordinates of the mesh have no area"),
     (lambda: weft.rest_from_uv(weft.Mesh(SQUARE.vertices, SQUARE.faces, uv=np.zeros((4, 2))), scale=0),
      "the scale of texture coordinates must be above 0 m"),
+    (lambda: cloth(stitches=[(0, 9)]), 'cloth "cloth": stitch 0: vertex 9 is not one of the shape\'s 9'),
+    (lambda: cloth(stitches=[0, 8]), "stitches: expected shape (n, 2), found (2,)"),
     (lambda: cloth(SQUARE, seams=[[0, 1, 2]]), "seams: expected pairs of lists of vertices, found [0, 1, 2]"),
     (lambda: cloth(warp=(0, 0, 0)), 'cloth "cloth": warp must be a direction, finite and not zero'),
     (lambda: cloth().set_forces((1e300, 0, 0)), 'cloth "cloth": external forces must be finite, and at most 1e38'),

@@ -66,7 +66,7 @@ RIGHT: dict[str, tuple[list[Any], dict[str, Any]]] = {
         fabric="denim", position=(0, 2, 0), rotation=(0, 10, 0), velocity=(0, 0, 0), name="new", membrane="springs",
         warp=(1, 0, 0), model="basic", weld=0.001, sew=0.01,
         rest=np.ones((len(SQUARE.faces), 3, 3)), rest_scales=[([0, 1], 0.7, 1.2)],
-        seams=[([0, 4], [20, 24])], seam_time=0.5, seam_stiffness=1e4, layer=2, fits_thickness=True)),
+        seams=[([0, 4], [20, 24])], stitches=[(0, 24)], seam_time=0.5, seam_stiffness=1e4, layer=2, fits_thickness=True)),
     "World.add_collider": ([SQUARE], dict(
         friction=0.2, static_friction=0.3, position=(0, -1, 0), rotation=(1, 0, 0, 0), motion=[weft.KeyFrame(time=1)],
         solid=True, name="floor")),

@@ -139,6 +139,38 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
   EXPECT_EQ(scene.world.model(scene.world.cloth(0)).topology->mesh.num_triangles(), 5);
 }
 
+TEST(SceneWorld, StitchesTheLinesOfAFile) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "weft_scene_world_stitches";
+  std::filesystem::create_directories(folder);
+  // Two squares with two lines between them, one of them twice; others trace an edge, or go to vertices without a face.
+  const char* squares =
+      "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.2 0 0\nv 0.3 0 0\nv 0.2 0 0.1\nv 0.3 0 0.1\n"
+      "v 9 9 9\nf 1 3 4 2\nf 5 7 8 6\n";
+  std::ofstream(folder / "panels.obj") << squares << "l 2 5\nl 4 -3\nl 1 2\nl 3 99\nl 3 9\nl 5 2\n";
+  std::ofstream(folder / "plain.obj") << squares << "l 1 2\n";
+  const auto build = [&](const std::string& keys) {
+    const std::string text = "[scene]\nformat = 1\n[[cloth]]\nfabric = \"denim\"\nwarp = [1, 0, 0]\n" + keys;
+    return build_world(parse_scene(text, folder / "scene.toml"), make_serial_jobs());
+  };
+  const SceneWorld sewn = build("mesh = \"panels.obj\"\nstitches = true\n");
+  EXPECT_EQ(sewn.notes,
+            std::vector<std::string>{
+                "cloth \"cloth\" (panels.obj): 0 seams and 2 stitches draw together, from up to 0.1 m"});
+  EXPECT_EQ(sewn.world.model(sewn.world.cloth(0)).topology->seams.springs.size(), 2u);
+  const SceneWorld open = build("mesh = \"panels.obj\"\n");
+  ASSERT_EQ(open.warnings.size(), 2u);
+  EXPECT_EQ(open.warnings[0],
+            "cloth \"cloth\": its file has 2 lines between vertices, as Blender's sewing; stitches = true draws "
+            "them together");
+  EXPECT_EQ(message_of([&] { build("mesh = \"plain.obj\"\nstitches = true\n"); }),
+            "cloth \"cloth\": stitches are the lines of its file, l of an OBJ file, but it has none");
+  EXPECT_NE(message_of([&] {
+              build("mesh = \"panels.obj\"\nstitches = true\n[solver]\nintegrator = \"xpbd\"\n");
+            }).find("does not support the seams"),
+            std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
 /// A square of 0.1 m, whose texture coordinates are 0.08 by 0.12; a second file of the same faces, 1 by 1.
 class RestShapes : public ::testing::Test {
  protected:

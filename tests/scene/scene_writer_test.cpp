@@ -126,6 +126,7 @@ a = [0, 4, 9]
 b = [17, 12]
 [[cloth]]
 mesh = "a.obj"
+stitches = true
 rest = "uv"
 fabric = "silk"
 [[cloth]]

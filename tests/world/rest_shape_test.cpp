@@ -70,6 +70,33 @@ TEST(RestScale, FreeClothTakesItsRestSize) {
   EXPECT_NEAR(length(x[grid.index(4, 6)] - x[grid.index(4, 0)]), 0.99 * 0.3, 1e-4);
 }
 
+/// A third of the mesh's length: triangles that collapse keep the shape of their rest, not of the mesh.
+TEST(RestScale, MuchShorterClothIsNotCrushed) {
+  const Grid grid{.size_x = 0.4, .size_z = 0.3, .cells_x = 8, .cells_z = 6};
+  for (const char* integrator : {"newton", "implicit_euler"}) {
+    World world;
+    world.set_integrator({.integrator = integrator});
+    world.set_gravity({0, 0, 0});
+    const ClothId cloth =
+        world.add_cloth({.shape = grid, .rest_scales = {{all_of(grid), 0.33, 0.33}}, .fabric = plain()});
+    for (int s = 0; s < 240; ++s) ASSERT_TRUE(world.step(kStep).ok);
+    const std::vector<Vec3> x = world.positions(cloth);
+    EXPECT_NEAR(length(x[grid.index(8, 3)] - x[grid.index(0, 3)]), 0.33 * 0.4, 2e-4) << integrator;
+    EXPECT_NEAR(length(x[grid.index(4, 6)] - x[grid.index(4, 0)]), 0.33 * 0.3, 2e-4) << integrator;
+  }
+}
+
+TEST(RestScale, ClothThatHasItKeepsAFabric) {
+  const Grid grid{.cells_x = 4, .cells_z = 4};
+  World world;
+  const ClothId cloth =
+      world.add_cloth({.shape = grid, .rest_scales = {{all_of(grid), 0.8, 1}}, .fabric = plain()});
+  EXPECT_EQ(message_of([&] { world.set_fabric(cloth, Springs()); }),
+            "cloth \"cloth\": rest_scales follow warp and weft, which springs do not have; give it a fabric");
+  world.set_fabric(cloth, find_fabric("denim"));
+  World::load(world.save());
+}
+
 /// A sleeve: a polygonal tube along x that is one piece in space, and flat with a cut in texture space.
 TriangleMesh sleeve(double unit, bool is_mirrored) {
   constexpr int kAround = 12, kAlong = 6;
@@ -139,6 +166,34 @@ TEST(RestFromUv, ASmallerPatternMakesASmallerSleeve) {
   EXPECT_NEAR(girth, 0.9 * 12 * 2 * 0.05 * std::sin(std::acos(-1.0) / 12), 1e-3);
 }
 
+/// Mesh cleaning moves triangles from one end of a short edge to the other; their pattern moves along.
+TEST(RestFromUv, ACollapsedEdgeLeavesTheMeshAtRest) {
+  TriangleMesh mesh;
+  for (int j = 0; j <= 4; ++j) {
+    for (int i = 0; i <= 4; ++i)
+      mesh.positions.push_back({0.007 * i, 0, 0.007 * j + (i == 2 && j == 3 ? -0.0063 : 0)});
+  }
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      const int a = 5 * j + i;
+      mesh.triangles.push_back({a, a + 5, a + 6});
+      mesh.triangles.push_back({a, a + 6, a + 1});
+    }
+  }
+  for (const auto& t : mesh.triangles) {
+    CornerUv& uv = mesh.uv.emplace_back();
+    for (int c = 0; c < 3; ++c) uv[c] = {mesh.positions[t[c]].x, mesh.positions[t[c]].z};
+  }
+  World world;
+  world.set_gravity({0, 0, 0});
+  const ClothId cloth = world.add_cloth({.shape = mesh, .rest = rest_from_uv(mesh, 1.0), .fabric = plain()});
+  ASSERT_LT(world.num_particles(cloth), mesh.num_vertices()) << "no edge was collapsed";
+  for (const TriangleStrain& strain : world.triangle_strains(cloth)) {
+    EXPECT_NEAR(strain.warp, 0, 1e-4);
+    EXPECT_NEAR(strain.weft, 0, 1e-4);
+  }
+}
+
 TEST(RestFromUv, TextureCoordinatesThatAreNoPatternAreReported) {
   TriangleMesh mesh = sleeve(1, false);
   for (CornerUv& uv : mesh.uv) {
@@ -189,6 +244,13 @@ TEST(RestShape, OfSewnPiecesIsCutWithThem) {
   double mass = 0;
   for (const double m : world.masses(cloth)) mass += m;
   EXPECT_NEAR(mass, 0.2 * 0.2 * 0.2 / 4, 1e-12);
+  std::vector<int> all(mesh.positions.size());
+  std::iota(all.begin(), all.end(), 0);
+  const ClothId scaled =
+      world.add_cloth({.shape = mesh, .rest_scales = {{all, 0.5, 0.5}}, .fabric = plain(), .sew = 1e-4});
+  double scaled_mass = 0;
+  for (const double m : world.masses(scaled)) scaled_mass += m;
+  EXPECT_NEAR(scaled_mass, mass, 1e-12) << "also where sewing adds particles";
 }
 
 TEST(RestShape, WorldsWithItContinueTheSame) {
@@ -210,7 +272,7 @@ TEST(RestShape, RefusesMistakes) {
   EXPECT_EQ(refusal({.shape = mesh, .rest = {{}}}),
             "cloth \"cloth\": its rest shape has 1 triangles, but the mesh has 144");
   EXPECT_EQ(refusal({.shape = grid, .rest_scales = {{{0}, 0.5, 1}}, .fabric = Springs()}),
-            "cloth \"cloth\": rest_scales follow warp and weft, which springs lack; give it a fabric");
+            "cloth \"cloth\": rest_scales follow warp and weft, which springs do not have; give it a fabric");
   EXPECT_EQ(refusal({.shape = grid, .rest_scales = {{{0}, 0, 1}}, .fabric = plain()}),
             "cloth \"cloth\": rest scale 0: its factors must be above 0");
   EXPECT_EQ(refusal({.shape = grid, .rest_scales = {{{5000}, 0.5, 1}}, .fabric = plain()}),

@@ -66,6 +66,65 @@ void settle(World& world, int steps) {
   for (int s = 0; s < steps; ++s) ASSERT_TRUE(world.step(kStep).ok);
 }
 
+/// Stitches of vertices that match one to one hang like a seam of the same borders.
+TEST(Stitches, OfMatchingBordersHangLikeASeam) {
+  const Halves halves(0.0005, 16, 16);
+  const int other = halves.panels.first[1];
+  const auto hang = [&](const ClothDesc& desc) {
+    World world;
+    ClothDesc upright = desc;
+    upright.pose.rotation = rotation_about({1, 0, 0}, 90);
+    const ClothId sheet = world.add_cloth(upright);
+    world.add_pin(sheet, {.particles = halves.corners});
+    settle(world, 150);
+    return world.positions(sheet);
+  };
+  ClothDesc stitched = describe(halves, 0);
+  stitched.seams.clear();
+  for (int j = 0; j <= 16; ++j) stitched.stitches.push_back({9 * j + 8, other + 9 * j});
+  const std::vector<Vec3> sewn = hang(describe(halves, 0)), found = hang(stitched);
+  for (const int v : {16 * 9, other + 16 * 9 + 8, 8 * 9 + 8})
+    EXPECT_LT(length(found[v] - sewn[v]), 0.25 / 24) << v;
+  for (const auto& [a, b] : stitched.stitches) EXPECT_LT(length(found[a] - found[b]), 0.002);
+}
+
+/// Stitches join any vertices: a patch is sewn on a sheet by its border.
+TEST(Stitches, SewAPatchOnASheet) {
+  Panels panels;
+  panels.add({0.4, 0.4, 16, 16}, {});
+  panels.add({0.1, 0.1, 4, 4}, {0.15, 0.03, 0.15});
+  const int patch = panels.first[1];
+  ClothDesc desc{.shape = panels.mesh, .fabric = woven(), .warp = Vec3{1, 0, 0}, .seam_time = 0.3};
+  for (int j = 0; j <= 4; ++j) {
+    for (int i = 0; i <= 4; ++i) {
+      if (i % 4 == 0 || j % 4 == 0) desc.stitches.push_back({patch + 5 * j + i, 17 * (6 + j) + 6 + i});
+    }
+  }
+  World world;
+  world.set_gravity({0, 0, 0});
+  const ClothId cloth = world.add_cloth(desc);
+  settle(world, 90);
+  const std::vector<Vec3> x = world.positions(cloth);
+  for (const auto& [a, b] : desc.stitches) EXPECT_LT(length(x[a] - x[b]), 0.003);
+  EXPECT_EQ(world.notes(cloth).done.back(),
+            "cloth \"cloth\": 0 seams and 16 stitches draw together, from up to 0.03144 m");
+}
+
+TEST(Stitches, RefuseMistakes) {
+  const Halves halves(0.02);
+  ClothDesc desc = describe(halves, 0.2);
+  desc.stitches = {{0, 1}, {2, 5000}};
+  EXPECT_EQ(message_of([&] { World().add_cloth(desc); }),
+            "cloth \"cloth\": stitch 1: vertex 5000 is not one of the shape's " +
+                std::to_string(halves.panels.mesh.num_vertices()));
+  World world;
+  world.set_integrator({.integrator = "xpbd"});
+  desc.stitches = {{8, halves.panels.first[1]}};
+  desc.seams.clear();
+  EXPECT_EQ(message_of([&] { world.add_cloth(desc); }),
+            "cloth \"cloth\" has seams, but xpbd does not support them; use newton or implicit_euler");
+}
+
 /// Hung by two corners, with the seam between them: its lower corners hang where those of a whole sheet
 /// hang, within a third of an edge.
 TEST(Seams, TwoHalvesHangLikeAWholeSheet) {

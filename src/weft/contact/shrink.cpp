@@ -11,6 +11,7 @@ namespace weft::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kGrain = 64;  // vertices per chunk of work
 
 /// (num_vertices) area-weighted vertex normals of unit length.
 std::vector<Vec3> compute_normals(const TriangleMesh& mesh) {
@@ -91,12 +92,13 @@ void smooth(const TriangleMesh& mesh, std::vector<Vec3>& values) {
 
 }  // namespace
 
-std::vector<double> compute_inner_radii(const TriangleMesh& mesh, double most) {
+std::vector<double> compute_inner_radii(const TriangleMesh& mesh, double most, JobSystem& jobs) {
   const std::vector<Vec3> normals = compute_normals(mesh);
   const OtherSide other_side(mesh);
-  std::vector<double> radii;
-  for (std::size_t v = 0; v < normals.size(); ++v)
-    radii.push_back(other_side.inner_radius(mesh.positions[v], normals[v], most));
+  std::vector<double> radii(normals.size());
+  parallel_for(jobs, mesh.num_vertices(), kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) radii[v] = other_side.inner_radius(mesh.positions[v], normals[v], most);
+  });
   return radii;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "weft/core/job_system.h"
 #include "weft/mesh/triangle_mesh.h"
 
 namespace weft::engine {
@@ -16,7 +17,7 @@ namespace weft::engine {
 ///     ──────p──────      c = p − R n,   R ← |p − q|²/(2 n·(p − q))
 ///        (  c  )         for the surface point q nearest to c, until none is nearer than p
 ///     ──────q──────
-std::vector<double> compute_inner_radii(const TriangleMesh& mesh, double most);
+std::vector<double> compute_inner_radii(const TriangleMesh& mesh, double most, JobSystem& jobs);
 
 constexpr double kMaxShrinkage = 0.9;  // share of the radius by which a mesh becomes thinner at most [1]
 

@@ -28,7 +28,18 @@ std::optional<GridWarp> grid_warp(const ClothDesc& desc) {
 }
 
 /// What only meshes have; a grid with it is treated as one.
-bool needs_mesh(const ClothDesc& desc) { return !desc.seams.empty() || !desc.rest_scales.empty(); }
+bool needs_mesh(const ClothDesc& desc) {
+  return !desc.seams.empty() || !desc.stitches.empty() || !desc.rest_scales.empty();
+}
+
+/// Throws InputError for springs with what only a fabric has.
+void require_fabric(const ClothDesc& desc) {
+  if (std::holds_alternative<Fabric>(desc.fabric)) return;
+  if (!desc.rest_scales.empty())
+    throw InputError("rest_scales follow warp and weft, which springs do not have; give it a fabric");
+  if (std::holds_alternative<Grid>(desc.shape) && needs_mesh(desc))
+    throw InputError("a grid of springs has no seams; give it a fabric");
+}
 
 CellDiagonals cell_diagonals(SpringModel model) {
   switch (model) {
@@ -160,10 +171,9 @@ double edge_stiffness(const ClothDesc& desc) {
   return fabric ? (fabric->c11 + fabric->c22) / 2 : std::get<Springs>(desc.fabric).structural;
 }
 
-/// `mesh` is that of the particles; notes.particle_of_vertex is known.
-Seams build_seams(const ClothDesc& desc, const TriangleMesh& mesh, const ClothNotes& notes) {
-  Seams seams{.springs = {}, .time = desc.seam_time};
-  if (desc.seams.empty()) return seams;
+/// The springs between stretches of border.
+void add_seams(const ClothDesc& desc, const RestMesh& mesh, const ClothNotes& notes, Seams& seams) {
+  if (desc.seams.empty()) return;
   const BorderPaths paths(mesh);
   for (std::size_t s = 0; s < desc.seams.size(); ++s) {
     try {
@@ -179,6 +189,30 @@ Seams build_seams(const ClothDesc& desc, const TriangleMesh& mesh, const ClothNo
       throw InputError("seam " + std::to_string(s) + ": " + error.what());
     }
   }
+}
+
+/// `mesh` is that of the particles; notes.particle_of_vertex is known, and the seams are reported.
+Seams build_seams(const ClothDesc& desc, const RestMesh& mesh, ClothNotes& notes) {
+  Seams seams{.springs = {}, .time = desc.seam_time};
+  add_seams(desc, mesh, notes, seams);
+  std::vector<std::array<int, 2>> pairs;
+  try {
+    for (const auto& [a, b] : desc.stitches) {
+      const std::vector<int> pair = find_particles({a, b}, notes.particle_of_vertex);
+      pairs.push_back({pair[0], pair[1]});
+    }
+  } catch (const InputError& error) {
+    throw InputError("stitch " + std::to_string(pairs.size()) + ": " + error.what());
+  }
+  const std::vector<SeamSpring> stitches =
+      make_stitches(mesh, pairs, desc.seam_stiffness, edge_stiffness(desc));
+  seams.springs.insert(seams.springs.end(), stitches.begin(), stitches.end());
+  if (seams.springs.empty()) return seams;
+  const double widest = std::ranges::max(seams.springs, {}, &SeamSpring::start).start;
+  notes.done.push_back(std::to_string(desc.seams.size()) +
+                       (desc.seams.size() == 1 ? " seam and " : " seams and ") +
+                       std::to_string(stitches.size()) + (stitches.size() == 1 ? " stitch" : " stitches") +
+                       " draw together, from up to " + short_text(widest) + " m");
   return seams;
 }
 
@@ -208,15 +242,25 @@ void set_rest(const std::vector<weft::TriangleCorners>& given, const weft::Trian
   if (num_without > 0)
     notes.warnings.push_back(std::to_string(num_without) +
                              (num_without == 1 ? " triangle has" : " triangles have") +
-                             " no area in the rest shape, and the shape of the mesh instead");
+                             " nearly no area in the rest shape, and the shape of the mesh instead");
+}
+
+/// The particles of the vertices of a rest scale that were not dropped.
+std::vector<int> find_kept(const RestScale& scale, const std::vector<int>& particle_of_vertex) {
+  std::vector<int> particles;
+  for (const int v : scale.vertices) {
+    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
+      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
+                       std::to_string(particle_of_vertex.size()));
+    if (particle_of_vertex[v] >= 0) particles.push_back(particle_of_vertex[v]);
+  }
+  return particles;
 }
 
 /// Multiplies lengths at rest by the factors of `desc`; notes.particle_of_vertex is known.
-void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv, const ClothNotes& notes,
-                  RestMesh& mesh) {
+void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv,
+                  const std::vector<AddedParticle>& added, const ClothNotes& notes, RestMesh& mesh) {
   if (desc.rest_scales.empty()) return;
-  if (!std::holds_alternative<Fabric>(desc.fabric))
-    throw InputError("rest_scales follow warp and weft, which springs lack; give it a fabric");
   std::vector<Vec2> factors(mesh.positions.size(), Vec2::Ones());
   for (std::size_t s = 0; s < desc.rest_scales.size(); ++s) {
     const RestScale& scale = desc.rest_scales[s];
@@ -226,12 +270,20 @@ void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv, const 
     }
     std::vector<char> is_inside(mesh.positions.size(), 0);
     try {
-      for (const int p : find_particles(scale.vertices, notes.particle_of_vertex)) is_inside[p] = 1;
+      for (const int p : find_kept(scale, notes.particle_of_vertex)) is_inside[p] = 1;
     } catch (const InputError& error) {
       throw InputError(who + error.what());
     }
     for (std::size_t i = 0; i < factors.size(); ++i) {
       if (is_inside[i]) factors[i] = factors[i].cwiseProduct(Vec2(scale.warp, scale.weft));
+    }
+  }
+  for (const AddedParticle& between : added) {
+    factors[between.particle].setZero();
+    for (int corner = 0; corner < 3; ++corner) {
+      const int particle = notes.particle_of_vertex[between.vertices[corner]];
+      factors[between.particle] +=
+          between.weights[corner] * (particle < 0 ? Vec2(Vec2::Ones()) : factors[particle]);
     }
   }
   std::vector<std::string> known;  // build_substance() reports them
@@ -240,8 +292,8 @@ void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv, const 
 
 /// What the rest shape does to the edges of the mesh.
 void report_rest(const RestMesh& mesh, ClothNotes& notes) {
-  constexpr double kFar = 1.25;        // factor of lengths between the mesh and its rest shape
-  constexpr double kMostEdges = 0.05;  // share of edges that may be beyond it
+  constexpr double kFar = 1.25;       // factor of lengths between the mesh and its rest shape
+  constexpr double kMaxShare = 0.05;  // of edges that may be beyond it
   if (mesh.at_rest.empty()) return;
   std::vector<double> stretches;
   for (const Edge& e : build_edges(mesh))
@@ -253,7 +305,7 @@ void report_rest(const RestMesh& mesh, ClothNotes& notes) {
   notes.done.push_back("its edges start at " + at(0.05) + " to " + at(0.95) +
                        " times their lengths at rest (of nine in ten; median " + at(0.5) + ")");
   const auto num_far = std::ranges::count_if(stretches, [&](double s) { return s > kFar || s < 1 / kFar; });
-  if (static_cast<double>(num_far) > kMostEdges * static_cast<double>(stretches.size()))
+  if (static_cast<double>(num_far) > kMaxShare * static_cast<double>(stretches.size()))
     notes.warnings.push_back(std::to_string(num_far) + " of " + std::to_string(stretches.size()) +
                              " edges start at more than 1.25 or less than 0.8 times their length at rest; is "
                              "this the pattern of this mesh, and its scale right?");
@@ -261,14 +313,12 @@ void report_rest(const RestMesh& mesh, ClothNotes& notes) {
 
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
   for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
-  const bool has_fabric = std::holds_alternative<Fabric>(desc.fabric);
-  if (!has_fabric && !desc.seams.empty())
-    throw InputError("a grid of springs has no seams; give it a fabric");
   if (!desc.rest.empty()) throw InputError("only the triangles of a mesh have another rest shape");
+  const bool has_fabric = std::holds_alternative<Fabric>(desc.fabric);
   const bool is_turned = has_fabric && !grid_warp(desc);  // the kernels of grids require warp along an axis
   if (!is_turned && !needs_mesh(desc)) return {build_grid_topology(grid, desc.model), {}, {}};
   RestMesh mesh = build_grid_mesh(grid, diagonals_of(desc.model));
-  apply_scales(desc, {}, notes, mesh);
+  apply_scales(desc, {}, {}, notes, mesh);
   report_rest(mesh, notes);
   Seams seams = build_seams(desc, mesh, notes);
   return {build_mesh_topology(std::move(mesh), std::move(seams)), {}, {}};
@@ -326,7 +376,7 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
   notes.done = clean.notes;
   RestMesh prepared = clean.mesh;
   if (!desc.rest.empty()) set_rest(desc.rest, mesh, clean, prepared, notes);
-  apply_scales(desc, rest.uv, notes, prepared);
+  apply_scales(desc, rest.uv, rest.added, notes, prepared);
   report_rest(prepared, notes);
   Seams seams = build_seams(desc, prepared, notes);
   rest.topology = build_mesh_topology(std::move(prepared), std::move(seams));
@@ -348,6 +398,7 @@ RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothN
   if (desc.warp && !(std::isfinite(length(*desc.warp)) && length(*desc.warp) > 0))
     throw InputError(who + "warp must be a direction, finite and not zero");
   try {
+    require_fabric(desc);
     const Grid* grid = std::get_if<Grid>(&desc.shape);
     RestShape rest = grid ? build_from_grid(desc, *grid, notes)
                           : build_from_mesh(desc, std::get<weft::TriangleMesh>(desc.shape), notes);
@@ -381,6 +432,11 @@ std::vector<Vec3> to_particles(const std::vector<Vec3>& of_vertices, const RestS
 
 ClothSubstance build_substance(const ClothDesc& desc, const RestShape& rest, const std::string& who,
                                std::vector<std::string>& warnings) {
+  try {
+    require_fabric(desc);
+  } catch (const InputError& error) {
+    throw InputError(who + error.what());
+  }
   ClothSubstance made;
   if (const Fabric* fabric = std::get_if<Fabric>(&desc.fabric)) {
     validate_fabric(*fabric, desc.fabric_name);

@@ -95,8 +95,8 @@ void describe(Archive& archive, weft::RestScale& s) {
 template <class Archive>
 void describe(Archive& archive, ClothDesc& d) {
   members(archive, d.name, d.shape, d.rest, d.rest_scales, d.source, d.fabric, d.fabric_name, d.membrane,
-          d.warp, d.model, d.pose, d.velocity, d.weld, d.sew, d.layer, d.seams, d.seam_time, d.seam_stiffness,
-          d.fits_thickness);
+          d.warp, d.model, d.pose, d.velocity, d.weld, d.sew, d.layer, d.seams, d.stitches, d.seam_time,
+          d.seam_stiffness, d.fits_thickness);
 }
 template <class Archive>
 void describe(Archive& archive, weft::Sphere& s) {

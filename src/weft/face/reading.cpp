@@ -212,7 +212,7 @@ std::vector<double> World::spring_strains(ClothId cloth) const {
 std::vector<TriangleStrain> World::triangle_strains(ClothId cloth) const {
   const engine::ClothModel& model = impl_->world.model(cloth);
   const engine::ClothState& state = impl_->world.state(cloth);
-  const engine::TriangleMesh& mesh = model.topology->mesh;
+  const engine::RestMesh& mesh = model.topology->mesh;
   const bool has_membranes = model.elements && !model.elements->membranes.empty();
   std::vector<TriangleStrain> strains;
   for (int t = 0; t < mesh.num_triangles(); ++t) {

@@ -26,7 +26,10 @@ std::vector<TriangleCorners> rest_from_uv(const TriangleMesh& mesh, std::optiona
   for (int t = 0; t < own.num_triangles(); ++t) {
     const engine::TriangleCorners corners = {engine::to_engine(rest[t][0]), engine::to_engine(rest[t][1]),
                                              engine::to_engine(rest[t][2])};
-    if (!engine::has_area(corners)) continue;
+    const auto& [a, b, c] = own.triangles[t];
+    if (!engine::has_area(corners) ||
+        !engine::has_area({own.positions[a], own.positions[b], own.positions[c]}))
+      continue;
     area_of_uv += 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
     area += engine::triangle_area(own, t);
   }

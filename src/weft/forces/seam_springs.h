@@ -5,7 +5,7 @@
 ///     E = ½ k max(0, |s| − r)²,   s = x_i − (1 − t) x_j − t x_k
 ///     r = r₀ + o max(0, l − r₀)
 ///
-/// with the distance l at rest, the opening o, which falls from 1 to 0 in Seams::time T, o = 1 − 3 u² + 2 u³ for u = t/T,
+/// with the distance l in the mesh, the opening o, which falls from 1 to 0 in Seams::time T, o = 1 − 3 u² + 2 u³ for u = t/T,
 /// and the distance r₀ of a closed seam. Seams pull, and never push: cloth that moves on by itself closes earlier.
 /// Contact keeps layers a thickness apart; r₀ is a little more, so that the two do not work against each other.
 

@@ -40,7 +40,7 @@ void ImplicitCloth::begin(const Body& body, double step, Order order, Keeps keep
 void ImplicitCloth::find_triangles() {
   if (topology_ == model_->topology) return;
   topology_ = model_->topology;
-  const TriangleMesh& mesh = topology_->mesh;
+  const RestMesh& mesh = topology_->mesh;
   triangles_.clear();
   for (int t = 0; t < mesh.num_triangles(); ++t)
     triangles_.push_back({mesh.triangles[t], make_rest_triangle(mesh, t)});

@@ -29,10 +29,11 @@ struct MeshGroup {
 
 /// The faces of a file: polygons, with the texture coordinates of their corners and the groups' names.
 struct MeshFaces {
-  std::vector<int> corners;         // vertices of the first face, then of the second, …
-  std::vector<std::size_t> ends;    // (faces) end of each face in `corners`
-  std::vector<Eigen::Vector2d> uv;  // (corners) v up, NaN where the file has none; empty if it has none
-  std::vector<MeshGroup> groups;    // in the order of their first faces
+  std::vector<int> corners;               // vertices of the first face, then of the second, …
+  std::vector<std::size_t> ends;          // (faces) end of each face in `corners`
+  std::vector<Eigen::Vector2d> uv;        // (corners) v up, NaN where the file has none; empty if it has none
+  std::vector<MeshGroup> groups;          // in the order of their first faces
+  std::vector<std::array<int, 2>> lines;  // vertices that lines join
 
   std::size_t size() const { return ends.size(); }
   std::size_t begin_of(std::size_t face) const { return face == 0 ? 0 : ends[face - 1]; }

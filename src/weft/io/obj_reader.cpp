@@ -168,6 +168,7 @@ class ObjParser {
       result_.faces.uv.clear();
     }
     result_.faces.groups = groups_.finish(num_faces());
+    add_lines();
     add_warnings();
     return std::move(result_);
   }
@@ -210,14 +211,16 @@ class ObjParser {
 
   void read_line(std::string_view keyword) {
     // vv and t occur in the garment files of Berkeley.
-    constexpr std::array<std::string_view, 9> kPassedOver = {"vn", "mtllib", "usemtl", "usemap", "s",
-                                                             "l",  "p",      "vv",     "t"};
+    constexpr std::array<std::string_view, 8> kPassedOver = {"vn", "mtllib", "usemtl", "usemap",
+                                                             "s",  "p",      "vv",     "t"};
     if (keyword == "v") {
       read_vertex();
     } else if (keyword == "vt") {
       read_uv();
     } else if (keyword == "f") {
       read_face();
+    } else if (keyword == "l") {
+      read_polyline();
     } else if (keyword == "g") {
       groups_.set_groups({lines_.words().begin() + 1, lines_.words().end()}, num_faces());
     } else if (keyword == "o") {
@@ -282,6 +285,27 @@ class ObjParser {
     faces_.push_back(std::move(face));
   }
 
+  /// l A B C …; one with another word or an index that does not exist is ignored.
+  void read_polyline() {
+    const auto& words = lines_.words();
+    long long before = -1;
+    for (std::size_t k = 1; k < words.size(); ++k) {
+      const long long index = parse_index(words[k]).value_or(0),
+                      num_read = static_cast<long long>(positions().size());
+      const long long vertex = index > 0 ? index - 1 : index < 0 ? num_read + index : -1;
+      if (before >= 0 && vertex >= 0) pairs_.push_back({before, vertex});
+      before = vertex;
+    }
+  }
+
+  void add_lines() {
+    const auto count = static_cast<long long>(positions().size());
+    for (const auto& [a, b] : pairs_) {
+      if (a < count && b < count && a != b)
+        result_.faces.lines.push_back({static_cast<int>(a), static_cast<int>(b)});
+    }
+  }
+
   /// Whether the face of this line has these corners.
   bool has_corners(std::span<const int> corners) const {
     const auto& words = lines_.words();
@@ -339,6 +363,8 @@ class ObjParser {
   std::vector<Eigen::Vector2d> uv_;
   bool has_uv_ = false;  // of any triangle
   std::vector<Face> faces_;
+  std::vector<std::array<long long, 2>>
+      pairs_;  // vertices that lines join, from 0; later lines may define them
   GroupList groups_;
   std::map<std::string, Unknown> unknown_;
   MeshFromFile result_;
@@ -479,6 +505,8 @@ std::string obj_text(const std::vector<Vec3>& positions, const MeshFaces& faces)
     }
     text += '\n';
   }
+  for (const auto& [a, b] : faces.lines)
+    text += "l " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + '\n';
   return text;
 }
 

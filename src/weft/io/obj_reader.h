@@ -11,8 +11,9 @@ namespace weft::engine {
 
 /// Reads the vertices and faces of an OBJ file. Quads and polygons, concave ones too, are triangulated.
 /// Vertices keep the file's order and are never split or merged, because texture coordinates are stored by
-/// corner. Groups (`g`, several names on a line) and objects (`o`) are kept, those without faces left out.
-/// Normals, materials, texture maps, lines, points and unknown keywords are ignored.
+/// corner. Groups (`g`, several names on a line) and objects (`o`) are kept, those without faces left out, and
+/// lines (`l`), as pairs of vertices.
+/// Normals, materials, texture maps, points and unknown keywords are ignored.
 ///
 /// Throws InputError ("FILE:LINE: mistake, expected value") for
 /// - a file that cannot be read, or has no vertices or no faces,

@@ -1,5 +1,6 @@
 #include "weft/mesh/rest_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::engine {
@@ -54,10 +55,11 @@ double edge_length(const RestMesh& mesh, const Edge& edge) {
 }
 
 bool has_area(const TriangleCorners& p) {
-  constexpr double kMinSine = 1e-9;  // of the angle between two edges
+  constexpr double kFlatness = 0.02;  // of SliverLimits
   const Vec3 d1 = p[1] - p[0], d2 = p[2] - p[0];
-  const double area = d1.cross(d2).norm();
-  return std::isfinite(area) && area > kMinSine * d1.norm() * d2.norm();
+  const double twice_area = d1.cross(d2).norm(),
+               longest_sq = std::max({d1.squaredNorm(), d2.squaredNorm(), (d2 - d1).squaredNorm()});
+  return std::isfinite(longest_sq) && longest_sq > 0 && twice_area >= kFlatness * longest_sq;
 }
 
 int set_rest(RestMesh& mesh, const std::vector<TriangleCorners>& given) {

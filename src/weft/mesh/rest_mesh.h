@@ -10,7 +10,8 @@
 namespace weft::engine {
 
 struct RestMesh : TriangleMesh {
-  /// Triangles at rest, each in the plane of the mesh's one, without rotation against it; empty: those of the mesh. An edge may have different lengths in its two triangles.
+  /// Triangles at rest, each in the plane of the mesh's one, turned as that (polar decomposition of the deformation
+  /// between them), then scaled; empty: those of the mesh. An edge may have different lengths in its two triangles.
   std::vector<TriangleCorners> at_rest;  // (num_triangles) or empty [m]
 
   RestMesh() = default;
@@ -38,14 +39,14 @@ double triangle_area(const RestMesh& mesh, int t);
 /// A third of the area of the triangles around each vertex, at rest (num_vertices) [m²].
 std::vector<double> compute_vertex_areas(const RestMesh& mesh);
 
-/// The mean of an edge's lengths in its triangles at rest [m].
+/// The mean of an edge's lengths in its first two triangles, at rest [m].
 double edge_length(const RestMesh& mesh, const Edge& edge);
 
-/// Whether triangle corners have an area.
+/// Whether a triangle is no sliver: its height is at least 2 % of its longest edge, as in a clean mesh.
 bool has_area(const TriangleCorners& corners);
 
-/// Gives a mesh's triangles the shape of others, which may lie anywhere (num_triangles). Those without area get that
-/// of the mesh. Returns their number.
+/// Gives a mesh's triangles the shape of others, which may lie anywhere (num_triangles). Slivers (see has_area)
+/// get that of the mesh. Returns their number.
 int set_rest(RestMesh& mesh, const std::vector<TriangleCorners>& given);
 
 }  // namespace weft::engine

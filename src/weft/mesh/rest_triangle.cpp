@@ -13,9 +13,9 @@ RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2) 
   return rest;
 }
 
-RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t) {
-  const auto& [a, b, c] = mesh.triangles[t];
-  const Vec3 d1 = mesh.positions[b] - mesh.positions[a], d2 = mesh.positions[c] - mesh.positions[a];
+RestTriangle make_rest_triangle(const RestMesh& mesh, int t) {
+  const auto [a, b, c] = mesh.corners(t);
+  const Vec3 d1 = b - a, d2 = c - a;
   const double length = d1.norm();
   return make_rest_triangle({0, 0}, {length, 0}, {d1.dot(d2) / length, d1.cross(d2).norm() / length});
 }

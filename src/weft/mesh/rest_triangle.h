@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "weft/mesh/triangle_mesh.h"
+#include "weft/mesh/rest_mesh.h"
 
 namespace weft::engine {
 
@@ -24,7 +24,7 @@ struct RestTriangle {
 /// From corners in the plane, in either orientation [m]. The triangle's area must not be zero.
 RestTriangle make_rest_triangle(const Vec2& x0, const Vec2& x1, const Vec2& x2);
 
-/// Triangle t of a mesh, with axis 1 along its first edge instead of warp: for isotropic quantities.
-RestTriangle make_rest_triangle(const TriangleMesh& mesh, int t);
+/// Triangle t at rest, with axis 1 along its first edge instead of warp: for isotropic quantities.
+RestTriangle make_rest_triangle(const RestMesh& mesh, int t);
 
 }  // namespace weft::engine

@@ -46,6 +46,16 @@ Vec3 normal_of(const TriangleMesh& mesh, const Triangle& t) {
   return (mesh.positions[t[1]] - o).cross(mesh.positions[t[2]] - o);
 }
 
+/// Barycentric coordinates of a point's foot in a triangle's plane.
+Vec3 coordinates_in(const TriangleMesh& mesh, int t, const Vec3& p) {
+  const auto& [i, j, k] = mesh.triangles[t];
+  const Vec3 &a = mesh.positions[i], &b = mesh.positions[j], &c = mesh.positions[k];
+  const Vec3 normal = (b - a).cross(c - a);
+  const double v = normal.dot((c - p).cross(a - p)) / normal.squaredNorm(),
+               w = normal.dot((a - p).cross(b - p)) / normal.squaredNorm();
+  return {1 - v - w, v, w};
+}
+
 bool has(const Triangle& t, int v) { return std::ranges::find(t, v) != t.end(); }
 
 Triangle with(Triangle t, int old_vertex, int new_vertex) {
@@ -254,7 +264,12 @@ DerivedMesh Pass::result() const {
   all.insert(all.end(), parts_.begin(), parts_.end());
   std::vector<int> index(mesh_.positions.size(), -1);
   for (Part& part : all) {
-    for (int& v : part.vertices) index[v = stands_for_[v]] = 0;
+    for (int c = 0; c < 3; ++c) {
+      int& v = part.vertices[c];
+      if (stands_for_[v] != v)
+        part.weights[c] = coordinates_in(mesh_, part.source, mesh_.positions[stands_for_[v]]);
+      index[v = stands_for_[v]] = 0;
+    }
   }
   DerivedMesh result;
   for (std::size_t v = 0; v < index.size(); ++v) {

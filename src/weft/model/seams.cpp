@@ -1,21 +1,27 @@
 #include "weft/model/seams.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace weft::engine {
 namespace {
 
-/// Lengths from the start of a stretch to each vertex [m].
-std::vector<double> lengths_along(const TriangleMesh& mesh, std::span<const int> path) {
+/// Lengths at rest from the start of a stretch of border to each vertex [m].
+std::vector<double> lengths_along(const RestMesh& mesh, std::span<const int> path) {
+  const std::vector<Edge> edges = build_edges(mesh);
   std::vector<double> along = {0};
-  for (std::size_t k = 1; k < path.size(); ++k)
-    along.push_back(along.back() + (mesh.positions[path[k]] - mesh.positions[path[k - 1]]).norm());
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const std::pair<int, int> ends = std::minmax(path[k - 1], path[k]);
+    const auto edge =
+        std::ranges::lower_bound(edges, ends, {}, [](const Edge& e) { return std::pair(e.a, e.b); });
+    along.push_back(along.back() + edge_length(mesh, *edge));
+  }
   return along;
 }
 
 /// Springs from the vertices of one stretch to points of the other.
-void add_springs(const TriangleMesh& mesh, std::span<const int> from, std::span<const int> to,
-                 double stiffness, std::vector<SeamSpring>& springs) {
+void add_springs(const RestMesh& mesh, std::span<const int> from, std::span<const int> to, double stiffness,
+                 std::vector<SeamSpring>& springs) {
   const std::vector<double> own = lengths_along(mesh, from), other = lengths_along(mesh, to);
   const double seam = (own.back() + other.back()) / 2;
   std::size_t edge = 1;
@@ -37,7 +43,7 @@ void add_springs(const TriangleMesh& mesh, std::span<const int> from, std::span<
 
 }  // namespace
 
-std::vector<SeamSpring> make_seam_springs(const TriangleMesh& mesh, std::span<const int> a,
+std::vector<SeamSpring> make_seam_springs(const RestMesh& mesh, std::span<const int> a,
                                           std::span<const int> b, double stiffness) {
   std::vector<SeamSpring> springs;
   add_springs(mesh, a, b, stiffness, springs);
@@ -45,7 +51,42 @@ std::vector<SeamSpring> make_seam_springs(const TriangleMesh& mesh, std::span<co
   return springs;
 }
 
-double mean_edge(const TriangleMesh& mesh, std::span<const int> a, std::span<const int> b) {
+std::vector<SeamSpring> make_stitches(const RestMesh& mesh, std::span<const std::array<int, 2>> pairs,
+                                      std::optional<double> stiffness, double of_edges) {
+  struct Around {
+    double border = 0, all = 0;  // sums of edges [m]
+    int num_edges = 0;
+    int neighbour = -1;
+
+    double length() const { return border > 0 ? border / 2 : all / num_edges; }
+  };
+  std::vector<Around> around(mesh.positions.size());
+  for (const Edge& e : build_edges(mesh)) {
+    const double length = edge_length(mesh, e);
+    for (const auto& [own, other] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
+      around[own].all += length;
+      if (e.num_triangles == 1) around[own].border += length;
+      ++around[own].num_edges;
+      around[own].neighbour = other;
+    }
+  }
+  std::vector<SeamSpring> springs;
+  double total = 0;
+  for (const auto& [a, b] : pairs) {
+    if (a == b) continue;
+    const double length = (around[a].length() + around[b].length()) / 2;
+    springs.push_back({.particles = {a, b, around[b].neighbour},
+                       .start = (mesh.positions[a] - mesh.positions[b]).norm(),
+                       .stiffness = length});
+    total += length;
+  }
+  const double per_length =
+      springs.empty() ? 0 : stiffness.value_or(of_edges * static_cast<double>(springs.size()) / total);
+  for (SeamSpring& spring : springs) spring.stiffness *= per_length;
+  return springs;
+}
+
+double mean_edge(const RestMesh& mesh, std::span<const int> a, std::span<const int> b) {
   return (lengths_along(mesh, a).back() + lengths_along(mesh, b).back()) /
          static_cast<double>(a.size() + b.size() - 2);
 }

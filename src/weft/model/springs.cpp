@@ -1,5 +1,6 @@
 #include "weft/model/springs.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -28,8 +29,9 @@ double distance_across(const RestMesh& mesh, const Edge& edge) {
   }
   const auto& [first, second] = tips;
   const double along = first.along - second.along;
-  return std::sqrt(along * along + first.height * first.height + second.height * second.height -
-                   2 * first.height * second.height * upright[0].dot(upright[1]));
+  const double cosine = std::clamp(upright[0].dot(upright[1]), -1.0, 1.0),
+               apart = first.height - second.height;
+  return std::sqrt(along * along + apart * apart + 2 * first.height * second.height * (1 - cosine));
 }
 
 }  // namespace

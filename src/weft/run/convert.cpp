@@ -34,7 +34,10 @@ void check_size(const fs::path& in, const Eigen::AlignedBox3d& box, std::vector<
 /// A sentence for groups, which only OBJ files have.
 void note_groups(const fs::path& in, const MeshFaces& faces, const fs::path& out,
                  std::vector<std::string>& notes) {
-  if (faces.groups.empty() || has_ending(out, ".obj")) return;
+  if (has_ending(out, ".obj")) return;
+  if (!faces.lines.empty())
+    notes.push_back(in.string() + " has lines between vertices, which are lost: only .obj holds them");
+  if (faces.groups.empty()) return;
   notes.push_back(in.string() + " has " + std::to_string(faces.groups.size()) +
                   (faces.groups.size() == 1 ? " group" : " groups") +
                   ", which are lost: only .obj holds them");

@@ -64,7 +64,10 @@ std::optional<RestDesc> read_rest(TomlTable& cloth, const std::filesystem::path&
     if (name != "uv") value.expected(kForms);
     return RestDesc{};
   }
-  if (value && !value.is_table()) value.expected(kForms);
+  if (value && !value.is_table()) {
+    value.expected(kForms);
+    return {};
+  }
   TomlTable table = cloth.table("rest");
   const bool has_mesh = table.has("mesh");
   RestDesc rest;
@@ -83,20 +86,20 @@ std::optional<RestDesc> read_rest(TomlTable& cloth, const std::filesystem::path&
 }
 
 /// Keys of the other kind of cloth are refused with the reason, not as unknown.
-std::optional<Shape> read_shape(TomlTable& cloth, SpringModel& model, std::optional<RestDesc>& rest,
-                                const std::filesystem::path& folder) {
+std::optional<Shape> read_shape(TomlTable& cloth, ClothSceneDesc& desc, const std::filesystem::path& folder) {
   cloth.require({"grid", "mesh"}, "grid = { size = [1, 1], cells = [32, 32] } or mesh = \"file.obj\"");
   const TomlValue grid = cloth.get("grid"), mesh = cloth.get("mesh");
   if (mesh && !grid) {
     cloth.refuse("model", "only a grid has it; the springs of a mesh are its edges");
     cloth.set_form("mesh");
-    rest = read_rest(cloth, folder);
+    desc.rest = read_rest(cloth, folder);
+    cloth.read("stitches", desc.has_stitches);
     return read_mesh(cloth, folder);
   }
   cloth.set_form("grid");
-  read_model(cloth, model);
+  read_model(cloth, desc.model);
   const bool is_grid = grid && !mesh;
-  for (const char* key : {"up", "scale", "weld", "sew", "rest"}) {
+  for (const char* key : {"up", "scale", "weld", "sew", "rest", "stitches"}) {
     if (is_grid) cloth.refuse(key, "only a mesh has it; a grid is in m, rotated by \"rotation\"");
     if (!is_grid) cloth.get(key);
   }
@@ -244,7 +247,7 @@ ClothSceneDesc read_cloth(TomlTable table, int number, const std::filesystem::pa
   ClothSceneDesc cloth;
   cloth.name = number == 1 ? "cloth" : "cloth " + std::to_string(number);
   table.read("name", cloth.name);
-  const std::optional<Shape> shape = read_shape(table, cloth.model, cloth.rest, folder);
+  const std::optional<Shape> shape = read_shape(table, cloth, folder);
   table.set_form("");
   if (shape) cloth.shape = *shape;
   cloth.fabric = read_fabric(table, cloth.material, folder);

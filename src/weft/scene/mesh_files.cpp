@@ -27,7 +27,7 @@ MeshGroup from_engine(const engine::MeshGroup& group) {
 }
 
 MeshFaces from_engine(engine::MeshFaces&& faces) {
-  MeshFaces result{.corners = std::move(faces.corners)};
+  MeshFaces result{.corners = std::move(faces.corners), .lines = std::move(faces.lines)};
   for (std::size_t f = 0; f < faces.size(); ++f)
     result.sizes.push_back(static_cast<int>(faces.ends[f] - faces.begin_of(f)));
   for (const Eigen::Vector2d& uv : faces.uv) result.uv.push_back({uv.x(), uv.y()});
@@ -71,7 +71,7 @@ void require_apart(const std::vector<engine::MeshGroup>& groups, const std::stri
 }
 
 engine::MeshFaces to_engine(const MeshFaces& faces, std::size_t num_vertices, const std::string& who) {
-  engine::MeshFaces result{.corners = faces.corners, .ends = {}, .uv = {}, .groups = {}};
+  engine::MeshFaces result{.corners = faces.corners, .ends = {}, .uv = {}, .groups = {}, .lines = {}};
   std::size_t end = 0;
   for (const int size : faces.sizes) {
     if (size < 3)
@@ -93,6 +93,14 @@ engine::MeshFaces to_engine(const MeshFaces& faces, std::size_t num_vertices, co
   for (const MeshGroup& group : faces.groups)
     result.groups.push_back(to_engine(group, faces.sizes.size(), who));
   require_apart(result.groups, who);
+  for (const auto& line : faces.lines) {
+    for (const int v : line) {
+      if (v < 0 || static_cast<std::size_t>(v) >= num_vertices)
+        throw InputError(who + "a line has vertex " + std::to_string(v) + " of " +
+                         std::to_string(num_vertices));
+    }
+  }
+  result.lines = faces.lines;
   return result;
 }
 

@@ -70,7 +70,8 @@ constexpr ParameterText kTexts[] = {
      "Springs of a grid: two shear springs per cell, one, or one of alternating direction. A fabric's "
      "default "
      "is \"alternating\"."},
-    {"cloth.mesh", "mesh", "OBJ, PLY or STL file of the cloth's triangles, which are its shape at rest."},
+    {"cloth.mesh", "mesh",
+     "OBJ, PLY or STL file of the cloth: its shape at the start, and at rest without `rest`."},
     {"cloth.up", "mesh", "Axis of the file of the cloth that points upwards."},
     {"cloth.scale", "mesh",
      "Length of the unit of the cloth's file. Larger: a larger garment; 0.01 for a file in cm."},
@@ -83,6 +84,8 @@ constexpr ParameterText kTexts[] = {
      "are "
      "closed; layers stay apart."},
 
+    {"cloth.stitches", "mesh",
+     "Whether the lines of the file, l of an OBJ file, draw together like seams: the sewing of Blender."},
     {"cloth.rest", "mesh",
      "Rest shape, where it is not the mesh: \"uv\", the pattern in its texture coordinates, with the area of "
      "the mesh; or a table."},

@@ -282,6 +282,7 @@ std::vector<std::string> find_keys_for_restart(const SceneDesc& now, const Scene
     compare(a.layer == b.layer, cloth + "layer");
     compare(a.rest == b.rest, cloth + "rest");
     compare(a.rest_scales == b.rest_scales, cloth + "rest_scale");
+    compare(a.has_stitches == b.has_stitches, cloth + "stitches");
     compare(a.seams == b.seams && a.seam_time == b.seam_time && a.seam_stiffness == b.seam_stiffness,
             cloth + "seam");
   }

@@ -148,6 +148,7 @@ struct ClothSceneDesc {
   bool is_sealed = false;            // the gas keeps its amount, which has `pressure` at the start
   int layer = 0;                     // as in ClothDesc
   std::vector<Seam> seams;
+  bool has_stitches = false;                         // the lines of its file draw together like seams
   double seam_time = 1;                              // in which they close, >= 0 [s]
   std::optional<double> seam_stiffness;              // as in ClothDesc, >= 0 [N/m²]
   std::array<double, 3> color = {0.58, 0.06, 0.05};  // linear red, green, blue [0, 1]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include "weft/error.h"
@@ -65,9 +66,27 @@ std::vector<weft::TriangleCorners> read_rest_mesh(const MeshSource& source, cons
   }
 }
 
-/// The shape and the rest shape of a cloth.
-void describe_mesh(const MeshSource& source, const std::optional<RestDesc>& rest, const std::string& owner,
-                   ClothDesc& cloth, std::vector<std::string>& warnings) {
+/// Lines of a file between vertices of faces that no edge joins, each once.
+std::vector<std::array<int, 2>> find_stitches(const MeshFromFile& read) {
+  if (read.faces.lines.empty()) return {};
+  std::set<std::pair<int, int>> joined;
+  std::vector<char> has_face(read.mesh.positions.size(), 0);
+  for (const Edge& e : build_edges(read.mesh)) {
+    joined.insert({e.a, e.b});
+    has_face[e.a] = has_face[e.b] = 1;
+  }
+  std::vector<std::array<int, 2>> stitches;
+  for (const auto& [a, b] : read.faces.lines) {
+    if (has_face[a] && has_face[b] && joined.insert(std::minmax(a, b)).second) stitches.push_back({a, b});
+  }
+  return stitches;
+}
+
+/// The shape, the rest shape and the stitches of a cloth.
+void describe_mesh(const MeshSource& source, const ClothSceneDesc& desc, ClothDesc& cloth,
+                   std::vector<std::string>& warnings) {
+  const std::string owner = "cloth \"" + desc.name + '"';
+  const std::optional<RestDesc>& rest = desc.rest;
   const MeshFromFile read = read_in_metres(source, owner);
   add_warnings(read, source, owner, warnings);
   const weft::TriangleMesh mesh = from_engine(read.mesh, read.uv);
@@ -77,6 +96,16 @@ void describe_mesh(const MeshSource& source, const std::optional<RestDesc>& rest
     } catch (const InputError& error) {
       throw InputError(rest->mesh ? error.what() : owner + ": " + error.what());
     }
+  }
+  const std::vector<std::array<int, 2>> stitches = find_stitches(read);
+  if (desc.has_stitches) {
+    if (stitches.empty())
+      throw InputError(owner + ": stitches are the lines of its file, l of an OBJ file, but it has none");
+    cloth.stitches = stitches;
+  } else if (!stitches.empty()) {
+    warnings.push_back(owner + ": its file has " + std::to_string(stitches.size()) +
+                       (stitches.size() == 1 ? " line" : " lines") +
+                       " between vertices, as Blender's sewing; stitches = true draws them together");
   }
   cloth.shape = mesh;
   cloth.source = source.file.filename().string();
@@ -225,7 +254,7 @@ std::variant<Fabric, Springs> describe_fabric(const ClothSceneDesc& desc) {
 ClothDesc describe_cloth(const ClothSceneDesc& desc, bool has_contact, std::vector<std::string>& warnings) {
   ClothDesc cloth{.name = desc.name};
   if (const MeshSource* file = std::get_if<MeshSource>(&desc.shape)) {
-    describe_mesh(*file, desc.rest, "cloth \"" + desc.name + '"', cloth, warnings);
+    describe_mesh(*file, desc, cloth, warnings);
   } else {
     cloth.shape = std::get<Grid>(desc.shape);
   }

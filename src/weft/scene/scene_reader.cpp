@@ -152,7 +152,7 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
       solver.get("integrator")
           .mistake("does not support the pressure of cloth \"" + cloth.name +
                    "\"; use \"newton\" or \"implicit_euler\"");
-    if (!cloth.seams.empty() && !supports_seams(scene.solver.integrator))
+    if ((!cloth.seams.empty() || cloth.has_stitches) && !supports_seams(scene.solver.integrator))
       solver.get("integrator")
           .mistake("does not support the seams of cloth \"" + cloth.name +
                    "\"; use \"newton\" or \"implicit_euler\"");

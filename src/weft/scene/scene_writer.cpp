@@ -307,6 +307,7 @@ std::string shape_lines(const ClothSceneDesc& cloth, MeshNames& files) {
   if (mesh.weld && mesh.weld_distance == MeshSource().weld_distance) table.add("weld", true);
   if (mesh.weld && mesh.weld_distance != MeshSource().weld_distance) table.add("weld", mesh.weld_distance);
   table.add("sew", mesh.sew_distance, MeshSource().sew_distance);
+  table.add("stitches", cloth.has_stitches, false);
   if (cloth.rest) table.add_text("rest", rest_text(*cloth.rest, cloth.name, files));
   return table.lines();
 }

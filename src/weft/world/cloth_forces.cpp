@@ -123,7 +123,7 @@ std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothSta
     force[j] -= pull;
   }
   const StrainLimit collapse = make_collapse_law(model);
-  const TriangleMesh& mesh = model.topology->mesh;
+  const RestMesh& mesh = model.topology->mesh;
   const std::vector<Vec3> x = to_vectors(state.x);
   for (int t = 0; t < mesh.num_triangles(); ++t)
     scatter(mesh.triangles[t],

@@ -44,7 +44,7 @@ void visit_energies(const ClothElements& elements, const ClothState& state, cons
 
 double compute_collapse_energy(const ClothModel& model, const ClothState& state) {
   const StrainLimit law = make_collapse_law(model);
-  const TriangleMesh& mesh = model.topology->mesh;
+  const RestMesh& mesh = model.topology->mesh;
   double energy = 0;
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -172,10 +172,10 @@ std::optional<Stretches> compute_principal_stretches(const ClothModel& model, co
 
 namespace {
 
-/// The larger stretch of warp and weft in a triangle.
-double yarn_stretch(const RestTriangle& rest, const TriangleCorners& corners) {
+/// Stretches of warp and weft in a triangle.
+std::array<double, 2> yarn_stretches(const RestTriangle& rest, const TriangleCorners& corners) {
   const Vec3 green = membrane_strain(rest, corners);
-  return std::sqrt(1 + 2 * std::max(green.x(), green.y()));
+  return {std::sqrt(1 + 2 * green.x()), std::sqrt(1 + 2 * green.y())};
 }
 
 }  // namespace
@@ -191,11 +191,11 @@ YarnStrain compute_yarn_strain(const ClothModel& model, const ClothState& state)
   if (model.elements && !model.elements->membranes.empty()) {
     for (const auto& [v, rest] : model.elements->membranes) {
       if (smallest_height(rest) < shortest) continue;
-      const double now = yarn_stretch(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
-      const double given =
-          is_at_rest ? 1
-                     : yarn_stretch(rest, {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]});
-      include(now / std::max(1.0, given) - 1, v[0]);
+      const auto now = yarn_stretches(rest, {state.x.get(v[0]), state.x.get(v[1]), state.x.get(v[2])});
+      std::array<double, 2> given = {1, 1};
+      if (!is_at_rest)
+        given = yarn_stretches(rest, {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]});
+      for (int k = 0; k < 2; ++k) include(now[k] / std::max(1.0, given[k]) - 1, v[0]);
     }
     return worst;
   }

@@ -59,9 +59,11 @@ std::vector<double> compute_depths(const Intersections& intersections, std::size
   return depths;
 }
 
-/// The largest strain of a cloth, in any direction where it has membranes [1].
+/// The largest strain of a cloth, in any direction where it has membranes, of yarns where its mesh is not at rest [1].
 double compute_largest_strain(const ClothModel& model, const ClothState& state) {
-  const std::optional<Stretches> stretches = compute_principal_stretches(model, state);
+  const bool is_at_rest = model.topology->mesh.at_rest.empty();
+  const std::optional<Stretches> stretches =
+      is_at_rest ? compute_principal_stretches(model, state) : std::nullopt;
   return stretches ? stretches->max - 1 : compute_yarn_strain(model, state).max;
 }
 
@@ -111,7 +113,7 @@ int World::thin_colliders(const Intersections& crossed, World& stage) const {
     const TriangleMesh solid = find_solid_part(*full.mesh);
     double depth = kMoreThanDeep * depths[c] + kRoom;
     const double most = depth * std::pow(kMoreNextTime, kMaxTrials - 1) / kMaxShrinkage;
-    const std::vector<double> radii = compute_inner_radii(solid, most);
+    const std::vector<double> radii = compute_inner_radii(solid, most, *jobs_);
     int steps = 0;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
       steps = std::clamp(static_cast<int>(depth / kGrowth), 1, kMaxSteps);
