@@ -59,7 +59,7 @@ double time_step(Stack& stack, double stretch) {
     cloths.push_back({stack.model.get(), &stack.states[k], &stack.is_pinned});
   }
   double begin = seconds_now();
-  stack.contact.begin_step(cloths, stack.floor, {.time = kStep, .step = kStep});
+  stack.contact.begin_step(cloths, stack.floor, {.time = kStep, .step = kStep}, *make_serial_jobs());
   double seconds = seconds_now() - begin;
   const Vec3 fall(0, -9.81 * kStep, 0);
   for (ClothState& state : stack.states) {

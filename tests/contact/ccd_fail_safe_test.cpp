@@ -65,7 +65,7 @@ struct Patches {
     rest.assign(motion.start.begin(), motion.start.begin() + num_cloth_vertices);
     motion.end = end;
     weft::engine::Patches groups;
-    groups.add_mesh(surface, rest, 0, num_cloth_triangles);
+    groups.add_mesh(surface, rest, 0, num_cloth_triangles, *make_serial_jobs());
     groups.add_body(surface, num_cloth_triangles, num_triangles);
     Proximity proximity;
     proximity.reset(surface, groups, rest, num_cloth_vertices, num_cloth_triangles, {0.003, 0.001, 0.006});

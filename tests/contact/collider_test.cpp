@@ -45,7 +45,7 @@ struct Particles {
   template <class Move>
   void step(const std::vector<Collider>& colliders, const ContactStep& step, const Move& move) {
     const ContactCloth cloth{model.get(), &state, &is_pinned};
-    contact.begin_step({&cloth, 1}, colliders, step);
+    contact.begin_step({&cloth, 1}, colliders, step, *make_serial_jobs());
     move();
     contact.read_solution({});
     contact.find_violations(*make_serial_jobs());

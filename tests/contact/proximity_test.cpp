@@ -63,7 +63,7 @@ struct Scene {
     for (const Sheet& sheet : sheets) {
       const int end = sheet.first_triangle + 2 * sheet.grid.cells_x * sheet.grid.cells_z;
       if (are_meshes)
-        patches.add_mesh(finished, rest, sheet.first_triangle, end);
+        patches.add_mesh(finished, rest, sheet.first_triangle, end, *make_serial_jobs());
       else
         patches.add_grid(finished, sheet.grid, sheet.first_vertex, sheet.first_triangle);
     }

@@ -40,7 +40,8 @@ Proximity::Slack slack_of(std::span<const ContactCloth> cloths) {
   return slack;
 }
 
-Patches build_patches(const Numbering& numbering, const Surface& surface, const std::vector<Vec3>& rest) {
+Patches build_patches(const Numbering& numbering, const Surface& surface, const std::vector<Vec3>& rest,
+                      JobSystem& jobs) {
   Patches patches;
   int triangle = 0;
   for (int c = 0; c < numbering.num_cloths(); ++c) {
@@ -49,7 +50,7 @@ Patches build_patches(const Numbering& numbering, const Surface& surface, const 
     if (topology.grid)
       patches.add_grid(surface, *topology.grid, numbering.first_vertex[c], triangle);
     else
-      patches.add_mesh(surface, rest, triangle, end);
+      patches.add_mesh(surface, rest, triangle, end, jobs);
     triangle = end;
   }
   patches.add_body(surface, triangle, static_cast<int>(surface.triangles.size()));
@@ -88,7 +89,7 @@ void find_separations(std::span<const Constraint> constraints, std::vector<Separ
 }  // namespace
 
 void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                               const ContactStep& step) {
+                               const ContactStep& step, JobSystem& jobs) {
   step_ = step;
   is_predicted_ = is_placed_ = has_few_ = is_clear_ = false;
   forces_.clear();
@@ -102,7 +103,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
                               c.motion.at(step.time), pivot(c.shape)});
   }
   proximity_.measure(step.clock);
-  if (!bodies_.numbering.holds_for(cloths, colliders)) renumber(colliders);
+  if (!bodies_.numbering.holds_for(cloths, colliders)) renumber(colliders, jobs);
   bodies_.surface = &proximity_.surface();
   bodies_.thickest = 0;
   bodies_.thinnest = std::numeric_limits<double>::infinity();
@@ -115,7 +116,7 @@ void ContactSystem::begin_step(std::span<const ContactCloth> cloths, const std::
   if (!survey_.may_begin(bodies_, step.rules)) place();
 }
 
-void ContactSystem::renumber(const std::vector<Collider>& colliders) {
+void ContactSystem::renumber(const std::vector<Collider>& colliders, JobSystem& jobs) {
   Surface surface;
   std::vector<Vec3> rest;
   bodies_.numbering = number_bodies(bodies_.cloths, colliders, surface, rest);
@@ -131,9 +132,9 @@ void ContactSystem::renumber(const std::vector<Collider>& colliders) {
   caught_.reset(num_cloth_vertices, std::move(collider_of_vertex));
   int num_cloth_triangles = 0;
   for (const auto& topology : numbering.topologies) num_cloth_triangles += topology->mesh.num_triangles();
-  const Patches patches = build_patches(numbering, surface, rest);
-  proximity_.reset(std::move(surface), patches, std::move(rest), num_cloth_vertices, num_cloth_triangles,
-                   slack_of(bodies_.cloths));
+  Patches patches = build_patches(numbering, surface, rest, jobs);
+  proximity_.reset(std::move(surface), std::move(patches), std::move(rest), num_cloth_vertices,
+                   num_cloth_triangles, slack_of(bodies_.cloths));
   proximity_.set_bodies(bodies_of_triangles(numbering));
   survey_.reset(bodies_.cloths);
   starts_.resize(bodies_.cloths.size());
@@ -472,16 +473,16 @@ int ContactSystem::diverged_cloth() const {
 
 Intersections ContactSystem::find_intersections(std::span<const ContactCloth> cloths,
                                                 const std::vector<Collider>& colliders,
-                                                const ContactStep& now) {
-  begin_step(cloths, colliders, now);
+                                                const ContactStep& now, JobSystem& jobs) {
+  begin_step(cloths, colliders, now, jobs);
   if (!is_placed_) place();
   return weft::engine::find_intersections(make_repair_input(bodies_), positions_now(bodies_));
 }
 
 UntangleResult ContactSystem::untangle(std::span<const ContactCloth> cloths,
                                        const std::vector<Collider>& colliders, const ContactStep& now,
-                                       const std::function<void(int round)>& on_round) {
-  begin_step(cloths, colliders, now);
+                                       JobSystem& jobs, const std::function<void(int round)>& on_round) {
+  begin_step(cloths, colliders, now, jobs);
   if (!is_placed_) place();
   std::vector<Vec3> positions = positions_now(bodies_);
   const UntangleResult result = weft::engine::untangle(make_repair_input(bodies_), positions, on_round);

@@ -56,7 +56,7 @@ struct ContactStep {
 class ContactSystem {
  public:
   void begin_step(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                  const ContactStep& step);
+                  const ContactStep& step, JobSystem& jobs);
 
   /// Predicts contacts from ballistic motion under `acceleration`. `pin_targets` are the positions of pinned
   /// particles at the end of the step, cloth after cloth in ascending order of particles.
@@ -98,9 +98,11 @@ class ContactSystem {
   /// Finds the intersections of the present state, with colliders at their present pose, and repairs them
   /// (see untangle.h).
   Intersections find_intersections(std::span<const ContactCloth> cloths,
-                                   const std::vector<Collider>& colliders, const ContactStep& now);
+                                   const std::vector<Collider>& colliders, const ContactStep& now,
+                                   JobSystem& jobs);
   UntangleResult untangle(std::span<const ContactCloth> cloths, const std::vector<Collider>& colliders,
-                          const ContactStep& now, const std::function<void(int round)>& on_round);
+                          const ContactStep& now, JobSystem& jobs,
+                          const std::function<void(int round)>& on_round);
 
   const Surface& surface() const { return proximity_.surface(); }
   BodyPlace place_of(int vertex) const { return bodies_.numbering.place_of(vertex); }
@@ -115,7 +117,7 @@ class ContactSystem {
   /// What constraints are for after the solve.
   Purpose after() const { return is_predicted_ ? Purpose::after_solve : Purpose::projection; }
 
-  void renumber(const std::vector<Collider>& colliders);
+  void renumber(const std::vector<Collider>& colliders, JobSystem& jobs);
   void place();
   void place_bodies();
   void store_velocities();

@@ -180,7 +180,8 @@ void Patches::add_grid(const Surface& surface, const Grid& grid, int first_verte
 }
 
 void Patches::add_mesh(const Surface& surface, const std::vector<Vec3>& rest, int first_triangle,
-                       int end_triangle) {
+                       int end_triangle, JobSystem& jobs) {
+  constexpr int kGrain = 16;  // windows per chunk of work
   const int first_patch = size(), first_window = num_windows();
   group(surface, first_triangle, end_triangle);
   num_cloth_ = size();
@@ -188,8 +189,12 @@ void Patches::add_mesh(const Surface& surface, const std::vector<Vec3>& rest, in
     parts_.push_back({false, static_cast<int>(mesh_parts_.size())});
     mesh_parts_.push_back(make_part(surface, rest, p));
   }
-  for (const std::vector<int>& members : find_rings(first_patch))
-    add_window(members, measure_rest(surface, rest, members));
+  const std::vector<std::vector<int>> rings = find_rings(first_patch);
+  std::vector<Window> windows(rings.size());
+  parallel_for(jobs, static_cast<int>(rings.size()), kGrain, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) windows[r] = measure_rest(surface, rest, rings[r]);
+  });
+  for (std::size_t r = 0; r < rings.size(); ++r) add_window(rings[r], windows[r]);
   list_neighbours(first_patch, first_window);
 }
 

@@ -22,6 +22,7 @@
 
 #include "weft/contact/surface.h"
 #include "weft/contact/swept_box.h"
+#include "weft/core/job_system.h"
 #include "weft/mesh/grid.h"
 
 namespace weft::engine {
@@ -41,7 +42,8 @@ class Patches {
   /// positions `rest` (vertices of the surface, or more); or of a collider. All cloths come before all
   /// colliders. Requires the surface's one-rings.
   void add_grid(const Surface& surface, const Grid& grid, int first_vertex, int first_triangle);
-  void add_mesh(const Surface& surface, const std::vector<Vec3>& rest, int first_triangle, int end_triangle);
+  void add_mesh(const Surface& surface, const std::vector<Vec3>& rest, int first_triangle, int end_triangle,
+                JobSystem& jobs);
   void add_body(const Surface& surface, int first_triangle, int end_triangle);
 
   int size() const { return static_cast<int>(triangle_begin_.size()) - 1; }

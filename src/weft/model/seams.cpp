@@ -8,14 +8,15 @@ namespace {
 
 /// Lengths at rest from the start of a stretch of border to each vertex [m].
 std::vector<double> lengths_along(const RestMesh& mesh, std::span<const int> path) {
-  const std::vector<Edge> edges = build_edges(mesh);
+  const std::vector<Edge> edges = mesh.at_rest.empty() ? std::vector<Edge>() : build_edges(mesh);
+  const auto length = [&](int a, int b) {
+    if (edges.empty()) return (mesh.positions[a] - mesh.positions[b]).norm();
+    const std::pair<int, int> ends = std::minmax(a, b);
+    const auto ends_of = [](const Edge& e) { return std::pair(e.a, e.b); };
+    return edge_length(mesh, *std::ranges::lower_bound(edges, ends, {}, ends_of));
+  };
   std::vector<double> along = {0};
-  for (std::size_t k = 1; k < path.size(); ++k) {
-    const std::pair<int, int> ends = std::minmax(path[k - 1], path[k]);
-    const auto edge =
-        std::ranges::lower_bound(edges, ends, {}, [](const Edge& e) { return std::pair(e.a, e.b); });
-    along.push_back(along.back() + edge_length(mesh, *edge));
-  }
+  for (std::size_t k = 1; k < path.size(); ++k) along.push_back(along.back() + length(path[k], path[k - 1]));
   return along;
 }
 

@@ -73,7 +73,7 @@ Intersections World::find_intersections() {
   constexpr double kTouches = 1e-6;  // up to this depth cloth lies on the solid [m]
   show_contact_cloths();
   Intersections intersections = contact_system_.find_intersections(
-      contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_});
+      contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_}, *jobs_);
   std::erase_if(intersections.inside, [](const Inside& inside) { return inside.depth <= kTouches; });
   return intersections;
 }
@@ -141,10 +141,10 @@ UntangleReport World::untangle(const std::function<void(int round)>& on_round) {
   World stage = make_stage();
   const int growing = thin_colliders(crossed, stage);
   stage.show_contact_cloths();
-  report.rounds =
-      stage.contact_system_
-          .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_}, on_round)
-          .rounds;
+  report.rounds = stage.contact_system_
+                      .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_},
+                                *jobs_, on_round)
+                      .rounds;
   const auto is_relaxed = [](const Cloth& cloth) {
     return compute_largest_strain(*cloth.model, cloth.state) <= kRelaxed;
   };

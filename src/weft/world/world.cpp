@@ -659,7 +659,7 @@ void World::begin_contact(double time, double dt) {
   show_contact_cloths();
   contact_system_.begin_step(
       contact_cloths_, colliders_,
-      {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_, .clock = &clock_});
+      {.time = time, .step = dt, .tracks = tracks_contacts_, .rules = rules_, .clock = &clock_}, *jobs_);
   if (!integrator_->resolves_contacts()) return;
   pin_positions_.clear();
   for (const Cloth& cloth : cloths_) {
