@@ -57,10 +57,10 @@ def test_it_has_the_settings_of_the_object_and_of_the_bake() -> None:
     add_cloth()
     bake = ["Colliders", "Own frame range", "Quality", "Put on at the start", "Threads", "Cache", "Bake", "Resume", "Cancel", "Free"]
     names = drawn()
-    assert names[:5] == ["Role", "Fabric", "Thickness", "Pins", "Rest shape"] and names[-10:] == bake
+    assert names[:8] == ["Role", "Fabric", "Thickness", "Pins", "Rest shape", "Layer", "Sew", "Sewing time"] and names[-10:] == bake
     assert "Bending along warp (µN·m)" in names
     add_ball()
-    assert drawn() == ["Role", "Friction", *bake]
+    assert drawn() == ["Role", "Friction", "Inside", *bake]
 
 
 def test_it_shows_the_progress_and_then_the_report() -> None:
