@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "weft/error.h"
-#include "weft/fabric/spring_warnings.h"
+#include "weft/face/build_rest.h"
+#include "weft/face/build_seams.h"
 #include "weft/face/convert.h"
-#include "weft/mesh/border_path.h"
 #include "weft/mesh/clean.h"
 #include "weft/model/fabric_springs.h"
 
@@ -150,165 +150,12 @@ double fit_thickness(double thickness, const RestMesh& mesh) {
   return std::min(thickness, kShareOfEdge * sum / static_cast<double>(edges.size()));
 }
 
-/// The particles of vertices.
-std::vector<int> find_particles(const std::vector<int>& vertices,
-                                const std::vector<int>& particle_of_vertex) {
-  std::vector<int> particles;
-  for (const int v : vertices) {
-    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
-      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
-                       std::to_string(particle_of_vertex.size()));
-    particles.push_back(particle_of_vertex[v]);
-    if (particles.back() < 0)
-      throw InputError("vertex " + std::to_string(v) + " was dropped with the triangles around it");
-  }
-  return particles;
-}
-
-/// Tension per strain of the cloth's edges, per length of border [N/m].
-double edge_stiffness(const ClothDesc& desc) {
-  const Fabric* fabric = std::get_if<Fabric>(&desc.fabric);
-  return fabric ? (fabric->c11 + fabric->c22) / 2 : std::get<Springs>(desc.fabric).structural;
-}
-
-/// The springs between stretches of border.
-void add_seams(const ClothDesc& desc, const RestMesh& mesh, const ClothNotes& notes, Seams& seams) {
-  if (desc.seams.empty()) return;
-  const BorderPaths paths(mesh);
-  for (std::size_t s = 0; s < desc.seams.size(); ++s) {
-    try {
-      const auto find = [&](const std::vector<int>& vertices) {
-        return paths.find(find_particles(vertices, notes.particle_of_vertex));
-      };
-      const std::vector<int> a = find(desc.seams[s].a), b = find(desc.seams[s].b);
-      const double stiffness = desc.seam_stiffness.value_or(edge_stiffness(desc) / mean_edge(mesh, a, b));
-      const std::vector<SeamSpring> springs = make_seam_springs(mesh, a, b, stiffness);
-      if (springs.empty()) throw InputError("its two stretches of border are the same");
-      seams.springs.insert(seams.springs.end(), springs.begin(), springs.end());
-    } catch (const InputError& error) {
-      throw InputError("seam " + std::to_string(s) + ": " + error.what());
-    }
-  }
-}
-
-/// `mesh` is that of the particles; notes.particle_of_vertex is known, and the seams are reported.
-Seams build_seams(const ClothDesc& desc, const RestMesh& mesh, ClothNotes& notes) {
-  Seams seams{.springs = {}, .time = desc.seam_time};
-  add_seams(desc, mesh, notes, seams);
-  std::vector<std::array<int, 2>> pairs;
-  try {
-    for (const auto& [a, b] : desc.stitches) {
-      const std::vector<int> pair = find_particles({a, b}, notes.particle_of_vertex);
-      pairs.push_back({pair[0], pair[1]});
-    }
-  } catch (const InputError& error) {
-    throw InputError("stitch " + std::to_string(pairs.size()) + ": " + error.what());
-  }
-  const std::vector<SeamSpring> stitches =
-      make_stitches(mesh, pairs, desc.seam_stiffness, edge_stiffness(desc));
-  seams.springs.insert(seams.springs.end(), stitches.begin(), stitches.end());
-  if (seams.springs.empty()) return seams;
-  const double widest = std::ranges::max(seams.springs, {}, &SeamSpring::start).start;
-  notes.done.push_back(std::to_string(desc.seams.size()) +
-                       (desc.seams.size() == 1 ? " seam and " : " seams and ") +
-                       std::to_string(stitches.size()) + (stitches.size() == 1 ? " stitch" : " stitches") +
-                       " draw together, from up to " + short_text(widest) + " m");
-  return seams;
-}
-
-/// The corners of parts of triangles: of each its source's, by weights.
-std::vector<TriangleCorners> cut_corners(const std::vector<weft::TriangleCorners>& sources,
-                                         const CleanMesh& clean) {
-  std::vector<TriangleCorners> parts;
-  for (std::size_t t = 0; t < clean.mesh.triangles.size(); ++t) {
-    const weft::TriangleCorners& source = sources[clean.source_triangle[t]];
-    TriangleCorners& part = parts.emplace_back();
-    for (int c = 0; c < 3; ++c) {
-      const Vec3& weights = clean.corner_weights[t][c];
-      part[c] = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) part[c] += weights[k] * to_engine(source[k]);
-    }
-  }
-  return parts;
-}
-
-/// Gives the prepared mesh the triangles at rest of the given one.
-void set_rest(const std::vector<weft::TriangleCorners>& given, const weft::TriangleMesh& mesh,
-              const CleanMesh& clean, RestMesh& prepared, ClothNotes& notes) {
-  if (given.size() != mesh.triangles.size())
-    throw InputError("its rest shape has " + std::to_string(given.size()) + " triangles, but the mesh has " +
-                     std::to_string(mesh.triangles.size()));
-  const int num_without = engine::set_rest(prepared, cut_corners(given, clean));
-  if (num_without > 0)
-    notes.warnings.push_back(std::to_string(num_without) +
-                             (num_without == 1 ? " triangle has" : " triangles have") +
-                             " nearly no area in the rest shape, and the shape of the mesh instead");
-}
-
-/// The particles of the vertices of a rest scale that were not dropped.
-std::vector<int> find_kept(const RestScale& scale, const std::vector<int>& particle_of_vertex) {
-  std::vector<int> particles;
-  for (const int v : scale.vertices) {
-    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
-      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
-                       std::to_string(particle_of_vertex.size()));
-    if (particle_of_vertex[v] >= 0) particles.push_back(particle_of_vertex[v]);
-  }
-  return particles;
-}
-
 /// Multiplies lengths at rest by the factors of `desc`; notes.particle_of_vertex is known.
 void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv,
                   const std::vector<AddedParticle>& added, const ClothNotes& notes, RestMesh& mesh) {
   if (desc.rest_scales.empty()) return;
-  std::vector<Vec2> factors(mesh.positions.size(), Vec2::Ones());
-  for (std::size_t s = 0; s < desc.rest_scales.size(); ++s) {
-    const RestScale& scale = desc.rest_scales[s];
-    const std::string who = "rest scale " + std::to_string(s) + ": ";
-    for (const double factor : {scale.warp, scale.weft}) {
-      if (!std::isfinite(factor) || factor <= 0) throw InputError(who + "its factors must be above 0");
-    }
-    std::vector<char> is_inside(mesh.positions.size(), 0);
-    try {
-      for (const int p : find_kept(scale, notes.particle_of_vertex)) is_inside[p] = 1;
-    } catch (const InputError& error) {
-      throw InputError(who + error.what());
-    }
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-      if (is_inside[i]) factors[i] = factors[i].cwiseProduct(Vec2(scale.warp, scale.weft));
-    }
-  }
-  for (const AddedParticle& between : added) {
-    factors[between.particle].setZero();
-    for (int corner = 0; corner < 3; ++corner) {
-      const int particle = notes.particle_of_vertex[between.vertices[corner]];
-      factors[between.particle] +=
-          between.weights[corner] * (particle < 0 ? Vec2(Vec2::Ones()) : factors[particle]);
-    }
-  }
   std::vector<std::string> known;  // build_substance() reports them
-  scale_rest(mesh, find_warp(desc, mesh, uv, "", known), factors);
-}
-
-/// What the rest shape does to the edges of the mesh.
-void report_rest(const RestMesh& mesh, ClothNotes& notes) {
-  constexpr double kFar = 1.25;       // factor of lengths between the mesh and its rest shape
-  constexpr double kMaxShare = 0.05;  // of edges that may be beyond it
-  if (mesh.at_rest.empty()) return;
-  std::vector<double> stretches;
-  for (const Edge& e : build_edges(mesh))
-    stretches.push_back((mesh.positions[e.b] - mesh.positions[e.a]).norm() / edge_length(mesh, e));
-  std::ranges::sort(stretches);
-  const auto at = [&](double share) {
-    return short_text(stretches[static_cast<std::size_t>(share * static_cast<double>(stretches.size() - 1))]);
-  };
-  notes.done.push_back("its edges start at " + at(0.05) + " to " + at(0.95) +
-                       " times their lengths at rest (of nine in ten; median " + at(0.5) + ")");
-  const auto num_far = std::ranges::count_if(stretches, [&](double s) { return s > kFar || s < 1 / kFar; });
-  if (static_cast<double>(num_far) > kMaxShare * static_cast<double>(stretches.size()))
-    notes.warnings.push_back(std::to_string(num_far) + " of " + std::to_string(stretches.size()) +
-                             " edges start at more than 1.25 or less than 0.8 times their length at rest; is "
-                             "this the pattern of this mesh, and its scale right?");
+  scale_rest(desc.rest_scales, added, find_warp(desc, mesh, uv, "", known), notes, mesh);
 }
 
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
@@ -375,7 +222,12 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
   notes.warnings = clean.warnings;
   notes.done = clean.notes;
   RestMesh prepared = clean.mesh;
-  if (!desc.rest.empty()) set_rest(desc.rest, mesh, clean, prepared, notes);
+  if (!desc.rest.empty()) {
+    if (desc.rest.size() != mesh.triangles.size())
+      throw InputError("its rest shape has " + std::to_string(desc.rest.size()) +
+                       " triangles, but the mesh has " + std::to_string(mesh.triangles.size()));
+    set_rest(desc.rest, clean, prepared, notes);
+  }
   apply_scales(desc, rest.uv, rest.added, notes, prepared);
   report_rest(prepared, notes);
   Seams seams = build_seams(desc, prepared, notes);
