@@ -38,7 +38,10 @@ check garments/walk 0.000001 150
 "$weft" run garments/walk --frames 90 --out "$out/whole"
 arguments=(garments/walk --frames 90 --out "$out/killed" --checkpoint-every 5)
 for seconds in 2 3 4 5 6; do
-  timeout --signal=KILL "$seconds" "$weft" run "${arguments[@]}" || true
+  "$weft" run "${arguments[@]}" &
+  sleep "$seconds"
+  kill -KILL $! 2> /dev/null || true
+  wait $! || true  # timeout would not wait for the process that it kills
   [ -e "$out/killed/unfinished/checkpoint" ] && arguments=(--resume "$out/killed")
 done
 "$weft" run "${arguments[@]}"

@@ -159,6 +159,7 @@ void apply_scales(const ClothDesc& desc, const std::vector<CornerUv>& uv,
 }
 
 RestShape build_from_grid(const ClothDesc& desc, const Grid& grid, ClothNotes& notes) {
+  require_valid(grid);
   for (int i = 0; i < grid.num_particles(); ++i) notes.particle_of_vertex.push_back(i);
   if (!desc.rest.empty()) throw InputError("only the triangles of a mesh have another rest shape");
   const bool has_fabric = std::holds_alternative<Fabric>(desc.fabric);
