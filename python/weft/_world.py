@@ -521,7 +521,8 @@ class World:
             str(name), shape, "", material, fabric_name, str(membrane),
             None if warp is None else vector(warp, "warp"), str(model), vector(position, "position"),
             _rotation(rotation), vector(velocity, "velocity"), None if weld is None else real(weld, "weld"),
-            real(sew, "sew"), None if rest is None else _corners(rest), _rest_scales(rest_scales), _seams(seams), _stitches(stitches),
+            real(sew, "sew"), None if rest is None else _corners(rest), _rest_scales(rest_scales), _seams(seams),
+            pairs_of(stitches, "stitches").tolist(),
             real(seam_time, "seam_time"), None if seam_stiffness is None else real(seam_stiffness, "seam_stiffness"),
             whole(layer, "layer"), bool(fits_thickness),
         )  # fmt: skip
@@ -827,11 +828,6 @@ def _seams(seams: Any) -> list[tuple[Any, Any]]:
         if not isinstance(seam, Sequence) or len(seam) != 2:
             raise _core.InputError(f"seams: expected pairs of lists of vertices, found {seam!r:.60}")
         pairs.append((whole_numbers(seam[0], "seams"), whole_numbers(seam[1], "seams")))
-    return pairs
-
-
-def _stitches(stitches: ArrayLike) -> list[list[int]]:
-    pairs: list[list[int]] = pairs_of(stitches, "stitches").tolist()
     return pairs
 
 

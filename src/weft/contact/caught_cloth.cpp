@@ -215,16 +215,14 @@ bool Catcher::can_hold(const HoldingSide& first, const HoldingSide& second) cons
 bool Catcher::has_long_edge(int vertex, double stretch, bool only_caught) const {
   const int cloth = bodies_.numbering.cloth_of(vertex), first = bodies_.numbering.first_vertex[cloth];
   const RestMesh& mesh = bodies_.cloths[cloth].model->topology->mesh;
-  int first_triangle = 0;
-  for (int c = 0; c < cloth; ++c) first_triangle += bodies_.numbering.topologies[c]->mesh.num_triangles();
   const std::vector<Vec3>& x = bodies_.motion.start;
   const std::span<const int> triangles = bodies_.surface->triangles_at(vertex);
   return std::any_of(triangles.begin(), triangles.end(), [&](int t) {
     const Triangle& corners = bodies_.surface->triangles[t];
+    const int own = bodies_.numbering.place_of_triangle(*bodies_.surface, t).index;
     return std::any_of(corners.begin(), corners.end(), [&](int v) {
       return v != vertex && (!only_caught || caught_.has(v)) &&
-             (x[v] - x[vertex]).norm() >
-                 stretch * mesh.between(t - first_triangle, vertex - first, v - first).norm();
+             (x[v] - x[vertex]).norm() > stretch * mesh.between(own, vertex - first, v - first).norm();
     });
   });
 }

@@ -238,6 +238,13 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
 
 }  // namespace
 
+int find_particle(int vertex, const std::vector<int>& particle_of_vertex) {
+  if (vertex < 0 || std::cmp_greater_equal(vertex, particle_of_vertex.size()))
+    throw InputError("vertex " + std::to_string(vertex) + " is not one of the shape's " +
+                     std::to_string(particle_of_vertex.size()));
+  return particle_of_vertex[vertex];
+}
+
 RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes) {
   const std::string mesh_who =
       desc.source.empty() ? who : who.substr(0, who.size() - 2) + " (" + desc.source + "): ";

@@ -27,6 +27,10 @@ struct RestShape {
                                      // empty of a grid, whose particles are its vertices
 };
 
+/// The particle of a vertex of the given mesh, -1: dropped with the triangles around it. Throws InputError for a
+/// vertex that is not there.
+int find_particle(int vertex, const std::vector<int>& particle_of_vertex);
+
 /// Cleans and sews a mesh as `desc` says; `notes` receives the report. Throws InputError, beginning with
 /// `who`, for an invalid cloth mesh.
 RestShape build_rest_shape(const ClothDesc& desc, const std::string& who, ClothNotes& notes);

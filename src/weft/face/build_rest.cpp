@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "weft/error.h"
 #include "weft/fabric/spring_warnings.h"
@@ -28,18 +27,6 @@ std::vector<TriangleCorners> cut_corners(const std::vector<weft::TriangleCorners
   return parts;
 }
 
-/// The particles of the vertices of a rest scale that were not dropped.
-std::vector<int> find_kept(const RestScale& scale, const std::vector<int>& particle_of_vertex) {
-  std::vector<int> particles;
-  for (const int v : scale.vertices) {
-    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
-      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
-                       std::to_string(particle_of_vertex.size()));
-    if (particle_of_vertex[v] >= 0) particles.push_back(particle_of_vertex[v]);
-  }
-  return particles;
-}
-
 }  // namespace
 
 void set_rest(const std::vector<weft::TriangleCorners>& given, const CleanMesh& clean, RestMesh& mesh,
@@ -62,7 +49,10 @@ void scale_rest(const std::vector<RestScale>& scales, const std::vector<AddedPar
     }
     std::vector<char> is_inside(mesh.positions.size(), 0);
     try {
-      for (const int p : find_kept(scale, notes.particle_of_vertex)) is_inside[p] = 1;
+      for (const int v : scale.vertices) {
+        const int particle = find_particle(v, notes.particle_of_vertex);
+        if (particle >= 0) is_inside[particle] = 1;
+      }
     } catch (const InputError& error) {
       throw InputError(who + error.what());
     }

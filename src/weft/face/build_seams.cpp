@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "weft/error.h"
 #include "weft/fabric/spring_warnings.h"
+#include "weft/face/build_cloth.h"
 #include "weft/mesh/border_path.h"
 
 namespace weft::engine {
@@ -18,10 +18,7 @@ std::vector<int> find_particles(const std::vector<int>& vertices,
                                 const std::vector<int>& particle_of_vertex) {
   std::vector<int> particles;
   for (const int v : vertices) {
-    if (v < 0 || std::cmp_greater_equal(v, particle_of_vertex.size()))
-      throw InputError("vertex " + std::to_string(v) + " is not one of the shape's " +
-                       std::to_string(particle_of_vertex.size()));
-    particles.push_back(particle_of_vertex[v]);
+    particles.push_back(find_particle(v, particle_of_vertex));
     if (particles.back() < 0)
       throw InputError("vertex " + std::to_string(v) + " was dropped with the triangles around it");
   }

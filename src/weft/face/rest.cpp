@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "weft/error.h"
@@ -21,16 +20,14 @@ std::vector<TriangleCorners> rest_from_uv(const TriangleMesh& mesh, std::optiona
     TriangleCorners& corners = rest.emplace_back();
     for (int c = 0; c < 3; ++c) corners[c] = {uv[c][0], uv[c][1], 0};
   }
-  const engine::TriangleMesh own = engine::to_engine(mesh);
+  const engine::RestMesh own = engine::to_engine(mesh);
   engine::require_valid(own);
   for (int t = 0; t < own.num_triangles(); ++t) {
-    const engine::TriangleCorners corners = {engine::to_engine(rest[t][0]), engine::to_engine(rest[t][1]),
-                                             engine::to_engine(rest[t][2])};
-    const auto& [a, b, c] = own.triangles[t];
-    if (!engine::has_area(corners) ||
-        !engine::has_area({own.positions[a], own.positions[b], own.positions[c]}))
+    const auto [a, b, c] = rest[t];
+    if (!engine::has_area({engine::to_engine(a), engine::to_engine(b), engine::to_engine(c)}) ||
+        !engine::has_area(own.corners(t)))
       continue;
-    area_of_uv += 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    area_of_uv += 0.5 * length(cross(b - a, c - a));
     area += engine::triangle_area(own, t);
   }
   if (!(area_of_uv > 0)) throw InputError("the texture coordinates of the mesh have no area");

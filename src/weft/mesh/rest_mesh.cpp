@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/mesh/slivers.h"
+
 namespace weft::engine {
 namespace {
 
@@ -55,11 +57,10 @@ double edge_length(const RestMesh& mesh, const Edge& edge) {
 }
 
 bool has_area(const TriangleCorners& p) {
-  constexpr double kFlatness = 0.02;  // of SliverLimits
   const Vec3 d1 = p[1] - p[0], d2 = p[2] - p[0];
   const double twice_area = d1.cross(d2).norm(),
                longest_sq = std::max({d1.squaredNorm(), d2.squaredNorm(), (d2 - d1).squaredNorm()});
-  return std::isfinite(longest_sq) && longest_sq > 0 && twice_area >= kFlatness * longest_sq;
+  return std::isfinite(longest_sq) && longest_sq > 0 && twice_area >= SliverLimits().flatness * longest_sq;
 }
 
 int set_rest(RestMesh& mesh, const std::vector<TriangleCorners>& given) {

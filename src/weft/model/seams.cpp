@@ -20,10 +20,10 @@ std::vector<double> lengths_along(const RestMesh& mesh, std::span<const int> pat
   return along;
 }
 
-/// Springs from the vertices of one stretch to points of the other.
-void add_springs(const RestMesh& mesh, std::span<const int> from, std::span<const int> to, double stiffness,
+/// Springs from the vertices of one stretch to points of the other; `own` and `other` are their lengths_along().
+void add_springs(const RestMesh& mesh, std::span<const int> from, const std::vector<double>& own,
+                 std::span<const int> to, const std::vector<double>& other, double stiffness,
                  std::vector<SeamSpring>& springs) {
-  const std::vector<double> own = lengths_along(mesh, from), other = lengths_along(mesh, to);
   const double seam = (own.back() + other.back()) / 2;
   std::size_t edge = 1;
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -46,9 +46,10 @@ void add_springs(const RestMesh& mesh, std::span<const int> from, std::span<cons
 
 std::vector<SeamSpring> make_seam_springs(const RestMesh& mesh, std::span<const int> a,
                                           std::span<const int> b, double stiffness) {
+  const std::vector<double> along_a = lengths_along(mesh, a), along_b = lengths_along(mesh, b);
   std::vector<SeamSpring> springs;
-  add_springs(mesh, a, b, stiffness, springs);
-  add_springs(mesh, b, a, stiffness, springs);
+  add_springs(mesh, a, along_a, b, along_b, stiffness, springs);
+  add_springs(mesh, b, along_b, a, along_a, stiffness, springs);
   return springs;
 }
 

@@ -174,6 +174,21 @@ PinDesc read_pin(TomlTable table, const Pinnable& pinnable) {
   return pin;
 }
 
+/// The regions of an array of tables, with their numbers by read_numbers(table, region).
+template <class Region, class ReadNumbers>
+std::vector<Region> read_regions(TomlTable& cloth, const char* key,
+                                 const std::variant<Grid, MeshSource>* shape,
+                                 const ReadNumbers& read_numbers) {
+  const Pinnable pinnable(shape);
+  std::vector<Region> regions;
+  for (TomlTable& table : cloth.tables(key)) {
+    Region& region = regions.emplace_back();
+    if (const auto selection = read_select(table, pinnable)) region.select = *selection;
+    read_numbers(table, region);
+  }
+  return regions;
+}
+
 }  // namespace
 
 std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
@@ -195,31 +210,17 @@ std::vector<PinDesc> read_pins(TomlTable& cloth, const std::variant<Grid, MeshSo
 }
 
 std::vector<RestScaleDesc> read_rest_scales(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
-  const Pinnable pinnable(shape);
-  std::vector<RestScaleDesc> scales;
-  for (TomlTable& table : cloth.tables("rest_scale")) {
-    RestScaleDesc scale;
-    const auto selection = read_select(table, pinnable);
+  return read_regions<RestScaleDesc>(cloth, "rest_scale", shape, [](TomlTable& table, RestScaleDesc& scale) {
     table.read("warp", scale.warp, above_zero());
     table.read("weft", scale.weft, above_zero());
-    if (selection) scale.select = *selection;
-    scales.push_back(scale);
-  }
-  return scales;
+  });
 }
 
 std::vector<StiffenDesc> read_stiffened(TomlTable& cloth, const std::variant<Grid, MeshSource>* shape) {
-  const Pinnable pinnable(shape);
-  std::vector<StiffenDesc> stiffened;
-  for (TomlTable& table : cloth.tables("stiffen")) {
-    StiffenDesc part;
-    const auto selection = read_select(table, pinnable);
+  return read_regions<StiffenDesc>(cloth, "stiffen", shape, [](TomlTable& table, StiffenDesc& part) {
     table.require({"factor"}, "a number not below 0");
     table.read("factor", part.factor, not_negative());
-    if (selection) part.select = *selection;
-    stiffened.push_back(part);
-  }
-  return stiffened;
+  });
 }
 
 }  // namespace weft::engine
