@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 
 namespace weft::engine {
@@ -17,11 +18,7 @@ namespace fs = std::filesystem;
 /// Each test has an empty folder.
 class StagedFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = make_own_folder(); }
 
   fs::path path(const char* name) const { return folder_ / name; }
 

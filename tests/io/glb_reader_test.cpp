@@ -9,6 +9,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 #include "weft/mesh/grid.h"
 
@@ -56,7 +57,7 @@ std::string read_bytes(const std::string& file) {
 
 /// The error message of read_glb for a file with these bytes.
 std::string complaint(const std::string& bytes) {
-  const std::string file = testing::TempDir() + "weft_broken.glb";
+  const std::string file = (make_own_folder() / "broken.glb").string();
   std::ofstream(file, std::ios::binary) << bytes;
   try {
     read_glb(file);
@@ -144,7 +145,7 @@ TEST(GlbReader, ReadsAStill) {
 
 TEST(GlbReader, ReadsAFrameWhenItIsAskedForIt) {
   const Animation written{.title = "", .cloths = {make_cloth(40)}, .bodies = {make_body("ball", {}, 40)}};
-  const std::string file = testing::TempDir() + "weft_lazy.glb";
+  const std::string file = (make_own_folder() / "lazy.glb").string();
   write_glb(file, written);
   const Animation all = read_glb(file);
   GlbFrames frames(file);
@@ -200,7 +201,7 @@ TEST(GlbReader, ReadsTheParticlesOfShownVertices) {
 TEST(GlbReader, NamesTheFileAndWhatIsWrong) {
   EXPECT_THROW(read_glb("no/such/file.glb"), InputError);
   EXPECT_THROW(read_glb(testing::TempDir()), InputError);
-  EXPECT_NE(complaint("").find("weft_broken.glb: "), std::string::npos);
+  EXPECT_NE(complaint("").find("broken.glb: "), std::string::npos);
   EXPECT_NE(complaint("solid ball").find("expected one that weft run wrote"), std::string::npos);
 
   write_glb(output_file("to_break"),
@@ -253,7 +254,7 @@ TEST(GlbReader, NamesWhatIsWrongWithFilesThatNobodyWouldWrite) {
   EXPECT_NE(complaint_of_parts(head + R"("buffers":[]})", "1234").find("made.glb: has no cloth"),
             std::string::npos);
   // tinygltf throws for an empty buffer, recurses for each bracket, and reads every file that the text names.
-  const std::string outside = testing::TempDir() + "weft_outside.bin";
+  const std::string outside = (make_own_folder() / "outside.bin").string();
   std::ofstream(outside) << "1234";
   const std::string broken[] = {
       R"("buffers":[{"byteLength":0}]})",

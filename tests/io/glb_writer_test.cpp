@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 #include "weft/mesh/grid.h"
 
@@ -182,22 +183,19 @@ TEST(GlbWriter, MakesDoubleSidedMattMaterials) {
 }
 
 TEST(GlbWriter, ReplacesAnEarlierFileAndLeavesNoOther) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "weft_glb_replace";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   write_glb(folder / "a.glb", {.title = "", .cloths = {make_flag(4)}, .bodies = {}});
   write_glb(folder / "a.glb", {.title = "", .cloths = {make_flag(1)}, .bodies = {}});
   EXPECT_TRUE(read((folder / "a.glb").string()).animations.empty());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(GlbWriter, TellsWhyAFileCannotBeWritten) {
   const Animation animation{.title = "", .cloths = {make_flag(1)}, .bodies = {}};
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "weft_glb_folder.glb";
+  const std::filesystem::path folder = make_own_folder() / "folder.glb";
   std::filesystem::create_directories(folder / "occupied");
   EXPECT_THROW(write_glb(folder, animation), InputError);  // a folder has this name
-  EXPECT_FALSE(std::filesystem::exists(folder.parent_path() / ".weft_glb_folder.glb.partial"));
+  EXPECT_FALSE(std::filesystem::exists(folder.parent_path() / ".folder.glb.partial"));
   try {
     write_glb(folder / "missing" / "a.glb", animation);
     FAIL();
@@ -208,7 +206,7 @@ TEST(GlbWriter, TellsWhyAFileCannotBeWritten) {
 
 TEST(GlbWriter, RefusesAnimationsThatNoViewerCouldShow) {
   const auto refuses = [](const Animation& animation) {
-    EXPECT_THROW(write_glb(testing::TempDir() + "refused.glb", animation), InputError);
+    EXPECT_THROW(write_glb(make_own_folder() / "refused.glb", animation), InputError);
   };
   refuses({});
   refuses({.title = "", .cloths = {make_flag(2), make_flag(3)}, .bodies = {}});

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/io/gltf_builder.h"
+#include "tests/own_folder.h"
 #include "weft/core/random.h"
 #include "weft/io/glb_writer.h"
 
@@ -54,7 +55,7 @@ TEST(GltfBody, ReadsASkinnedArm) {
 }
 
 TEST(GltfBody, IsTheSameFromEveryKindOfFile) {
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "gltf_body";
+  const std::filesystem::path folder = make_own_folder();
   std::filesystem::create_directories(folder / "my data");
   const GltfBuilder arm = make_arm();
   const auto write = [&](const char* name, const std::string& bytes) {
@@ -74,8 +75,7 @@ TEST(GltfBody, IsTheSameFromEveryKindOfFile) {
 }
 
 TEST(GltfBody, ReadsTheAnimationsThatWeftWrites) {
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "gltf_body";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   AnimatedCloth cloth{.name = "sheet", .triangles = {{0, 1, 2}}};
   AnimatedBody ball{.name = "ball", .mesh = make_sphere_mesh({0, 0, 0}, 0.3, 6)};
   for (int k = 0; k < 5; ++k) {

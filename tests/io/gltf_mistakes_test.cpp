@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tests/io/gltf_builder.h"
+#include "tests/own_folder.h"
 
 namespace weft::engine {
 namespace {
@@ -301,7 +302,7 @@ TEST(GltfMistakes, OfTheTextHaveTheirLine) {
 
 TEST(GltfMistakes, OfBuffersOutsideTheFile) {
   const GltfBuilder arm = make_arm();
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "gltf_mistakes";
+  const std::filesystem::path folder = make_own_folder() / "inner";
   std::filesystem::create_directories(folder);
   std::ofstream(folder.parent_path() / "secret.bin", std::ios::binary) << arm.buffer;
   std::ofstream(folder / "short.bin", std::ios::binary) << arm.buffer.substr(1);

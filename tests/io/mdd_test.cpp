@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/core/random.h"
 #include "weft/error.h"
@@ -31,11 +32,6 @@ const std::vector<float> kFirst = {1, 2, 3, 4, 5, 6}, kSecond = {-1, -2, -3, -4,
 
 class Mdd : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
   void write(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
 
   std::string written() const { return read_text(file_); }
@@ -53,8 +49,7 @@ class Mdd : public testing::Test {
     return "no error";
   }
 
-  const fs::path folder_ =
-      fs::path(WEFT_OUTPUT_DIR) / "mdd" / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = make_own_folder();
   const fs::path file_ = folder_ / "sheet.mdd";
 };
 

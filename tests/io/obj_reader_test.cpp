@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "tests/own_folder.h"
 #include "weft/core/angle.h"
 #include "weft/error.h"
 
@@ -340,7 +341,7 @@ TEST(ObjWriter, WritesWhatReadsBackToTheLastBit) {
   TriangleMesh mesh;
   mesh.positions = {{0.1, -1.0 / 3, 1e-300}, {1e22, 2, 5e-324}, {0, 123456789.123456789, -7}};
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
-  const std::string file = testing::TempDir() + "weft_round_trip.obj";
+  const std::string file = (make_own_folder() / "round_trip.obj").string();
   write_obj(file, mesh);
   const MeshFromFile read = read_obj(file);
   EXPECT_EQ(read.mesh.positions, mesh.positions);
@@ -393,7 +394,7 @@ TEST(ObjWriter, WritesWhatAnotherProgramWouldWrite) {
 }
 
 TEST(ObjWriter, RefusesNamesThatAFileCannotHold) {
-  const std::string file = testing::TempDir() + "weft_names.obj";
+  const std::string file = (make_own_folder() / "names.obj").string();
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   MeshFaces faces = make_faces({{0, 1, 2}});
   for (const bool is_object : {false, true}) {
@@ -414,7 +415,7 @@ TEST(ObjWriter, RefusesNamesThatAFileCannotHold) {
 
 TEST(ObjWriter, CountsTheVerticesOfSeveralObjectsOn) {
   const TriangleMesh mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::string file = testing::TempDir() + "weft_objects.obj";
+  const std::string file = (make_own_folder() / "objects.obj").string();
   write_obj(file, {{"a", mesh}, {"b", mesh}});
   const MeshFromFile read = read_obj(file);
   EXPECT_EQ(read.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));

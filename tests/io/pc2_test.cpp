@@ -11,6 +11,7 @@
 #include <limits>
 #include <thread>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/error.h"
 
@@ -21,11 +22,6 @@ namespace fs = std::filesystem;
 
 class Pc2 : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
   /// Two frames of two points.
   std::string good_bytes() const {
     StagedFile staged(file_);
@@ -51,8 +47,7 @@ class Pc2 : public testing::Test {
     return "no error";
   }
 
-  const fs::path folder_ =
-      fs::path(WEFT_OUTPUT_DIR) / "pc2" / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = make_own_folder();
   const fs::path file_ = folder_ / "sheet.pc2";
   const fs::path partial_ = folder_ / ".sheet.pc2.partial";
 };

@@ -15,6 +15,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/core/random.h"
 #include "weft/error.h"
@@ -538,13 +539,9 @@ TEST(PlyReader, EndsInAMeshOrAnInputErrorOnDamagedBytes) {
 
 class PlyWriter : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(file_.parent_path()); }
-
   std::string written() const { return read_text(file_); }
 
-  const fs::path file_ =
-      fs::path(WEFT_OUTPUT_DIR) / "ply" /
-      (testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".ply"));
+  const fs::path file_ = make_own_folder() / "mesh.ply";
 };
 
 /// Any finite number: every bit is random.

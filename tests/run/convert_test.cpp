@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/error.h"
 #include "weft/io.h"
@@ -17,8 +18,6 @@ namespace fs = std::filesystem;
 class Convert : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     PointCacheWriter writer(path("in.pc2"), 1, {0, 0, 0});
     for (const float x : {1.0f, 2.0f, 3.0f}) writer.add_frame(std::vector<float>{x, 10 * x, -x});
     writer.finish();
@@ -31,8 +30,7 @@ class Convert : public testing::Test {
     return path(name);
   }
 
-  const fs::path folder_ =
-      fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = engine::make_own_folder();
 };
 
 /// Polygons, a seam in the texture, groups, an object.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "tests/run/shipped.h"
 #include "weft/core/file_name.h"
 #include "weft/io/glb_reader.h"
@@ -26,11 +27,7 @@ namespace fs = std::filesystem;
 
 class FrameSinks : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = make_own_folder(); }
 
   fs::path folder_;
 };

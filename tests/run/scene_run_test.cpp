@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/own_folder.h"
 #include "tests/run/shipped.h"
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"
@@ -129,8 +130,7 @@ std::vector<Vec3> vertices(const AnimatedBody& body, std::size_t frame) {
 }
 
 TEST(SceneRun, ShowsEveryColliderWhereItIs) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "scene_run_test";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   write_obj(folder / "body.obj", make_sphere_mesh({0.1, 0, 0}, 0.2, 8));
   const std::string scene = R"([scene]
 format = 1

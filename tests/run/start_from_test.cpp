@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/message_of.h"
+#include "tests/own_folder.h"
 #include "tests/run/shipped.h"
 #include "weft/core/staged_file.h"
 #include "weft/io/pc2.h"
@@ -30,11 +31,6 @@ void expect_contains(const std::string& text, const std::string& part) {
 
 class StartFromRun : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
   /// A sheet of 9×9 particles above a ball of radius 0.2 m around the origin.
   SceneDesc sheet(const std::string& more = "", const std::string& in_scene = "",
                   const std::string& in_solver = "") const {
@@ -71,8 +67,7 @@ position = [-0.5, 0.25, -0.5]
     std::ofstream(folder_ / name / "run.json") << list;
   }
 
-  const fs::path folder_ =
-      fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = make_own_folder();
 };
 
 TEST_F(StartFromRun, ReadsFolderAndFrame) {

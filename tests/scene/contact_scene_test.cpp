@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 #include "weft/io/obj_reader.h"
 #include "weft/scene/scene_reader.h"
@@ -55,9 +56,6 @@ TEST(ContactRules, OfASceneReachTheWorldAndSilenceTheWarning) {
 
 class DeformingMesh : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   void write(const std::string& name, const TriangleMesh& mesh) { write_obj(folder_ / name, mesh); }
 
   /// A box with its top at this height; its corners are sewn in the first frame.
@@ -82,10 +80,7 @@ frame_rate = 4
     return build_world(parse_scene(text + keys, folder_ / "scene.toml"), make_serial_jobs());
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(WEFT_OUTPUT_DIR) /
-      testing::UnitTest::GetInstance()->current_test_info()->test_suite_name() /
-      testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::filesystem::path folder_ = make_own_folder();
 };
 
 TEST_F(DeformingMesh, TakesFramesInTheOrderOfTheirNames) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 
 namespace weft::engine {
@@ -107,8 +108,7 @@ TEST(FabricFile, NumbersThatDoNotGoTogetherAreReportedAtTheOneToChange) {
 }
 
 TEST(FabricFile, IsPreferredToAPresetAndMissingOnesAreNamed) {
-  const std::filesystem::path folder = std::filesystem::path(WEFT_OUTPUT_DIR) / "fabric_files";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   const std::filesystem::path file = folder / "mine.toml";
   std::ofstream(file) << kDenim;
   EXPECT_EQ(load_fabric(file.string()).fabric.c11, 410.7);

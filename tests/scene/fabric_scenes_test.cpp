@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "weft/error.h"
 #include "weft/fabric.h"
 #include "weft/scene/scene_reader.h"
@@ -13,14 +14,6 @@
 
 namespace weft::engine {
 namespace {
-
-/// A folder for the current test, because tests run in parallel.
-std::filesystem::path own_folder() {
-  const std::filesystem::path folder =
-      std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 SceneDesc scene_with(const std::string& keys, const Overrides& overrides = {},
                      const std::filesystem::path& folder = {}) {
@@ -55,7 +48,7 @@ TEST(FabricScenes, ChangeTheirFabricByAnOverride) {
 }
 
 TEST(FabricScenes, TakeAFabricFileFromTheSceneFolder) {
-  const std::filesystem::path folder = own_folder();
+  const std::filesystem::path folder = make_own_folder();
   std::ofstream(folder / "mine.toml") << "density = 0.3\nc11 = 100\nc22 = 200\nc12 = 5\ng = 20\n"
                                          "bend_warp = 1e-5\nbend_weft = 1e-5\nbend_bias = 1e-5\n";
   const SceneDesc scene = scene_with("fabric = \"mine.toml\"\n", {}, folder);
@@ -141,7 +134,7 @@ TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
 
 /// A square of two triangles with u along the direction (c, s) of its plane, and v sheared against it.
 SceneWorld built_with_uv(double c, double s, double shear, const std::string& keys = "") {
-  const std::filesystem::path folder = own_folder();
+  const std::filesystem::path folder = make_own_folder();
   std::ofstream obj(folder / "square.obj");
   const double corners[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
   for (const auto& [x, z] : corners) obj << "v " << x << " 0 " << z << "\n";

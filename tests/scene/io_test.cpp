@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/error.h"
 
@@ -19,15 +20,9 @@ namespace fs = std::filesystem;
 
 class Io : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  const fs::path folder_ =
-      fs::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = engine::make_own_folder();
 };
 
 double area_y(const Triangle& t, const std::vector<Vec3>& x) {

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "tests/io/gltf_builder.h"
+#include "tests/own_folder.h"
 #include "weft/io.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_world.h"
@@ -80,14 +81,9 @@ Vec3 bent(double x, double z, double angle) {
 class MovingBody : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() /
-        ("weft_moving_body_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::create_directories(folder_);
+    folder_ = engine::make_own_folder();
     std::ofstream(folder_ / "arm.glb", std::ios::binary) << make_bending_arm().glb();
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string arm() const { return (folder_ / "arm.glb").string(); }
 
   ColliderDesc describe_arm(double start_time = 1) const {

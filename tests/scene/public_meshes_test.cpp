@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "weft/error.h"
 #include "weft/io.h"
@@ -14,15 +15,10 @@ namespace {
 
 class PublicMeshes : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   // A folder of its own for each test: they may run at the same time.
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() /
-      (std::string("weft_public_meshes_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path folder_ = engine::make_own_folder();
 };
 
 const std::string kShirt =

@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "tests/own_folder.h"
 #include "weft/scene.h"
 #include "weft/scene/scene_access.h"
 
@@ -136,9 +137,7 @@ TEST(PublicScene, JsonKeepsNumbersTruthValuesAndText) {
 }
 
 TEST(PublicScene, WrittenSceneReadsBackEqual) {
-  const fs::path folder = fs::path(WEFT_OUTPUT_DIR) / "public_scene";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const fs::path folder = engine::make_own_folder();
   Scene scene = Scene::parse(kText);
   scene.set("cloth[0].grid.cells=[7, 5]");
   scene.set("scene.description=\"A \\\"sheet\\\"\"");

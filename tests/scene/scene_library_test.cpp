@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "weft/core/nearest_name.h"
 #include "weft/error.h"
 
@@ -86,11 +87,6 @@ TEST(NearestName, KeepsSilentWhereNothingIsNear) {
 /// Folders and empty files in a temporary folder of the test.
 class SceneFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
-  }
-
   fs::path folder(const char* name) const {
     fs::create_directories(root_ / name);
     return root_ / name;
@@ -102,7 +98,7 @@ class SceneFolder : public testing::Test {
     return root_ / name;
   }
 
-  const fs::path root_ = fs::path(WEFT_OUTPUT_DIR) / "scene_folder";
+  const fs::path root_ = make_own_folder();
 };
 
 TEST_F(SceneFolder, IsBesideTheLibraryBeforeTheProgram) {

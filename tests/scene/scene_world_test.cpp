@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/message_of.h"
+#include "tests/own_folder.h"
 #include "weft/core/angle.h"
 #include "weft/error.h"
 #include "weft/face/world_impl.h"
@@ -90,8 +91,7 @@ struct Fall {
 };
 
 Fall drop(const TriangleMesh& tube) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "weft_scene_world_parts";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   write_obj(folder / "tube.obj", tube);
   write_obj(folder / "ball.obj", make_sphere_mesh(Vec3::Zero(), 0.055, 14));
   const std::string text =
@@ -122,8 +122,7 @@ TEST(SceneWorld, DividesNoStepForShortEdgesAtAHem) {
 }
 
 TEST(SceneWorld, SewsPiecesAndTellsSo) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "weft_scene_world_sew";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   std::ofstream(folder / "pieces.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\n"
                                           "v 0.101 0 0\nv 0.101 0 0.1\nv 0.2 0 0.05\nv 0.101 0 0.06\n"
                                           "vt 0 0\nvt 0.1 0\nvt 0 0.1\nvt 0.1 0.1\n"
@@ -140,8 +139,7 @@ TEST(SceneWorld, SewsPiecesAndTellsSo) {
 }
 
 TEST(SceneWorld, StitchesTheLinesOfAFile) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "weft_scene_world_stitches";
-  std::filesystem::create_directories(folder);
+  const std::filesystem::path folder = make_own_folder();
   // Two squares with two lines between them, one of them twice; others trace an edge, or go to vertices without a face.
   const char* squares =
       "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.2 0 0\nv 0.3 0 0\nv 0.2 0 0.1\nv 0.3 0 0.1\n"
@@ -174,10 +172,9 @@ TEST(SceneWorld, StitchesTheLinesOfAFile) {
 /// A square of 0.1 m, whose texture coordinates are 0.08 by 0.12; a second file of the same faces, 1 by 1.
 class RestShapes : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "weft_scene_world_rest";
+  std::filesystem::path folder_ = make_own_folder();
 
   void SetUp() override {
-    std::filesystem::create_directories(folder_);
     const char* faces = "f 1/1 3/3 4/4 2/2\n";
     std::ofstream(folder_ / "square.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\n"
                                              "vt 0 0\nvt 0.08 0\nvt 0 0.12\nvt 0.08 0.12\ng hem\n"
@@ -187,8 +184,6 @@ class RestShapes : public ::testing::Test {
         << faces;
     std::ofstream(folder_ / "other.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n";
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   SceneDesc read(const std::string& keys) const {
     return parse_scene("[scene]\nformat = 1\n[[cloth]]\nmesh = \"square.obj\"\nfabric = \"denim\"\n" + keys,
                        folder_ / "scene.toml");
@@ -235,13 +230,10 @@ TEST_F(RestShapes, OfOtherFacesAreRefused) {
 class GroupsOfAMesh : public testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "pieces.obj")
         << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0 0\nv 0.1 0 0.1\nv 0.2 0 0.05\nv 0.3 0 0\n"
            "o shirt\ng left\nf 1 3 4 2\ng right cuff\nf 5 6 7\ng flat\nf 8 8 8\no hem\ng right\nf 5 6 7\n";
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   static std::string text(const std::string& keys) {
     return "[scene]\nformat = 1\n[[cloth]]\nname = \"top\"\nmesh = \"pieces.obj\"\nweld = true\n"
            "fabric = { spring_structural = 100 }\n" +
@@ -264,9 +256,7 @@ class GroupsOfAMesh : public testing::Test {
   }
 
   // A folder of its own for each test: they may run at the same time.
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  (std::string("weft_scene_world_groups_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path folder_ = make_own_folder();
 };
 
 TEST_F(GroupsOfAMesh, SelectTheParticlesOfTheirVertices) {
@@ -339,9 +329,6 @@ TEST(ClothFaces, FacesOfAGridAreItsCells) {
 /// A scene with a sheet at height 1 and a box of side 1 as a mesh below it, in a temporary folder.
 class MeshCollider : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   static TriangleMesh box() { return make_box_mesh(Vec3::Zero(), Vec3::Constant(0.5), Mat3::Identity()); }
 
   SceneWorld build(const TriangleMesh& mesh, const std::string& keys = "") {
@@ -377,8 +364,7 @@ file = "body.obj"
     return "no error";
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(WEFT_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::filesystem::path folder_ = make_own_folder();
 };
 
 TEST_F(MeshCollider, AndClothAreReadFromPlyAndStlToo) {
@@ -555,8 +541,6 @@ TEST(SceneWorld, OfShippedScenesHasNothingToWarnOf) {
 
 class Settle : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-
   SceneWorld build(const std::string& settle, const std::string& collider) const {
     return build_world(parse_scene("[scene]\nformat = 1\n" + settle + R"(
 [[cloth]]
@@ -572,7 +556,7 @@ position = [-0.5, 0.25, -0.5]
   /// Of the sheet's middle.
   static double height(const World& world) { return world.state(world.cloth(0)).position(8 * 17 + 8).y(); }
 
-  const std::filesystem::path folder_ = std::filesystem::path(WEFT_OUTPUT_DIR) / "settle";
+  const std::filesystem::path folder_ = make_own_folder();
 };
 
 TEST_F(Settle, LaysClothOnABodyThatStandsStillBeforeFrameZero) {

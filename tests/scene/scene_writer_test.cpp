@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/own_folder.h"
 #include "weft/core/job_system.h"
 #include "weft/error.h"
 #include "weft/mesh/solid.h"
@@ -21,11 +22,6 @@ namespace fs = std::filesystem;
 
 class SceneWriter : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
   /// The scene, written and read.
   SceneDesc round_trip(const SceneDesc& scene) const {
     write_scene(folder_ / "scene.toml", scene);
@@ -35,8 +31,7 @@ class SceneWriter : public testing::Test {
   }
 
   // One per test: tests run at the same time.
-  const fs::path folder_ = fs::path(WEFT_OUTPUT_DIR) / "scene_writer" /
-                           testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path folder_ = make_own_folder();
 };
 
 /// Mesh files by the shortest of their names.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "tests/own_folder.h"
 #include "weft/scene/scene_library.h"
 #include "weft/scene/scene_reader.h"
 #include "weft/scene/scene_writer.h"
@@ -44,11 +45,9 @@ SceneDesc shipped(const std::string& name, const Overrides& overrides = {}) {
 }
 
 SceneDesc reread(const SceneDesc& scene) {
-  const fs::path folder =
-      fs::path(WEFT_OUTPUT_DIR) / "tunables" / testing::UnitTest::GetInstance()->current_test_info()->name();
-  fs::create_directories(folder);
-  write_scene(folder / "tuned.toml", scene);
-  SceneDesc back = canonical(read_scene(folder / "tuned.toml"));
+  const fs::path file = make_own_folder() / "tuned.toml";
+  write_scene(file, scene);
+  SceneDesc back = canonical(read_scene(file));
   back.name = scene.name;
   return back;
 }
