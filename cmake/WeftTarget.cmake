@@ -6,6 +6,9 @@ function(weft_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
+  # Where Eigen has vectors of doubles (SSE2, NEON), it sums dot() and norm() in another order than where it has none. The
+  # other name keeps a program's own copies of its inline functions, compiled with other settings, apart.
+  target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE Eigen=weft_Eigen)
   if(MSVC)
     target_compile_options(${target} PRIVATE /W4 /WX /fp:precise)
   else()

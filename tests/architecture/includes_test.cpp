@@ -1,4 +1,5 @@
-/// Rules of includes: they only point down, and a source begins with its own header.
+/// Rules of sources: includes only point down, and a source begins with its own header. Motion uses no function whose
+/// bits depend on the C library.
 
 #include <gtest/gtest.h>
 
@@ -105,6 +106,27 @@ TEST(Includes, HaveNoCycleInTheRuleItself) {
     ASSERT_NE(bottom, rest.end());
     rest.erase(bottom);
   }
+}
+
+/// Square roots, remainders and the like are exact; those below are not, and C libraries differ in their last bits.
+TEST(Arithmetic, OfMotionUsesNoInexactFunctionOfTheCLibrary) {
+  static const std::regex kInexact(
+      R"(\b(a?sinh?|a?cosh?|a?tanh?|atan2|exp[2m1]*|log(2|10|1p)?|pow|cbrt|hypot|erfc?|[lt]gamma)[fl]?\(|AngleAxis)");
+  const std::set<std::string> not_motion = {
+      "world/particle_values.cpp", "face/reading.cpp"  // angles for readers
+  };
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(WEFT_SOURCE_DIR) / "src/weft")) {
+    const std::string folder = entry.path().parent_path().filename().string();
+    if (!entry.is_regular_file() || (folder != "face" && !kMayInclude.at("face").contains(folder))) continue;
+    if (not_motion.contains(folder + '/' + entry.path().filename().string())) continue;
+    ++files;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      EXPECT_FALSE(std::regex_search(line.substr(0, line.find("//")), kInexact))
+          << entry.path() << ": " << line;
+  }
+  EXPECT_GT(files, 40) << "the test must have looked at the sources";
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST(Collapse, ForceIsTheGradientOfItsEnergy) {
 
 TEST(Collapse, ExactHessianIsTheDerivativeOfItsForce) {
   for (const TriangleCorners& x : crushed_triangles()) {
-    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, CollapseFilter::exact);
+    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, HessianKind::exact);
     for (int a = 0; a < 3; ++a) {
       const auto force = [&](const TriangleCorners& y) { return collapse_force(kRest, kLaw, y)[a]; };
       for (int b = 0; b < 3; ++b) {
@@ -100,8 +100,8 @@ TEST(Collapse, ExactHessianIsTheDerivativeOfItsForce) {
 }
 
 TEST(Collapse, PositiveHessianIsTheExactOneWithoutItsNegativePart) {
-  const auto matrix = [](const TriangleCorners& x, CollapseFilter filter) {
-    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, filter);
+  const auto matrix = [](const TriangleCorners& x, HessianKind kind) {
+    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, kind);
     Eigen::Matrix<double, 9, 9> h;
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b < 3; ++b) h.block<3, 3>(3 * a, 3 * b) = collapse_block(hessian, a, b);
@@ -109,14 +109,14 @@ TEST(Collapse, PositiveHessianIsTheExactOneWithoutItsNegativePart) {
     return h;
   };
   for (const TriangleCorners& x : crushed_triangles()) {
-    const auto positive = matrix(x, CollapseFilter::positive), exact = matrix(x, CollapseFilter::exact);
+    const auto positive = matrix(x, HessianKind::positive), exact = matrix(x, HessianKind::exact);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> of_positive(positive),
         of_rest(positive - exact);
     const double rounding = 1e-9 * kLaw.stiffness;
     EXPECT_GT(of_positive.eigenvalues().minCoeff(), -rounding);
     EXPECT_GT(of_rest.eigenvalues().minCoeff(), -rounding);
     // In the space of F, where modes are orthogonal, none is stiffer than A k.
-    const CollapseHessian modes = collapse_hessian(kRest, kLaw, x, CollapseFilter::positive);
+    const CollapseHessian modes = collapse_hessian(kRest, kLaw, x, HessianKind::positive);
     for (int m = 0; m < modes.num_modes; ++m)
       EXPECT_LE(modes.stiffness[m], kRest.area * kLaw.stiffness * (1 + 1e-9));
   }
@@ -130,7 +130,7 @@ TEST(Collapse, CostsNothingInTheWorkingRangeOfCloth) {
         const TriangleCorners x = mapped(sheared(angle, warp, weft), random_turn(random));
         EXPECT_EQ(energy_of(x), 0) << angle;
         for (const Vec3& f : collapse_force(kRest, kLaw, x)) EXPECT_EQ(f.norm(), 0) << angle;
-        EXPECT_EQ(collapse_hessian(kRest, kLaw, x, CollapseFilter::exact).num_modes, 0) << angle;
+        EXPECT_EQ(collapse_hessian(kRest, kLaw, x, HessianKind::exact).num_modes, 0) << angle;
       }
     }
   }
@@ -172,7 +172,7 @@ TEST(Collapse, OpensTrianglesWithoutWidth) {
     EXPECT_LT(sum.norm(), 1e-9);
     EXPECT_LT(energy_of(moved), energy_of(x));
     EXPECT_GT(principal_stretches(kRest, moved)[0], principal_stretches(kRest, x)[0] + 1e-4);
-    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, CollapseFilter::positive);
+    const CollapseHessian hessian = collapse_hessian(kRest, kLaw, x, HessianKind::positive);
     EXPECT_GT(hessian.num_modes, 0);
     for (int m = 0; m < hessian.num_modes; ++m) {
       for (const Vec3& w : hessian.corners[m]) EXPECT_TRUE(w.allFinite());

@@ -9,7 +9,7 @@
 #include "weft/core/hash.h"
 #include "weft/core/simd.h"
 #include "weft/fabric.h"
-#include "weft/integrators/element_terms.h"
+#include "weft/forces/terms.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -31,20 +31,17 @@ class Explicit {
  public:
   explicit Explicit(const ClothModel& model)
       : model_(model),
-        elements_(*model.elements),
+        terms_(make_elastic_terms(model, make_state(model.topology->mesh.positions))),
         x(model.topology->mesh.positions),
-        v_(x.size(), Vec3::Zero()) {
-    elements_.damping = 0;
-    terms_.begin_step(elements_, 1, x, x);
-  }
+        v_(x.size(), Vec3::Zero()) {}
 
   void advance(const Environment& environment, double step, int num_steps) {
     for (int s = 0; s < num_steps; ++s) {
-      gradient_.assign(x.size(), Vec3::Zero());
-      terms_.add_gradient(x, gradient_);
-      for (const int p : environment.pins.particle) gradient_[p] = model_.mass[p] * environment.gravity;
+      force_.assign(x.size(), Vec3::Zero());
+      add_forces(terms_, x, force_);
+      for (const int p : environment.pins.particle) force_[p] = -model_.mass[p] * environment.gravity;
       for (std::size_t i = 0; i < x.size(); ++i) {
-        v_[i] += step * (environment.gravity - gradient_[i] / model_.mass[i]);
+        v_[i] += step * (environment.gravity + force_[i] / model_.mass[i]);
         x[i] += step * v_[i];
       }
     }
@@ -52,14 +49,13 @@ class Explicit {
 
  private:
   const ClothModel& model_;
-  ClothElements elements_;
-  ElementTerms terms_;
+  Terms terms_;
 
  public:
   std::vector<Vec3> x;
 
  private:
-  std::vector<Vec3> v_, gradient_;
+  std::vector<Vec3> v_, force_;
 };
 
 TEST(NewtonElements, FollowTheHangingSheetOfRealFabric) {

@@ -157,9 +157,10 @@ TEST(SceneWorld, StitchesTheLinesOfAFile) {
   EXPECT_EQ(sewn.world.model(sewn.world.cloth(0)).topology->seams.springs.size(), 2u);
   const SceneWorld open = build("mesh = \"panels.obj\"\n");
   ASSERT_EQ(open.warnings.size(), 2u);
-  EXPECT_EQ(open.warnings[0],
-            "cloth \"cloth\": its file has 2 lines between vertices, as Blender's sewing; stitches = true draws "
-            "them together");
+  EXPECT_EQ(
+      open.warnings[0],
+      "cloth \"cloth\": its file has 2 lines between vertices, as Blender's sewing; stitches = true draws "
+      "them together");
   EXPECT_EQ(message_of([&] { build("mesh = \"plain.obj\"\nstitches = true\n"); }),
             "cloth \"cloth\": stitches are the lines of its file, l of an OBJ file, but it has none");
   EXPECT_NE(message_of([&] {
@@ -210,6 +211,23 @@ TEST_F(RestShapes, AreReadInEveryForm) {
   EXPECT_NEAR(area("position = [5, 0, 0]\n[[cloth.rest_scale]]\nwarp = 0.5\n"
                    "select = { box = { min = [4.99, -1, -1], max = [5.01, 1, 1] } }"),
               0.005 * (4.0 / 6 + 5.0 / 6), 1e-15);
+}
+
+TEST_F(RestShapes, AreSuggestedWhereTextureCoordinatesLookLikeAPattern) {
+  const auto notes = [&](double u, double v) {
+    std::ofstream(folder_ / "square.obj")
+        << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nvt 0 0\nvt " << u << " 0\nvt 0 " << v << "\nvt " << u
+        << ' ' << v << "\nf 1/1 3/3 4/4 2/2\n";
+    return build_world(read(""), make_serial_jobs()).notes;
+  };
+  EXPECT_EQ(
+      notes(0.19, 0.21),
+      std::vector<std::string>{
+          "cloth \"cloth\" (square.obj): its texture coordinates look like its flat pattern, in units of "
+          "0.4994 m: with rest = \"uv\" its edges would start at about 0.9536 to 1.054 times their lengths "
+          "at rest"});
+  EXPECT_TRUE(notes(0.2, 0.2).empty()) << "it would change nothing";
+  EXPECT_TRUE(notes(0.1, 0.3).empty()) << "a picture's coordinates";
 }
 
 TEST_F(RestShapes, OfOtherFacesAreRefused) {

@@ -40,7 +40,7 @@ WEFT_ALWAYS_INLINE Quad operator-(const Quad& p, const Quad& q) {
 WEFT_ALWAYS_INLINE double dot(const Quad& p, const Quad& q) {
   Quad r;
   for (int k = 0; k < 4; ++k) r.at[k] = p.at[k] * q.at[k];
-  return r.at[0] + r.at[1] + r.at[2];
+  return r.at[0] + (r.at[1] + r.at[2]);  // as Eigen
 }
 
 template <int kVertices>

@@ -12,8 +12,14 @@ struct SinCos {
 /// be finite; fmod reduces large ones.
 SinCos sin_cos_deg(double angle_deg);
 
-/// Angle of the point (x, y) from the x axis, 0 to 90 degrees, with a relative error of at most 1e-15. Both are
-/// 0 or more; the point's distance from the origin is between 1e-150 and 1e150.
+/// Of an angle of up to 1e4 in magnitude [rad], to about 2e-16.
+SinCos sin_cos(double angle);
+
+/// Angle of the point (x, y) from the x axis, in (−π, π] with a relative error of at most 1e-15; 0 of the origin
+/// [rad].
+double find_angle(double y, double x);
+
+/// The same in degrees, of a point whose coordinates are 0 or more: 0 to 90.
 double find_angle_deg(double y, double x);
 
 }  // namespace weft::engine

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "weft/core/aligned.h"
 #include "weft/core/vec.h"
@@ -92,5 +93,12 @@ class Vec3Array {
   float* first_ = nullptr;                 // of `memory_`
   std::shared_ptr<AlignedFloats> memory_;  // x, then y, then z, with padding (3 x stride_); null: empty
 };
+
+inline std::vector<Vec3> to_doubles(const Vec3Array& values) {
+  std::vector<Vec3> doubles;
+  doubles.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) doubles.push_back(values.get(i));
+  return doubles;
+}
 
 }  // namespace weft::engine

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
+
+#include "weft/core/angle.h"
 
 namespace weft::engine {
 namespace {
@@ -117,7 +118,7 @@ struct FlatRing {
   Vec3 axis, across;           // of the frame in space: towards the first ring vertex, and 90° on
 };
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3& a, const Vec3& b) { return find_angle(a.cross(b).norm(), a.dot(b)); }
 
 FlatRing lay_flat(const RestMesh& mesh, int center, const Ring& ring) {
   FlatRing flat;
@@ -154,11 +155,11 @@ double warp_angle(const RestMesh& mesh, int center, const Ring& ring, const Flat
     const Vec3 spoke = mesh.between(t, center, ring.vertices[k]).normalized();
     const double cosine = spoke.dot(warp.warp[t]);
     const double sine = normal.normalized().dot(spoke.cross(warp.warp[t]));
-    const double doubled = 2 * (flat.angle[k] + std::atan2(sine, cosine));
-    c += normal.norm() * std::cos(doubled);
-    s += normal.norm() * std::sin(doubled);
+    const SinCos doubled = sin_cos(2 * (flat.angle[k] + find_angle(sine, cosine)));
+    c += normal.norm() * doubled.cos;
+    s += normal.norm() * doubled.sin;
   }
-  return 0.5 * std::atan2(s, c);
+  return 0.5 * find_angle(s, c);
 }
 
 /// −Σ_j (∫ ∂a φ_i ∂b φ_j) x_j / A_i over the flat ring, with warp as the first axis; A_i in `area`.
@@ -167,8 +168,8 @@ SecondDerivatives second_derivatives(int center, const Ring& ring, const FlatRin
   const std::size_t n = ring.vertices.size();
   std::vector<Vec2> place;
   for (std::size_t k = 0; k < n; ++k) {
-    const double at = flat.angle[k] - warp_at;
-    place.push_back(flat.length[k] * Vec2(std::cos(at), std::sin(at)));
+    const SinCos at = sin_cos(flat.angle[k] - warp_at);
+    place.push_back(flat.length[k] * Vec2(at.cos, at.sin));
   }
   SecondDerivatives derivative;
   area = 0;
@@ -239,8 +240,9 @@ VertexCurvature find_curvature(const RestMesh& mesh, int center, const Ring& rin
   curvature.derivatives = second_derivatives(center, ring, flat, warp_at, curvature.area);
   for (const int v : ring.vertices) {
     if (border[v].area == 0) continue;
-    const double at = std::atan2(border[v].tangent.dot(flat.across), border[v].tangent.dot(flat.axis));
-    curvature.borders.push_back({std::cos(at - warp_at), std::sin(at - warp_at), border[v].area});
+    const double along = find_angle(border[v].tangent.dot(flat.across), border[v].tangent.dot(flat.axis));
+    const SinCos at = sin_cos(along - warp_at);
+    curvature.borders.push_back({at.cos, at.sin, border[v].area});
   }
   return curvature;
 }

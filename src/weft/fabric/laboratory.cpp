@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "weft/core/logarithm.h"
 #include "weft/error.h"
 
 namespace weft {
@@ -18,10 +19,12 @@ void require_positive(double value, const char* sheet, const char* what) {
   if (!is_positive) throw InputError(std::string(sheet) + ": " + what + " must be above 0");
 }
 
+double cube(double x) { return x * x * x; }
+
 /// Extension of T = T_max (ε/EMT)ⁿ under a tension [1].
 double kes_extension(double full_extension, double linearity, double tension) {
   const double n = 2 / linearity - 1;
-  return full_extension * std::pow(tension / kFullTension, 1 / n);
+  return full_extension * engine::power(tension / kFullTension, 1 / n);
 }
 
 std::vector<StretchPoint> kes_curve(double full_extension, double linearity) {
@@ -80,8 +83,8 @@ Fabric fabric_from(const FastSheet& sheet) {
   fabric.c22 = 14.7 / (weft / 100);
   fabric.c12 = 0;
   fabric.g = 123 / sheet.bias_extension;
-  fabric.bend_warp = 9.81e-12 * sheet.weight * std::pow(sheet.bending_length_warp, 3);
-  fabric.bend_weft = 9.81e-12 * sheet.weight * std::pow(sheet.bending_length_weft, 3);
+  fabric.bend_warp = 9.81e-12 * sheet.weight * cube(sheet.bending_length_warp);
+  fabric.bend_weft = 9.81e-12 * sheet.weight * cube(sheet.bending_length_weft);
   fabric.bend_bias = std::sqrt(fabric.bend_warp * fabric.bend_weft);
   fabric.friction = sheet.friction;
   validate_fabric(fabric, "FAST sheet");

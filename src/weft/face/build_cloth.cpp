@@ -229,6 +229,7 @@ RestShape build_from_mesh(const ClothDesc& desc, const weft::TriangleMesh& mesh,
                        " triangles, but the mesh has " + std::to_string(mesh.triangles.size()));
     set_rest(desc.rest, clean, prepared, notes);
   }
+  suggest_rest(prepared, rest.uv, notes);
   apply_scales(desc, rest.uv, rest.added, notes, prepared);
   report_rest(prepared, notes);
   Seams seams = build_seams(desc, prepared, notes);

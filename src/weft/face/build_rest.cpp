@@ -27,6 +27,11 @@ std::vector<TriangleCorners> cut_corners(const std::vector<weft::TriangleCorners
   return parts;
 }
 
+/// The value that a share of the sorted ones is below.
+double value_at(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
 }  // namespace
 
 void set_rest(const std::vector<weft::TriangleCorners>& given, const CleanMesh& clean, RestMesh& mesh,
@@ -79,9 +84,7 @@ void report_rest(const RestMesh& mesh, ClothNotes& notes) {
   for (const Edge& e : build_edges(mesh))
     stretches.push_back((mesh.positions[e.b] - mesh.positions[e.a]).norm() / edge_length(mesh, e));
   std::ranges::sort(stretches);
-  const auto at = [&](double share) {
-    return short_text(stretches[static_cast<std::size_t>(share * static_cast<double>(stretches.size() - 1))]);
-  };
+  const auto at = [&](double share) { return short_text(value_at(stretches, share)); };
   notes.done.push_back("its edges start at " + at(0.05) + " to " + at(0.95) +
                        " times their lengths at rest (of nine in ten; median " + at(0.5) + ")");
   const auto num_far = std::ranges::count_if(stretches, [&](double s) { return s > kFar || s < 1 / kFar; });
@@ -89,6 +92,29 @@ void report_rest(const RestMesh& mesh, ClothNotes& notes) {
     notes.warnings.push_back(std::to_string(num_far) + " of " + std::to_string(stretches.size()) +
                              " edges start at more than 1.25 or less than 0.8 times their length at rest; is "
                              "this the pattern of this mesh, and its scale right?");
+}
+
+void suggest_rest(const RestMesh& mesh, const std::vector<CornerUv>& uv, ClothNotes& notes) {
+  // How much the stretches of nine in ten edges may differ in a pattern, and how little if it changes nothing.
+  constexpr double kPattern = 1.4, kSame = 1.02;
+  if (uv.empty() || !mesh.at_rest.empty()) return;
+  std::vector<double> stretches;
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const TriangleCorners corners = mesh.corners(t);
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const double length = (uv[t][next] - uv[t][k]).norm();
+      if (!(length > 0) || !std::isfinite(length)) return;
+      stretches.push_back((corners[next] - corners[k]).norm() / length);
+    }
+  }
+  std::ranges::sort(stretches);
+  const double low = value_at(stretches, 0.05), high = value_at(stretches, 0.95),
+               unit = value_at(stretches, 0.5);
+  if (low == 0 || high > kPattern * low || high < kSame * low) return;
+  notes.done.push_back("its texture coordinates look like its flat pattern, in units of " + short_text(unit) +
+                       " m: with rest = \"uv\" its edges would start at about " + short_text(low / unit) +
+                       " to " + short_text(high / unit) + " times their lengths at rest");
 }
 
 }  // namespace weft::engine

@@ -23,4 +23,7 @@ void scale_rest(const std::vector<RestScale>& scales, const std::vector<AddedPar
 /// Reports how long edges are at the start, by their length at rest.
 void report_rest(const RestMesh& mesh, ClothNotes& notes);
 
+/// Reports texture coordinates that look like the pattern of a mesh without a rest shape.
+void suggest_rest(const RestMesh& mesh, const std::vector<CornerUv>& uv, ClothNotes& notes);
+
 }  // namespace weft::engine

@@ -105,7 +105,7 @@ TriangleCorners collapse_force(const RestTriangle& rest, const StrainLimit& law,
 }
 
 CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x,
-                                 CollapseFilter filter) {
+                                 HessianKind kind) {
   const Columns f = deformation(rest, x);
   if (is_wide(f)) return {};
   const PrincipalAxes axes = principal_axes(f);
@@ -114,7 +114,7 @@ CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& la
   const LimitResponse r1 = respond(law, s1), r2 = respond(law, s2);
   CollapseHessian hessian;
   const auto add = [&](double stiffness, const Vec3& a, const Vec3& b) {
-    if (stiffness == 0 || (filter == CollapseFilter::positive && stiffness < 0)) return;
+    if (stiffness == 0 || (kind == HessianKind::positive && stiffness < 0)) return;
     hessian.stiffness[hessian.num_modes] = rest.area * stiffness;
     hessian.corners[hessian.num_modes++] = corners_of(rest, axes, a, b);
   };
@@ -134,6 +134,62 @@ Mat3 collapse_block(const CollapseHessian& hessian, int a, int b) {
   for (int m = 0; m < hessian.num_modes; ++m)
     block += hessian.stiffness[m] * hessian.corners[m][a] * hessian.corners[m][b].transpose();
   return block;
+}
+
+namespace {
+
+class CollapseTerm final : public Term {
+ public:
+  CollapseTerm(const RestMesh& mesh, const StrainLimit& law) : mesh_(mesh), law_(law) {}
+
+  double energy(const Positions& x) const override {
+    double energy = 0;
+    visit(x, [&](const Triangle&, const RestTriangle& rest, const TriangleCorners& corners) {
+      energy += collapse_energy(rest, law_, corners);
+    });
+    return energy;
+  }
+
+  void add_force(const Positions& x, std::vector<Vec3>& force) const override {
+    visit(x, [&](const Triangle& t, const RestTriangle& rest, const TriangleCorners& corners) {
+      const TriangleCorners own = collapse_force(rest, law_, corners);
+      for (int c = 0; c < 3; ++c) force[t[c]] += own[c];
+    });
+  }
+
+  void add_hessian(const Positions& x, HessianKind kind, const AddBlock& add) const override {
+    visit(x, [&](const Triangle& t, const RestTriangle& rest, const TriangleCorners& corners) {
+      const CollapseHessian hessian = collapse_hessian(rest, law_, corners, kind);
+      if (hessian.num_modes == 0) return;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b <= a; ++b) add(t[a], t[b], collapse_block(hessian, a, b));
+      }
+    });
+  }
+
+  void list_pairs(const AddPair& add) const override {
+    for (const Triangle& t : mesh_.triangles) list_all_pairs(t.data(), 3, add);
+  }
+
+ private:
+  template <class Visit>
+  void visit(const Positions& x, const Visit& visit) const {
+    for (int t = 0; t < mesh_.num_triangles(); ++t) {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      visit(mesh_.triangles[t], make_rest_triangle(mesh_, t), TriangleCorners{x[a], x[b], x[c]});
+    }
+  }
+
+  const RestMesh& mesh_;
+  StrainLimit law_;
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_collapse_term(const ClothModel& model, const ClothState&) {
+  const StrainLimit law = make_collapse_law(model);
+  if (law.stiffness == 0) return nullptr;
+  return std::make_unique<CollapseTerm>(model.topology->mesh, law);
 }
 
 }  // namespace weft::engine

@@ -25,9 +25,12 @@
 /// All functions take the corners' positions [m].
 
 #include <array>
+#include <memory>
 
 #include "weft/forces/membrane.h"
+#include "weft/forces/term.h"
 #include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
 
 namespace weft::engine {
 
@@ -56,15 +59,14 @@ struct CollapseHessian {
   std::array<TriangleCorners, kMaxModes> corners;  // [1/m]
 };
 
-enum class CollapseFilter {
-  exact,     // the true Hessian, indefinite
-  positive,  // SPD projection: drops the modes of negative stiffness, the buckling modes of compression
-};
-
+/// The SPD projection drops the modes of negative stiffness, the buckling modes of compression.
 CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x,
-                                 CollapseFilter filter);
+                                 HessianKind kind);
 
 /// The 3×3 block of corners a and b [N/m].
 Mat3 collapse_block(const CollapseHessian& hessian, int a, int b);
+
+/// Of all triangles; null if k is zero.
+std::unique_ptr<Term> make_collapse_term(const ClothModel& model, const ClothState& state);
 
 }  // namespace weft::engine

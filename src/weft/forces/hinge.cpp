@@ -1,7 +1,8 @@
 #include "weft/forces/hinge.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "weft/core/angle.h"
 
 namespace weft::engine {
 namespace {
@@ -44,7 +45,7 @@ double hinge_angle(const HingeCorners& x) {
   const double length = n.edge.norm();
   if (length == 0) return 0;
   const double sine = n.n1.cross(n.n0).dot(n.edge) / length;
-  return std::atan2(sine, n.n0.dot(n.n1));
+  return find_angle(sine, n.n0.dot(n.n1));
 }
 
 HingeCorners hinge_angle_gradient(const HingeCorners& x) {

@@ -27,7 +27,7 @@ using HingeCorners = std::array<Vec3, 4>;
 /// D |e|²/(A0 + A1) [N·m] of the rest shape, for the rigidity D [N·m].
 double hinge_stiffness(double rigidity, const HingeCorners& rest);
 
-/// θ in (−π, π], by atan2; 0 if a triangle has zero area [rad].
+/// θ in (−π, π]; 0 if a triangle has zero area [rad].
 double hinge_angle(const HingeCorners& x);
 
 /// ∂θ/∂x_c [1/m]. Zero if a triangle has zero area, and limited to that of a triangle a thousandth as high as

@@ -8,10 +8,13 @@
 /// with the outside's pressure a, and V₀ = Gas::sealed_volume. Each particle's force is excess · ∂V/∂x. Of the
 /// Hessian only E″ ∂V ∂Vᵀ is positive semidefinite: excess · ∂²V turns forces with the surface, and is left out.
 
+#include <memory>
 #include <span>
 
+#include "weft/forces/term.h"
 #include "weft/mesh/solid.h"
-#include "weft/model/gas.h"
+#include "weft/model/cloth_model.h"
+#include "weft/model/cloth_state.h"
 
 namespace weft::engine {
 
@@ -37,5 +40,8 @@ void add_volume_gradient(std::span<const Triangle> triangles, const At& at, cons
     for (const int v : {a, b, c}) add(v, third);
   }
 }
+
+/// Null without gas. Of its Hessian it has the part of rank one.
+std::unique_ptr<Term> make_gas_term(const ClothModel& model, const ClothState& state);
 
 }  // namespace weft::engine

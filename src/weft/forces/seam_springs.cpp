@@ -35,12 +35,57 @@ SeamPull seam_pull(const SeamSpring& spring, double closed, double opening, cons
   return {0.5 * k * stretch * stretch, -k * stretch * direction, k, k * stretch / length, direction};
 }
 
-double seam_energy(const ClothModel& model, const ClothState& state) {
-  double energy = 0;
-  visit_seam_pulls(
-      model, seam_opening(model, state), [&](int v) { return state.x.get(v); },
-      [&](const SeamSpring&, const SeamPull& pull) { energy += pull.energy; });
-  return energy;
+namespace {
+
+class SeamTerm final : public Term {
+ public:
+  SeamTerm(const ClothModel& model, double opening) : model_(model), opening_(opening) {}
+
+  double energy(const Positions& x) const override {
+    double energy = 0;
+    visit(x, [&](const SeamSpring&, const SeamPull& pull) { energy += pull.energy; });
+    return energy;
+  }
+
+  void add_force(const Positions& x, std::vector<Vec3>& force) const override {
+    visit(x, [&](const SeamSpring& spring, const SeamPull& pull) {
+      const auto weights = spring.weights();
+      for (int k = 0; k < 3; ++k) force[spring.particles[k]] += weights[k] * pull.force;
+    });
+  }
+
+  void add_hessian(const Positions& x, HessianKind, const AddBlock& add) const override {
+    visit(x, [&](const SeamSpring& spring, const SeamPull& pull) {
+      const auto weights = spring.weights();
+      const Mat3 hessian = pull.hessian();
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b <= a; ++b)
+          add(spring.particles[a], spring.particles[b], weights[a] * weights[b] * hessian);
+      }
+    });
+  }
+
+  void list_pairs(const AddPair& add) const override {
+    for (const SeamSpring& spring : model_.topology->seams.springs)
+      list_all_pairs(spring.particles.data(), 3, add);
+  }
+
+ private:
+  template <class Visit>
+  void visit(const Positions& x, const Visit& visit) const {
+    visit_seam_pulls(
+        model_, opening_, [&](int v) { return x[v]; }, visit);
+  }
+
+  const ClothModel& model_;
+  double opening_;
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_seam_term(const ClothModel& model, const ClothState& state) {
+  if (model.topology->seams.springs.empty()) return nullptr;
+  return std::make_unique<SeamTerm>(model, seam_opening(model, state));
 }
 
 double seam_work(const ClothModel& model, const ClothState& before, const ClothState& after) {

@@ -9,9 +9,11 @@
 /// and the distance r₀ of a closed seam. Seams pull, and never push: cloth that moves on by itself closes earlier.
 /// Contact keeps layers a thickness apart; r₀ is a little more, so that the two do not work against each other.
 
+#include <memory>
 #include <optional>
 
 #include "weft/core/vec.h"
+#include "weft/forces/term.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
@@ -61,7 +63,8 @@ void visit_seam_pulls(const ClothModel& model, double opening, const At& at, con
   }
 }
 
-double seam_energy(const ClothModel& model, const ClothState& state);  // [J]
+/// Null for a cloth without seams.
+std::unique_ptr<Term> make_seam_term(const ClothModel& model, const ClothState& state);
 
 /// Work of the closing seams in a step: the pull at its end times the shortening of r [J].
 double seam_work(const ClothModel& model, const ClothState& before, const ClothState& after);

@@ -30,9 +30,15 @@ double follow(double memory, double value, double distance) {
   return std::clamp(memory, value - distance, value + distance);
 }
 
-/// The state's memory, moved to its positions.
-ThreadBendStep follow_thread_bends(const ThreadBends& rows, const TriangleMesh& mesh,
-                                   const ClothState& state) {
+}  // namespace
+
+const ThreadBends& thread_bends_of(const ClothModel& model) {
+  static const ThreadBends kNone;
+  return model.elements ? model.elements->thread_bends : kNone;
+}
+
+ThreadBendStep begin_thread_bends(const ThreadBends& rows, const TriangleMesh& mesh,
+                                  const ClothState& state) {
   ThreadBendStep step{.rows = &rows};
   if (rows.empty()) return step;
   const std::vector<Vec3> normals = find_normals(mesh, state);
@@ -47,22 +53,10 @@ ThreadBendStep follow_thread_bends(const ThreadBends& rows, const TriangleMesh& 
   return step;
 }
 
-ThreadBendStep follow_thread_bends(const ClothModel& model, const ClothState& state) {
-  return follow_thread_bends(thread_bends_of(model), model.topology->mesh, state);
-}
-
-}  // namespace
-
-const ThreadBends& thread_bends_of(const ClothModel& model) {
-  static const ThreadBends kNone;
-  return model.elements ? model.elements->thread_bends : kNone;
-}
-
-ThreadBendStep begin_thread_bends(const ThreadBends& rows, const TriangleMesh& mesh, ClothState& state) {
-  ThreadBendStep step = follow_thread_bends(rows, mesh, state);
+void advance_thread_bends(const ClothModel& model, ClothState& state) {
+  const ThreadBendStep step = begin_thread_bends(thread_bends_of(model), model.topology->mesh, state);
   state.bending.slip.assign(step.slip.begin(), step.slip.end());
   state.bending.set.assign(step.set.begin(), step.set.end());
-  return step;
 }
 
 ThreadBendResponse thread_bend_response(const ThreadBendStep& step, int row, double curvature) {
@@ -81,24 +75,59 @@ ThreadBendResponse thread_bend_response(const ThreadBendStep& step, int row, dou
   return response;
 }
 
-double thread_bend_energy(const ClothModel& model, const ClothState& state) {
-  const ThreadBendStep step = follow_thread_bends(model, state);
-  double energy = 0;
-  for (int r = 0; r < step.rows->num_rows(); ++r) {
-    const double curvature = thread_curvature(step, r, [&](int v) { return state.x.get(v); });
-    energy += thread_bend_response(step, r, curvature).energy;
-  }
-  return energy;
-}
+namespace {
 
-void add_thread_bend_force(const ClothModel& model, const ClothState& state, std::vector<Vec3>& force) {
-  const ThreadBendStep step = follow_thread_bends(model, state);
-  const ThreadBends& rows = *step.rows;
-  for (int r = 0; r < rows.num_rows(); ++r) {
-    const double curvature = thread_curvature(step, r, [&](int v) { return state.x.get(v); });
-    const Vec3 moment = thread_bend_response(step, r, curvature).moment * step.normal[r];
-    for (int k = rows.begin[r]; k < rows.begin[r + 1]; ++k) force[rows.vertex[k]] -= rows.weight[k] * moment;
+class ThreadBendTerm final : public Term {
+ public:
+  explicit ThreadBendTerm(ThreadBendStep step) : step_(std::move(step)), rows_(*step_.rows) {}
+
+  double energy(const Positions& x) const override {
+    double energy = 0;
+    for (int r = 0; r < rows_.num_rows(); ++r) energy += respond(r, x).energy;
+    return energy;
   }
+
+  void add_force(const Positions& x, std::vector<Vec3>& force) const override {
+    for (int r = 0; r < rows_.num_rows(); ++r) {
+      const Vec3 moment = respond(r, x).moment * step_.normal[r];
+      for (int k = rows_.begin[r]; k < rows_.begin[r + 1]; ++k)
+        force[rows_.vertex[k]] -= rows_.weight[k] * moment;
+    }
+  }
+
+  void add_hessian(const Positions& x, HessianKind kind, const AddBlock& add) const override {
+    for (int r = 0; r < rows_.num_rows(); ++r) {
+      const ThreadBendResponse response = respond(r, x);
+      const Vec3& n = step_.normal[r];
+      const Mat3 block =
+          (kind == HessianKind::exact ? response.tangent : response.stiffness) * n * n.transpose();
+      for (int a = rows_.begin[r]; a < rows_.begin[r + 1]; ++a) {
+        for (int b = rows_.begin[r]; b <= a; ++b)
+          add(rows_.vertex[a], rows_.vertex[b], rows_.weight[a] * rows_.weight[b] * block);
+      }
+    }
+  }
+
+  void list_pairs(const AddPair& add) const override {
+    for (int r = 0; r < rows_.num_rows(); ++r)
+      list_all_pairs(rows_.vertex.data() + rows_.begin[r], rows_.begin[r + 1] - rows_.begin[r], add);
+  }
+
+ private:
+  ThreadBendResponse respond(int row, const Positions& x) const {
+    return thread_bend_response(step_, row, thread_curvature(step_, row, [&](int v) { return x[v]; }));
+  }
+
+  ThreadBendStep step_;
+  const ThreadBends& rows_;
+};
+
+}  // namespace
+
+std::unique_ptr<Term> make_thread_bend_term(const ClothModel& model, const ClothState& state) {
+  const ThreadBends& rows = thread_bends_of(model);
+  if (rows.empty()) return nullptr;
+  return std::make_unique<ThreadBendTerm>(begin_thread_bends(rows, model.topology->mesh, state));
 }
 
 }  // namespace weft::engine

@@ -16,9 +16,11 @@
 /// For the step the element is the convex potential of J.-J. Moreau's sweeping process, quadratic around κ_slip and
 /// linear beyond s, so that an implicit step slips by the right amount.
 
+#include <memory>
 #include <vector>
 
 #include "weft/core/vec.h"
+#include "weft/forces/term.h"
 #include "weft/model/cloth_model.h"
 #include "weft/model/cloth_state.h"
 
@@ -38,9 +40,11 @@ struct ThreadBendStep {
 /// The rows of a cloth, or none.
 const ThreadBends& thread_bends_of(const ClothModel& model);
 
-/// Moves the memory of the state to its positions, and begins a step there. A state without memory has been flat until
-/// now. `rows` outlive the step.
-ThreadBendStep begin_thread_bends(const ThreadBends& rows, const TriangleMesh& mesh, ClothState& state);
+/// Moves the memory of the state to its positions. A state without memory has been flat until now.
+void advance_thread_bends(const ClothModel& model, ClothState& state);
+
+/// A step from the state, as if its memory had been moved. The rows outlive it.
+ThreadBendStep begin_thread_bends(const ThreadBends& rows, const TriangleMesh& mesh, const ClothState& state);
 
 /// n·Σ w x of a row [1/m]; `position(vertex)` is a Vec3.
 template <class Position>
@@ -63,11 +67,7 @@ struct ThreadBendResponse {
 };
 ThreadBendResponse thread_bend_response(const ThreadBendStep& step, int row, double curvature);
 
-/// Energy beside bending_energy() of a state whose memory has been moved to its positions: of threads that stick, and
-/// by the set [J].
-double thread_bend_energy(const ClothModel& model, const ClothState& state);
-
-/// Adds the forces of the rows on the particles, of the same state [N].
-void add_thread_bend_force(const ClothModel& model, const ClothState& state, std::vector<Vec3>& force);
+/// What friction and set add to elastic bending in a step from the state; null without rows.
+std::unique_ptr<Term> make_thread_bend_term(const ClothModel& model, const ClothState& state);
 
 }  // namespace weft::engine

@@ -6,29 +6,20 @@
 #include <memory>
 #include <vector>
 
-#include "weft/core/job_system.h"
-#include "weft/core/padded_rows.h"
-#include "weft/core/vec3_array.h"
 #include "weft/forces/collapse.h"
 #include "weft/forces/narrow_triangles.h"
+#include "weft/integrators/newton_term.h"
 
 namespace weft::engine {
 
 /// Σ W over the narrow triangles of the last linearise(): those with W > 0, and those that a Newton step may
-/// narrow that far. All others have W = 0. Positions are floats, laid out by the rows; the sums are doubles,
-/// one triangle after the other. The preconditioner needs no change: see CollapseHessian.
-class CollapseTerms {
+/// narrow that far. All others have W = 0. The preconditioner needs no change: see CollapseHessian.
+class CollapseTerms final : public NewtonTerm {
  public:
-  /// Discards the triangles of the last step.
-  void begin(const ClothModel& model, const PaddedRows& rows);
-
-  /// Finds the narrow triangles; returns the value [J]; adds the forces, and stores the Hessian.
-  double linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force);
-
-  double energy(const Vec3Array& x) const;
-
-  /// q += H p, and p·Hp [J].
-  double add_product(const Vec3Array& p, Vec3Array& q) const;
+  void begin(const Step& step) override;
+  double energy(const Place& at, JobSystem& jobs) override;
+  double linearise(const Place& at, JobSystem& jobs, Vec3Array& force) override;
+  double add_product(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) override;
 
  private:
   struct Narrow {

@@ -1,5 +1,7 @@
 #include "weft/integrators/common.h"
 
+#include "weft/forces/terms.h"
+
 namespace weft::engine {
 namespace {
 
@@ -78,6 +80,24 @@ IncrementSettings make_increment_settings(const ClothModel& model, const Environ
   settings.wind_rate = static_cast<float>(environment.wind.drag / model.material.density);
   settings.wind_velocity = environment.wind.velocity;
   return settings;
+}
+
+double free_share(const ClothModel& model, const ClothState& state, const std::vector<Vec3>& x,
+                  const std::vector<int>& pinned, const Vec3& gravity) {
+  const double gravity_sq = gravity.squaredNorm();
+  if (pinned.empty() || gravity_sq == 0) return 1;
+  std::vector<Vec3> force(x.size(), Vec3::Zero());
+  add_forces(make_elastic_terms(model, state), x, force);
+  double mass = 0, carried = 0;
+  for (const int p : pinned) {
+    mass -= model.mass[p];
+    force[p].setZero();
+  }
+  for (int i = 0; i < model.num_particles(); ++i) {
+    mass += model.mass[i];
+    carried -= force[i].dot(gravity) / gravity_sq;
+  }
+  return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
 }
 
 }  // namespace weft::engine

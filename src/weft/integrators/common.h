@@ -54,21 +54,10 @@ class PinMotion {
   std::vector<Vec3> velocity_;
 };
 
-/// The share of a cloth's weight that its springs do not carry, from 0 (it hangs at rest) to 1. elastic(i) is
-/// their force on particle i, zero on pins [N].
-template <class Elastic>
-double free_share(const ClothModel& model, const std::vector<int>& pinned, const Vec3& gravity,
-                  const Elastic& elastic) {
-  const double gravity_sq = gravity.squaredNorm();
-  if (pinned.empty() || gravity_sq == 0) return 1;
-  double mass = 0, carried = 0;
-  for (int i = 0; i < model.num_particles(); ++i) {
-    mass += model.mass[i];
-    carried -= elastic(i).dot(gravity) / gravity_sq;
-  }
-  for (const int p : pinned) mass -= model.mass[p];
-  return mass > 0 ? std::clamp(1 - carried / mass, 0.0, 1.0) : 1.0;
-}
+/// The share of a cloth's weight that its elastic forces at `x` (num_particles) do not carry, from 0 (it hangs at
+/// rest) to 1.
+double free_share(const ClothModel& model, const ClothState& state, const std::vector<Vec3>& x,
+                  const std::vector<int>& pinned, const Vec3& gravity);
 
 /// Settings of the fast kernels, from model and environment: no gravity, damping as in the material.
 IncrementSettings make_increment_settings(const ClothModel& model, const Environment& environment,

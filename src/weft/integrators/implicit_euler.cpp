@@ -1,7 +1,6 @@
 /// Implicit Euler with the true forces: the reference. Each step minimises the incremental potential
 ///
-///     E(x) = 1/(2h²) |x − y|²_M + Σ ½ k (l − l0)² + membranes and bending (element_terms.h)
-///            + Σ A [ψ(σ1) + ψ(σ2)], the triangles' resistance to collapse (forces/collapse.h)
+///     E(x) = 1/(2h²) |x − y|²_M + elastic terms (the list in forces/terms.h)
 ///            + h · (damping, wind and air dissipation at velocity (x − x₀)/h)
 ///            + Σ ½ k_c max(0, offset − n·Σ w x)² + µ N |slide| over the contacts,    y = x₀ + h v₀ + h² g,
 ///
@@ -15,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "weft/integrators/contact_groups.h"
@@ -125,8 +125,8 @@ class ImplicitGroup {
     bool operator==(const Layout&) const = default;
   };
 
-  /// Gives the matrix a block for every spring and every particle pair of a contact, and no others: the
-  /// elimination order, and with it rounding, must not depend on past contacts.
+  /// Gives the matrix a block for every pair that terms or contacts couple, and no others: the elimination order, and
+  /// with it rounding, must not depend on past contacts.
   void fit_pattern() {
     Layout layout;
     for (const ImplicitCloth* cloth : cloths_) {
@@ -160,39 +160,27 @@ class ImplicitGroup {
     matrix_.diagonal.resize(first_.back());
     matrix_.pairs.clear();
     lasting_pairs_.clear();
-    first_spring_.clear();
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
-      const int first = first_[c];
-      std::vector<Pair> own;
-      first_spring_.push_back(static_cast<int>(matrix_.pairs.size()));
-      for (const Spring& s : cloths_[c]->model().topology->springs) {
-        matrix_.pairs.push_back({first + s.i, first + s.j});
-        own.push_back(std::minmax(first + s.i, first + s.j));
-      }
-      std::sort(own.begin(), own.end());
-      const auto num_springs = static_cast<std::ptrdiff_t>(own.size());
-      for (const auto& [i, j] : cloths_[c]->find_element_pairs()) {
-        const Pair pair{first + i, first + j};
-        if (std::binary_search(own.begin(), own.begin() + num_springs, pair)) continue;
-        own.push_back(pair);
-        matrix_.pairs.push_back({pair.first, pair.second});
-      }
-      lasting_pairs_.insert(lasting_pairs_.end(), own.begin(), own.end());
+      for (const auto& [i, j] : cloths_[c]->find_pairs())
+        lasting_pairs_.push_back({first_[c] + i, first_[c] + j});
     }
-    std::sort(lasting_pairs_.begin(), lasting_pairs_.end());
-    num_lasting_pairs_ = matrix_.pairs.size();
+    for (const auto& [i, j] : lasting_pairs_) matrix_.pairs.push_back({i, j});
     contact_pairs_.clear();
     is_analyzed_ = false;
   }
 
   void analyze() {
-    matrix_.pairs.resize(num_lasting_pairs_);
+    matrix_.pairs.resize(lasting_pairs_.size());
     for (const auto& [i, j] : contact_pairs_) matrix_.pairs.push_back({i, j});
     matrix_.off_diagonal.resize(matrix_.pairs.size());
+    first_pair_.assign(first_.back() + 1, 0);
     pair_index_.clear();
     for (std::size_t p = 0; p < matrix_.pairs.size(); ++p) {
-      pair_index_.push_back({std::minmax(matrix_.pairs[p][0], matrix_.pairs[p][1]), static_cast<int>(p)});
+      const auto& [i, j] = matrix_.pairs[p];
+      ++first_pair_[i + 1];
+      pair_index_.push_back({{i, j}, static_cast<int>(p)});
     }
+    std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
     std::sort(pair_index_.begin(), pair_index_.end());
     cholesky_.analyze(first_.back(), matrix_.pairs);
     is_analyzed_ = true;
@@ -201,7 +189,9 @@ class ImplicitGroup {
   /// Index of the block of particles i and j.
   int index_of_pair(int i, int j) const {
     const Pair pair = std::minmax(i, j);
-    return std::lower_bound(pair_index_.begin(), pair_index_.end(), std::pair(pair, 0))->second;
+    const auto begin = pair_index_.begin() + first_pair_[pair.first],
+               end = pair_index_.begin() + first_pair_[pair.first + 1];
+    return std::lower_bound(begin, end, std::pair(pair, 0))->second;
   }
 
   /// Newton's method from x_. Afterwards x_ is the minimum, or the best point found.
@@ -225,7 +215,7 @@ class ImplicitGroup {
   double compute_energy(const std::vector<Vec3>& x) {
     double energy = 0;
     for (std::size_t c = 0; c < cloths_.size(); ++c)
-      energy += cloths_[c]->energy(part_of(x, static_cast<int>(c)));
+      energy += sum_energies(cloths_[c]->terms(), part_of(x, static_cast<int>(c)));
     for (std::size_t n = 0; n < contacts_->size(); ++n) {
       const Contact& contact = (*contacts_)[n];
       const double depth = contact.depth(x);
@@ -277,9 +267,9 @@ class ImplicitGroup {
   void compute_gradient() {
     gradient_.resize(x_.size());
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
-      own_gradient_.assign(first_[c + 1] - first_[c], Vec3::Zero());
-      cloths_[c]->add_gradient(part_of(x_, static_cast<int>(c)), own_gradient_);
-      std::copy(own_gradient_.begin(), own_gradient_.end(), gradient_.begin() + first_[c]);
+      own_force_.assign(first_[c + 1] - first_[c], Vec3::Zero());
+      add_forces(cloths_[c]->terms(), part_of(x_, static_cast<int>(c)), own_force_);
+      for (std::size_t i = 0; i < own_force_.size(); ++i) gradient_[first_[c] + i] = -own_force_[i];
     }
     for (std::size_t n = 0; n < normal_force_.size(); ++n) {
       const Contact& contact = (*contacts_)[n];
@@ -293,15 +283,16 @@ class ImplicitGroup {
   }
 
   /// Pinned rows and columns become those of the identity matrix.
-  void assemble(bool is_true) {
+  void assemble(HessianKind kind) {
     std::fill(matrix_.diagonal.begin(), matrix_.diagonal.end(), Mat3::Zero());
     std::fill(matrix_.off_diagonal.begin(), matrix_.off_diagonal.end(), Mat3::Zero());
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
       const int first = first_[c];
-      cloths_[c]->add_hessian(
-          part_of(x_, static_cast<int>(c)), is_true,
-          [&](int i, int j, const Mat3& block) { add_block(first + i, first + j, block); },
-          [&](int spring, const Mat3& block) { set_spring(first_spring_[c] + spring, block); });
+      const std::vector<Vec3>& x = part_of(x_, static_cast<int>(c));
+      for (const auto& term : cloths_[c]->terms()) {
+        term->add_hessian(x, kind,
+                          [&](int i, int j, const Mat3& block) { add_block(first + i, first + j, block); });
+      }
     }
     for (std::size_t n = 0; n < normal_force_.size(); ++n)
       add_contact_blocks((*contacts_)[n], contact_hessian(n));
@@ -310,14 +301,12 @@ class ImplicitGroup {
     }
   }
 
-  void set_spring(int pair, const Mat3& block) {
-    const auto& [i, j] = matrix_.pairs[pair];
-    if (!is_pinned_[i] && !is_pinned_[j]) matrix_.off_diagonal[pair] = block;
-  }
-
   bool is_beyond_limit() {
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
-      if (cloths_[c]->is_beyond_limit(part_of(x_, static_cast<int>(c)))) return true;
+      const std::vector<Vec3>& x = part_of(x_, static_cast<int>(c));
+      for (const auto& term : cloths_[c]->terms()) {
+        if (term->is_beyond_limit(x)) return true;
+      }
     }
     return false;
   }
@@ -354,9 +343,9 @@ class ImplicitGroup {
   /// Newton direction, with the true Hessian where requested and possible. Returns false if there is none
   /// (not finite).
   bool find_direction(bool try_true_hessian) {
-    if (try_true_hessian) assemble(true);
+    if (try_true_hessian) assemble(HessianKind::exact);
     if (!try_true_hessian || !cholesky_.factorize(matrix_)) {
-      assemble(false);
+      assemble(HessianKind::positive);
       if (!cholesky_.factorize(matrix_)) return false;
     }
     direction_.resize(x_.size());
@@ -365,28 +354,33 @@ class ImplicitGroup {
     return true;
   }
 
-  /// Solves with the factorised matrix and the parts of rank one that sealed gas adds (Sherman and Morrison).
+  /// Solves with the factorised matrix and the terms' parts of rank one (Sherman and Morrison).
   void solve(std::vector<Vec3>& values) {
-    gas_.clear();
+    updates_.clear();
     for (std::size_t c = 0; c < cloths_.size(); ++c) {
-      const auto hessian = cloths_[c]->gas_hessian(part_of(x_, static_cast<int>(c)));
-      if (!hessian) continue;
-      GasPart part{hessian->stiffness, std::vector<Vec3>(x_.size(), Vec3::Zero()), {}};
-      std::copy(hessian->gradient.begin(), hessian->gradient.end(), part.gradient.begin() + first_[c]);
-      for (std::size_t i = 0; i < x_.size(); ++i) {
-        if (is_pinned_[i]) part.gradient[i].setZero();
+      const std::vector<Vec3>& x = part_of(x_, static_cast<int>(c));
+      for (const auto& term : cloths_[c]->terms()) {
+        if (const auto rank_one = term->rank_one(x)) add_update(*rank_one, first_[c]);
       }
-      part.solution = part.gradient;
-      solve_with_gas(part.solution);
-      gas_.push_back(std::move(part));
     }
-    solve_with_gas(values);
+    solve_with_updates(values);
   }
 
-  /// With the gas so far.
-  void solve_with_gas(std::vector<Vec3>& values) {
+  void add_update(const Term::RankOne& rank_one, int first) {
+    Update update{rank_one.stiffness, std::vector<Vec3>(x_.size(), Vec3::Zero()), {}};
+    std::copy(rank_one.gradient.begin(), rank_one.gradient.end(), update.gradient.begin() + first);
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (is_pinned_[i]) update.gradient[i].setZero();
+    }
+    update.solution = update.gradient;
+    solve_with_updates(update.solution);
+    updates_.push_back(std::move(update));
+  }
+
+  /// With those so far.
+  void solve_with_updates(std::vector<Vec3>& values) {
     cholesky_.solve(values);
-    for (const GasPart& part : gas_) {
+    for (const Update& part : updates_) {
       const double share = part.stiffness * dot(part.gradient, values) /
                            (1 + part.stiffness * dot(part.gradient, part.solution));
       for (std::size_t i = 0; i < values.size(); ++i) values[i] -= share * part.solution[i];
@@ -423,20 +417,19 @@ class ImplicitGroup {
   }
 
   /// stiffness · gradient gradientᵀ, and the solution of gradient without it.
-  struct GasPart {
+  struct Update {
     double stiffness;
     std::vector<Vec3> gradient, solution;
   };
 
   ImplicitEulerSettings settings_;
-  std::vector<GasPart> gas_;
+  std::vector<Update> updates_;
 
   // The pattern.
   Layout layout_;
   bool is_analyzed_ = false;
   std::vector<Pair> lasting_pairs_, contact_pairs_, wanted_pairs_;  // sorted, lower particle first
-  std::size_t num_lasting_pairs_ = 0;             // those of springs and elements, before those of contacts
-  std::vector<int> first_spring_;                 // (cloths) index into the matrix's pairs
+  std::vector<int> first_pair_;                   // (particles + 1) into pair_index_, by the lower particle
   std::vector<std::pair<Pair, int>> pair_index_;  // into matrix_.pairs, sorted
   SymmetricBlockMatrix matrix_;
   BlockCholesky cholesky_;
@@ -448,7 +441,7 @@ class ImplicitGroup {
   double step_ = 0;  // T [s]
   std::vector<char> is_pinned_;
   std::vector<double> normal_force_;  // of each contact [N]
-  std::vector<Vec3> x_, trial_, gradient_, direction_, own_gradient_;
+  std::vector<Vec3> x_, trial_, gradient_, direction_, own_force_;
   std::vector<std::vector<Vec3>> parts_;  // (cloths)
 };
 

@@ -303,7 +303,7 @@ class NewtonIntegrator final : public Integrator {
   IntegratorReport advance(std::span<const Body> bodies, std::span<Contact> contacts, const SystemStep& step,
                            JobSystem& jobs) override {
     while (cloths_.size() < bodies.size()) cloths_.push_back(std::make_unique<NewtonCloth>());
-    for (std::size_t b = 0; b < bodies.size(); ++b) cloths_[b]->begin(bodies[b], step, jobs);
+    for (std::size_t b = 0; b < bodies.size(); ++b) cloths_[b]->begin(bodies[b], step);
     groups_.find(bodies, contacts);
     IntegratorReport report;
     for (int g = 0; g < groups_.size(); ++g) {

@@ -13,14 +13,15 @@ constexpr double kMuchStiffer = 8;  // a preconditioner within this factor is go
 
 }  // namespace
 
-void NewtonCloth::begin(const Body& body, const SystemStep& step, JobSystem& jobs) {
+void NewtonCloth::begin(const Body& body, const SystemStep& step) {
   model_ = body.model;
   environment_ = body.environment;
   state_ = body.state;
   step_ = step.step;
   clock_ = step.clock;
   fit(*model_, environment_->pins);
-  if (state_->history.step == 0) synthesize_history(jobs);
+  if (state_->history.step == 0) synthesize_history();
+  advance_memory(*model_, step_, *state_);
 }
 
 void NewtonCloth::fit(const ClothModel& model, const PinTargets& pins) {
@@ -41,13 +42,13 @@ void NewtonCloth::fit(const ClothModel& model, const PinTargets& pins) {
 
 /// Initial history: cloth that has been moving with its present velocity, and in free fall as far as pins do
 /// not hold it: x₋₁ = x − h v + ½ h² a, v₋₁ = v − h a. It halves the error of a plain first step.
-void NewtonCloth::synthesize_history(JobSystem& jobs) {
+void NewtonCloth::synthesize_history() {
   MotionHistory& history = state_->history;
   if (history.displacement.size() != state_->x.size()) {
     history.displacement.resize(state_->x.size());
     history.velocity.resize(state_->x.size());
   }
-  const Vec3 a = free_share(jobs) * gravity();
+  const Vec3 a = free_share(*model_, *state_, to_doubles(state_->x), pinned_, gravity()) * gravity();
   for (std::size_t i = 0; i < state_->x.size(); ++i) {
     const Vec3 v = state_->v.get(i);
     const Vec3 all = a + environment_->external(i);
@@ -56,18 +57,6 @@ void NewtonCloth::synthesize_history(JobSystem& jobs) {
   }
   history.step = step_;
   history.had_contact = false;
-}
-
-/// The share of a cloth's weight that its springs do not carry, from 0 (it hangs at rest) to 1.
-double NewtonCloth::free_share(JobSystem& jobs) {
-  if (pinned_.empty()) return 1;
-  potential_.fit(*model_, 0);
-  for (int i = 0; i < model_->num_particles(); ++i) potential_.target.set(rows_.index(i), state_->x.get(i));
-  clear(correction_);
-  potential_.linearise(correction_, jobs, force_);
-  hold_pins(force_);
-  return weft::engine::free_share(*model_, pinned_, gravity(),
-                                  [&](int i) { return force_.get(rows_.index(i)); });
 }
 
 ContactTerms::Positions NewtonCloth::place_freely(JobSystem& jobs) {
@@ -104,11 +93,7 @@ void NewtonCloth::predict(bool is_euler, JobSystem& jobs) {
   scheme_ = is_euler ? StepScheme{.step = step_} : make_bdf2(step_, state_->history.step);
   add_outside(scheme_);
   prepare_matrices(jobs);
-  air_.begin(*model_, *environment_, *state_);
-  collapse_.begin(*model_, rows_);
-  pressure_.begin(*model_, rows_, *state_);
-  thread_bends_.begin(*model_, rows_, *state_);
-  seams_.begin(*model_, rows_, step_, *state_);
+  for (NewtonTerm* term : terms_) term->begin({*model_, *environment_, *state_, rows_});
   noise_ = energy_noise();
   potential_.remember(state_->x, state_->history.displacement, scheme_.memory, jobs);
   const PinTargets& pins = environment_->pins;
@@ -173,11 +158,10 @@ void NewtonCloth::start_inertial(bool accelerates) {
   hold_pins(trial_);
 }
 
-double NewtonCloth::energy_at(const Vec3Array& offset, JobSystem& jobs) {
-  const double energy = potential_.energy(offset, jobs);
-  const Vec3Array& x = potential_.positions();
-  return energy + air_.energy(rows_, offset) + collapse_.energy(x) + pressure_.energy(x) +
-         thread_bends_.energy(x, jobs) + seams_.energy(x);
+double NewtonCloth::energy_at(const Vec3Array& e, JobSystem& jobs) {
+  double energy = potential_.energy(e, jobs);
+  for (NewtonTerm* term : terms_) energy += term->energy({potential_.positions(), e}, jobs);
+  return energy;
 }
 
 /// Rounding error of the energy of springs at rest: their ends are accurate to half a unit in the last place
@@ -199,11 +183,8 @@ void NewtonCloth::copy_velocity_offset() {
 
 double NewtonCloth::linearise(JobSystem& jobs) {
   double energy = potential_.linearise(correction_, jobs, force_);
-  energy += air_.linearise(rows_, correction_, force_);
-  energy += collapse_.linearise(potential_.positions(), jobs, force_);
-  energy += pressure_.linearise(potential_.positions(), force_);
-  energy += thread_bends_.linearise(potential_.positions(), jobs, force_);
-  energy += seams_.linearise(potential_.positions(), force_);
+  for (NewtonTerm* term : terms_)
+    energy += term->linearise({potential_.positions(), correction_}, jobs, force_);
   return energy;
 }
 
@@ -264,11 +245,7 @@ double NewtonCloth::multiply(JobSystem& jobs) {
   const Vec3Array& p = block_.direction;
   Vec3Array& q = block_.product;
   double dot = potential_.multiply(p, jobs, q);
-  dot += air_.add_product(rows_, p, q);
-  dot += collapse_.add_product(p, q);
-  dot += pressure_.add_product(p, q);
-  dot += thread_bends_.add_product(p, jobs, q);
-  dot += seams_.add_product(p, q);
+  for (NewtonTerm* term : terms_) dot += term->add_product(p, jobs, q);
   return dot;
 }
 

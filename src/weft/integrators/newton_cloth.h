@@ -1,6 +1,7 @@
 #pragma once
 /// Private to integrators/: a cloth in the system that `newton` solves.
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,7 @@
 #include "weft/integrators/newton_kernels.h"
 #include "weft/integrators/pressure_terms.h"
 #include "weft/integrators/scalar_preconditioner.h"
-#include "weft/integrators/seam_terms.h"
+#include "weft/integrators/terms_as_written.h"
 #include "weft/integrators/thread_bend_terms.h"
 #include "weft/solvers/conjugate_gradients.h"
 
@@ -23,8 +24,12 @@ namespace weft::engine {
 /// functions in this order.
 class NewtonCloth {
  public:
+  NewtonCloth() = default;
+  NewtonCloth(const NewtonCloth&) = delete;
+  NewtonCloth& operator=(const NewtonCloth&) = delete;
+
   /// Prepares the cloth for a step, and initialises its history if it has none.
-  void begin(const Body& body, const SystemStep& step, JobSystem& jobs);
+  void begin(const Body& body, const SystemStep& step);
 
   /// Whether contact was active in the last step.
   bool is_first_order() const { return state_->history.is_held || state_->history.had_contact; }
@@ -92,7 +97,9 @@ class NewtonCloth {
   }
   double stiffness_number() const { return step_ * step_ * stiffness_rate_; }  // see choose_budget() [1]
   double noise() const { return noise_; }  // rounding error of energies [J]
-  bool is_beyond_limit() const { return potential_.is_beyond_limit(); }
+  bool is_beyond_limit() const {
+    return potential_.is_beyond_limit() || as_written_.is_beyond_limit(potential_.positions());
+  }
   const Vec3& gravity() const { return environment_->gravity; }
 
  private:
@@ -104,15 +111,14 @@ class NewtonCloth {
   };
 
   void fit(const ClothModel& model, const PinTargets& pins);
-  void synthesize_history(JobSystem& jobs);
-  double free_share(JobSystem& jobs);
+  void synthesize_history();
   void add_outside(StepScheme& scheme) const;
   void add_external(const StepScheme& scheme, ClothState& state, Vec3Array& y) const;
   void prepare_matrices(JobSystem& jobs);
   void set_weights(double rate);
   double energy_noise() const;
   void copy_velocity_offset();
-  double energy_at(const Vec3Array& offset, JobSystem& jobs);
+  double energy_at(const Vec3Array& e, JobSystem& jobs);
   void update_diagonals(JobSystem& jobs);
   double precondition_without_gas(const Vec3Array& r, JobSystem& jobs, Vec3Array& z);
   void update_stiffer_couplings(bool is_first, JobSystem& jobs);
@@ -134,7 +140,8 @@ class NewtonCloth {
   CollapseTerms collapse_;
   PressureTerms pressure_;
   ThreadBendTerms thread_bends_;
-  SeamTerms seams_;
+  TermsAsWritten as_written_;
+  const std::array<NewtonTerm*, 5> terms_{&air_, &collapse_, &pressure_, &thread_bends_, &as_written_};
   std::vector<float> diagonal_, stiff_diagonal_;  // of the preconditioners [N/m]
   std::vector<float> least_weight_;               // D for the largest memory [N/m]
   std::vector<double> stiffer_couplings_,

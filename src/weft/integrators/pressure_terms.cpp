@@ -4,13 +4,13 @@
 
 namespace weft::engine {
 
-void PressureTerms::begin(const ClothModel& model, const PaddedRows& rows, const ClothState& state) {
-  gas_ = model.gas;
-  topology_ = model.topology;
-  rows_ = rows;
+void PressureTerms::begin(const Step& step) {
+  gas_ = step.model.gas;
+  topology_ = step.model.topology;
+  rows_ = step.rows;
   stiffness_ = start_ = 0;
   if (!gas_.is_active()) return;
-  const auto at = [&](int v) { return state.x.get(v); };
+  const auto at = [&](int v) { return step.state.x.get(v); };
   start_ = gas_energy(gas_, gas_.orientation * compute_signed_volume(topology_->mesh.triangles, at));
 }
 
@@ -19,8 +19,9 @@ double PressureTerms::volume(const Vec3Array& x) const {
          compute_signed_volume(topology_->mesh.triangles, [&](int v) { return x.get(rows_.index(v)); });
 }
 
-double PressureTerms::linearise(const Vec3Array& x, Vec3Array& force) {
+double PressureTerms::linearise(const Place& at, JobSystem&, Vec3Array& force) {
   if (!gas_.is_active()) return 0;
+  const Vec3Array& x = at.x;
   if (gradient_.size() != x.size()) gradient_ = Vec3Array(x.size());
   std::vector<Vec3> gradient(topology_->num_particles(), Vec3::Zero());
   add_volume_gradient(
@@ -29,18 +30,18 @@ double PressureTerms::linearise(const Vec3Array& x, Vec3Array& force) {
   const double now = volume(x), excess = gas_excess(gas_, now);
   stiffness_ = gas_stiffness(gas_, now);
   for (int v = 0; v < topology_->num_particles(); ++v) {
-    const int at = rows_.index(v);
-    force.set(at, force.get(at) + excess * gradient[v]);
-    gradient_.set(at, gradient[v]);
+    const int row = rows_.index(v);
+    force.set(row, force.get(row) + excess * gradient[v]);
+    gradient_.set(row, gradient[v]);
   }
   return gas_energy(gas_, now) - start_;
 }
 
-double PressureTerms::energy(const Vec3Array& x) const {
-  return gas_.is_active() ? gas_energy(gas_, volume(x)) - start_ : 0;
+double PressureTerms::energy(const Place& at, JobSystem&) {
+  return gas_.is_active() ? gas_energy(gas_, volume(at.x)) - start_ : 0;
 }
 
-double PressureTerms::add_product(const Vec3Array& p, Vec3Array& q) const {
+double PressureTerms::add_product(const Vec3Array& p, JobSystem&, Vec3Array& q) {
   if (stiffness_ == 0) return 0;
   const double along = dot(gradient_, p);
   add(stiffness_ * along, gradient_, q);

@@ -3,28 +3,18 @@
 
 #include <memory>
 
-#include "weft/core/padded_rows.h"
-#include "weft/core/vec3_array.h"
 #include "weft/forces/pressure.h"
-#include "weft/model/cloth_model.h"
-#include "weft/model/cloth_state.h"
+#include "weft/integrators/newton_term.h"
 
 namespace weft::engine {
 
-/// E(V) − E at the start of the step, with its force, and the part E″ ∂V ∂Vᵀ of its Hessian. Positions are
-/// floats, laid out by the rows; sums are doubles, one triangle after the other.
-class PressureTerms {
+/// E(V) − E at the start of the step, with its force, and the part E″ ∂V ∂Vᵀ of its Hessian.
+class PressureTerms final : public NewtonTerm {
  public:
-  /// `state` is the state at the start of the step.
-  void begin(const ClothModel& model, const PaddedRows& rows, const ClothState& state);
-
-  /// The value [J]; adds the forces, and stores the Hessian.
-  double linearise(const Vec3Array& x, Vec3Array& force);
-
-  double energy(const Vec3Array& x) const;
-
-  /// q += H p, and p·Hp [J].
-  double add_product(const Vec3Array& p, Vec3Array& q) const;
+  void begin(const Step& step) override;
+  double energy(const Place& at, JobSystem& jobs) override;
+  double linearise(const Place& at, JobSystem& jobs, Vec3Array& force) override;
+  double add_product(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) override;
 
   bool has_hessian() const { return stiffness_ != 0; }
 

@@ -7,12 +7,13 @@ constexpr int kGrain = 512;  // rows or particles per job
 
 }  // namespace
 
-void ThreadBendTerms::begin(const ClothModel& model, const PaddedRows& padded, ClothState& state) {
-  step_ = begin_thread_bends(thread_bends_of(model), model.topology->mesh, state);
+void ThreadBendTerms::begin(const Step& step) {
+  const ClothModel& model = step.model;
+  step_ = begin_thread_bends(thread_bends_of(model), model.topology->mesh, step.state);
   if (num_rows() == 0 || model.id == model_id_) return;
   model_id_ = model.id;
   padded_.clear();
-  for (int i = 0; i < model.num_particles(); ++i) padded_.push_back(padded.index(i));
+  for (int i = 0; i < model.num_particles(); ++i) padded_.push_back(step.rows.index(i));
   for (std::vector<double>* values : {&stiffness_, &moment_, &part_}) values->assign(num_rows(), 0.0);
   transpose(model.num_particles());
 }
@@ -57,11 +58,11 @@ void ThreadBendTerms::scatter(JobSystem& jobs, double sign, Vec3Array& to) const
   });
 }
 
-double ThreadBendTerms::linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force) {
+double ThreadBendTerms::linearise(const Place& at, JobSystem& jobs, Vec3Array& force) {
   if (num_rows() == 0) return 0;
   parallel_for(jobs, num_rows(), kGrain, [&](int begin, int end) {
     for (int r = begin; r < end; ++r) {
-      const auto response = thread_bend_response(step_, r, curvature(r, x));
+      const auto response = thread_bend_response(step_, r, curvature(r, at.x));
       part_[r] = response.energy;
       moment_[r] = response.moment;
       stiffness_[r] = response.stiffness;
@@ -71,10 +72,10 @@ double ThreadBendTerms::linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array
   return sum_parts();
 }
 
-double ThreadBendTerms::energy(const Vec3Array& x, JobSystem& jobs) {
+double ThreadBendTerms::energy(const Place& at, JobSystem& jobs) {
   if (num_rows() == 0) return 0;
   parallel_for(jobs, num_rows(), kGrain, [&](int begin, int end) {
-    for (int r = begin; r < end; ++r) part_[r] = thread_bend_response(step_, r, curvature(r, x)).energy;
+    for (int r = begin; r < end; ++r) part_[r] = thread_bend_response(step_, r, curvature(r, at.x)).energy;
   });
   return sum_parts();
 }

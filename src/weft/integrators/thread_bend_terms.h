@@ -3,28 +3,20 @@
 
 #include <vector>
 
-#include "weft/core/job_system.h"
-#include "weft/core/padded_rows.h"
-#include "weft/core/vec3_array.h"
 #include "weft/forces/thread_bends.h"
+#include "weft/integrators/newton_term.h"
 
 namespace weft::engine {
 
-/// The rows of a step, each n·Σ w x. Positions are floats, laid out by the padded rows. The Hessian takes a row's
-/// stiffness, not its tangent: sliding threads keep a part that guides Newton steps (a majoriser: the energy decreases).
+/// The rows of a step, each n·Σ w x. The Hessian takes a row's stiffness, not its tangent: sliding threads keep a part
+/// that guides Newton steps (a majoriser: the energy decreases).
 /// The preconditioner needs no change: like elastic bending, friction is small beside inertia and stretching.
-class ThreadBendTerms {
+class ThreadBendTerms final : public NewtonTerm {
  public:
-  /// `state` is the state at the start of the step; its memory of bending moves to its positions.
-  void begin(const ClothModel& model, const PaddedRows& padded, ClothState& state);
-
-  /// The value [J]; adds the forces, and stores the Hessian.
-  double linearise(const Vec3Array& x, JobSystem& jobs, Vec3Array& force);
-
-  double energy(const Vec3Array& x, JobSystem& jobs);
-
-  /// q += H p, and p·Hp [J].
-  double add_product(const Vec3Array& p, JobSystem& jobs, Vec3Array& q);
+  void begin(const Step& step) override;
+  double energy(const Place& at, JobSystem& jobs) override;
+  double linearise(const Place& at, JobSystem& jobs, Vec3Array& force) override;
+  double add_product(const Vec3Array& p, JobSystem& jobs, Vec3Array& q) override;
 
  private:
   int num_rows() const { return step_.rows ? step_.rows->num_rows() : 0; }

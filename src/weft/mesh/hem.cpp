@@ -1,7 +1,8 @@
 #include "weft/mesh/hem.h"
 
-#include <cmath>
-#include <numbers>
+#include <algorithm>
+
+#include "weft/core/angle.h"
 
 namespace weft::engine {
 namespace {
@@ -60,9 +61,9 @@ std::vector<float> Hem::place(std::span<const float> positions, std::span<const 
     Point across = along.cross(normal);
     across /= std::max(across.norm(), 1e-12f);
     for (int k = 0; k < kSides; ++k) {
-      const float angle = static_cast<float>(2 * std::numbers::pi * k / kSides);
-      const Point p =
-          center + static_cast<float>(radius) * (std::cos(angle) * normal + std::sin(angle) * across);
+      const auto [sine, cosine] = sin_cos_deg(360.0 * k / kSides);
+      const Point p = center + static_cast<float>(radius) *
+                                   (static_cast<float>(cosine) * normal + static_cast<float>(sine) * across);
       placed.insert(placed.end(), p.begin(), p.end());
     }
   }

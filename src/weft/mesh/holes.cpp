@@ -114,7 +114,7 @@ FilledHoles fill_holes(TriangleMesh& mesh, double max_share) {
     bool is_flat = false;
     for (int t = 0; t < filling.num_triangles(); ++t) is_flat |= has_no_area(filling, t);
     surface.triangles.insert(surface.triangles.end(), filling.triangles.begin(), filling.triangles.end());
-    if (is_flat || std::abs(compute_signed_volume(surface)) <= kNoVolume * std::pow(area, 1.5)) continue;
+    if (is_flat || std::abs(compute_signed_volume(surface)) <= kNoVolume * area * std::sqrt(area)) continue;
     mesh.triangles.insert(mesh.triangles.end(), filling.triangles.begin(), filling.triangles.end());
     filled.count += static_cast<int>(loops.size());
     filled.largest = std::max(filled.largest, largest);

@@ -1,8 +1,8 @@
 #include "weft/mesh/loop_subdivision.h"
 
-#include <cmath>
 #include <map>
-#include <numbers>
+
+#include "weft/core/angle.h"
 
 namespace weft::engine {
 namespace {
@@ -30,7 +30,7 @@ Row place_vertex(int vertex, const Surroundings& s) {
     return {{vertex, 0.75}, {s.along_border[0], 0.125}, {s.along_border[1], 0.125}};
   if (!s.along_border.empty() || s.around.empty()) return {{vertex, 1.0}};
   const double n = static_cast<double>(s.around.size());
-  const double c = 3.0 / 8 + std::cos(2 * std::numbers::pi / n) / 4;
+  const double c = 3.0 / 8 + sin_cos_deg(360 / n).cos / 4;
   const double weight = (5.0 / 8 - c * c) / n;
   Row row = {{vertex, 1 - n * weight}};
   for (const int neighbour : s.around) row[neighbour] += weight;

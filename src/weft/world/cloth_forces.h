@@ -1,6 +1,6 @@
 #pragma once
-/// Forces of a cloth, and of wind, on its particles (num_particles) [N]: in double precision, from the pure
-/// functions of forces/, independent of the integrator's precision.
+/// Forces of a cloth, and of wind, on its particles (num_particles) [N]: in double precision, by the terms of
+/// forces/terms.h, independent of the integrator's precision.
 
 #include <vector>
 
@@ -10,8 +10,7 @@
 
 namespace weft::engine {
 
-/// Forces of springs with their strain limit, membranes, collapse, curvature stencils, hinges and gas: minus the
-/// gradient of compute_elastic_energy(). They sum to zero.
+/// All elastic forces: minus the gradient of compute_elastic_energy(). They sum to zero.
 std::vector<Vec3> compute_elastic_forces(const ClothModel& model, const ClothState& state);
 
 /// Damping forces of springs and elements at the state's positions and velocities. They sum to zero, and

@@ -4,15 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "weft/forces/bending.h"
-#include "weft/forces/collapse.h"
 #include "weft/forces/gravity.h"
-#include "weft/forces/hinge.h"
-#include "weft/forces/membrane_patch.h"
-#include "weft/forces/pressure.h"
-#include "weft/forces/seam_springs.h"
-#include "weft/forces/spring.h"
-#include "weft/forces/thread_bends.h"
+#include "weft/forces/membrane.h"
+#include "weft/forces/terms.h"
+#include "weft/mesh/solid.h"
 
 namespace weft::engine {
 
@@ -23,77 +18,23 @@ double compute_kinetic_energy(const ClothModel& model, const ClothState& state) 
   return energy;
 }
 
-namespace {
-
-enum class ElasticKind { stretch, bending };
-
-/// Calls add(kind, energy) for the elements' bending stencils, and each membrane and hinge.
-template <class Add>
-void visit_energies(const ClothElements& elements, const ClothState& state, const Add& add) {
-  std::vector<Vec3> x;
-  for (std::size_t i = 0; i < state.x.size(); ++i) x.push_back(state.x.get(i));
-  add(ElasticKind::bending, bending_energy(elements.bending, x));
-  const PatchLaw law = elements.law();
-  for (const MembranePatch& patch : elements.patches)
-    add(ElasticKind::stretch, patch_energy(patch, law, corners_of(patch, x)));
-  for (const HingeElement& h : elements.hinges) {
-    const auto& v = h.vertices;
-    add(ElasticKind::bending, hinge_energy(h.stiffness, 0, {x[v[0]], x[v[1]], x[v[2]], x[v[3]]}));
-  }
-}
-
-double compute_collapse_energy(const ClothModel& model, const ClothState& state) {
-  const StrainLimit law = make_collapse_law(model);
-  const RestMesh& mesh = model.topology->mesh;
-  double energy = 0;
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    energy +=
-        collapse_energy(make_rest_triangle(mesh, t), law, {state.x.get(a), state.x.get(b), state.x.get(c)});
-  }
-  return energy;
-}
-
-/// The same for the elements and each spring.
-template <class Add>
-void visit_energies(const ClothModel& model, const ClothState& state, const Add& add) {
-  if (model.elements) visit_energies(*model.elements, state, add);
-  add(ElasticKind::bending, thread_bend_energy(model, state));
-  add(ElasticKind::stretch, seam_energy(model, state));
-  const std::vector<Spring>& springs = model.topology->springs;
-  const StrainLimit limit = model.elements ? model.elements->spring_limit : StrainLimit();
-  for (std::size_t s = 0; s < springs.size(); ++s) {
-    const auto& [i, j, kind, rest_length] = springs[s];
-    const Vec3 d = state.x.get(j) - state.x.get(i);
-    const ElasticKind part = kind == SpringKind::bend ? ElasticKind::bending : ElasticKind::stretch;
-    add(part, spring_energy(model.stiffness(static_cast<int>(s)), rest_length, d));
-    if (kind != SpringKind::bend)
-      add(part, rest_length * limit_response(limit, d.norm() / rest_length - 1).energy);
-  }
-}
-
-double compute_gas_energy(const ClothModel& model, const ClothState& state) {
-  return model.gas.is_active() ? gas_energy(model.gas, compute_volume(model, state)) : 0;
-}
-
-}  // namespace
-
 double compute_volume(const ClothModel& model, const ClothState& state) {
   return model.gas.orientation *
          compute_signed_volume(model.topology->mesh.triangles, [&](int v) { return state.x.get(v); });
 }
 
 double compute_elastic_energy(const ClothModel& model, const ClothState& state) {
-  double energy = 0;
-  visit_energies(model, state, [&](ElasticKind, double part) { energy += part; });
-  return energy + compute_collapse_energy(model, state) + compute_gas_energy(model, state);
+  const ElasticParts parts = compute_elastic_parts(model, state);
+  return parts.stretch + parts.bending;
 }
 
 ElasticParts compute_elastic_parts(const ClothModel& model, const ClothState& state) {
-  ElasticParts parts{.stretch = compute_collapse_energy(model, state) + compute_gas_energy(model, state)};
-  visit_energies(model, state, [&](ElasticKind kind, double part) {
-    (kind == ElasticKind::bending ? parts.bending : parts.stretch) += part;
-  });
+  const std::vector<Vec3> x = to_doubles(state.x);
+  ElasticParts parts;
+  for (const ElasticRow& row : elastic_rows()) {
+    if (const auto term = row.make(model, state))
+      (row.part == ElasticPart::bending ? parts.bending : parts.stretch) += term->energy(x);
+  }
   return parts;
 }
 

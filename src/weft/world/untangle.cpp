@@ -9,7 +9,6 @@
 /// The state with fewer intersections, start or end, is kept.
 
 #include <algorithm>
-#include <cmath>
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/contact/shrink.h"
@@ -112,7 +111,8 @@ int World::thin_colliders(const Intersections& crossed, World& stage) const {
     const MeshShape full = *shape;
     const TriangleMesh solid = find_solid_part(*full.mesh);
     double depth = kMoreThanDeep * depths[c] + kRoom;
-    const double most = depth * std::pow(kMoreNextTime, kMaxTrials - 1) / kMaxShrinkage;
+    double most = depth / kMaxShrinkage;
+    for (int trial = 1; trial < kMaxTrials; ++trial) most *= kMoreNextTime;
     const std::vector<double> radii = compute_inner_radii(solid, most, *jobs_);
     int steps = 0;
     for (int trial = 0; trial < kMaxTrials; ++trial, depth *= kMoreNextTime) {
