@@ -28,7 +28,7 @@ struct ElasticRow {
   const char* name;
   ElasticPart part;
   InNewton in_newton;
-  /// For a step from the state; null if the cloth has no such force. Model and state outlive the term.
+  /// For a step from the state; null if the cloth has no such force. The model outlives the term.
   std::unique_ptr<Term> (*make)(const ClothModel& model, const ClothState& state);
 };
 
