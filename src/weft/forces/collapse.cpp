@@ -161,9 +161,8 @@ class CollapseTerm final : public Term {
     visit(x, [&](const Triangle& t, const RestTriangle& rest, const TriangleCorners& corners) {
       const CollapseHessian hessian = collapse_hessian(rest, law_, corners, kind);
       if (hessian.num_modes == 0) return;
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b <= a; ++b) add(t[a], t[b], collapse_block(hessian, a, b));
-      }
+      add_all_blocks(
+          t.data(), 3, [&](int a, int b) { return collapse_block(hessian, a, b); }, add);
     });
   }
 

@@ -35,10 +35,9 @@ class MembraneTerm final : public Term {
     const StressFilter filter = kind == HessianKind::exact ? StressFilter::exact : StressFilter::absolute;
     for (const MembranePatch& patch : elements_.patches) {
       const PatchHessian hessian = patch_hessian(patch, law_, corners_of(patch, x));
-      for (int a = 0; a < patch.num_vertices(); ++a) {
-        for (int b = 0; b <= a; ++b)
-          add(patch.vertices[a], patch.vertices[b], patch_block(patch, hessian, a, b, filter));
-      }
+      add_all_blocks(
+          patch.vertices.data(), patch.num_vertices(),
+          [&](int a, int b) { return patch_block(patch, hessian, a, b, filter); }, add);
     }
   }
 
@@ -72,12 +71,11 @@ class StencilTerm final : public Term {
 
   void add_hessian(const Positions&, HessianKind, const AddBlock& add) const override {
     for (int r = 0; r < rows_.num_rows(); ++r) {
-      for (int a = rows_.begin[r]; a < rows_.begin[r + 1]; ++a) {
-        for (int b = rows_.begin[r]; b <= a; ++b) {
-          const double value = rows_.stiffness[r] * rows_.weight[a] * rows_.weight[b];
-          add(rows_.vertex[a], rows_.vertex[b], value * Mat3::Identity());
-        }
-      }
+      const double* weight = &rows_.weight[rows_.begin[r]];
+      add_all_blocks(
+          &rows_.vertex[rows_.begin[r]], rows_.begin[r + 1] - rows_.begin[r],
+          [&](int a, int b) { return Mat3(rows_.stiffness[r] * weight[a] * weight[b] * Mat3::Identity()); },
+          add);
     }
   }
 
@@ -110,10 +108,9 @@ class HingeTerm final : public Term {
   void add_hessian(const Positions& x, HessianKind, const AddBlock& add) const override {
     for (const HingeElement& h : hinges_) {
       const HingeCorners gradient = hinge_angle_gradient(corners_of(h, x));
-      for (int a = 0; a < 4; ++a) {
-        for (int b = 0; b <= a; ++b)
-          add(h.vertices[a], h.vertices[b], hinge_gauss_newton_block(h.stiffness, gradient, a, b));
-      }
+      add_all_blocks(
+          h.vertices.data(), 4,
+          [&](int a, int b) { return hinge_gauss_newton_block(h.stiffness, gradient, a, b); }, add);
     }
   }
 
@@ -153,10 +150,10 @@ class ElementDampingTerm final : public Term {
 
   void add_hessian(const Positions&, HessianKind, const AddBlock& add) const override {
     for (const Row& row : rows_) {
-      for (int a = row.begin; a < row.end; ++a) {
-        for (int b = row.begin; b <= a; ++b)
-          add(vertex_[a], vertex_[b], row.stiffness * weight_[a] * weight_[b].transpose());
-      }
+      const Vec3* weight = &weight_[row.begin];
+      add_all_blocks(
+          &vertex_[row.begin], row.end - row.begin,
+          [&](int a, int b) { return Mat3(row.stiffness * weight[a] * weight[b].transpose()); }, add);
     }
   }
 

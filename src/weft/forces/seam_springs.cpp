@@ -58,10 +58,9 @@ class SeamTerm final : public Term {
     visit(x, [&](const SeamSpring& spring, const SeamPull& pull) {
       const auto weights = spring.weights();
       const Mat3 hessian = pull.hessian();
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b <= a; ++b)
-          add(spring.particles[a], spring.particles[b], weights[a] * weights[b] * hessian);
-      }
+      add_all_blocks(
+          spring.particles.data(), 3, [&](int a, int b) { return Mat3(weights[a] * weights[b] * hessian); },
+          add);
     });
   }
 

@@ -53,6 +53,14 @@ class Term {
   virtual bool is_beyond_limit(const Positions&) const { return false; }
 
  protected:
+  /// Passes block(a, b) of each two of a few particles, and of each with itself.
+  template <class Block>
+  static void add_all_blocks(const int* particles, int count, const Block& block, const AddBlock& add) {
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b <= a; ++b) add(particles[a], particles[b], block(a, b));
+    }
+  }
+
   /// Passes the pairs of a few particles, some of which may be the same.
   static void list_all_pairs(const int* particles, int count, const AddPair& add) {
     for (int a = 0; a < count; ++a) {

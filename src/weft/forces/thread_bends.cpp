@@ -101,10 +101,10 @@ class ThreadBendTerm final : public Term {
       const Vec3& n = step_.normal[r];
       const Mat3 block =
           (kind == HessianKind::exact ? response.tangent : response.stiffness) * n * n.transpose();
-      for (int a = rows_.begin[r]; a < rows_.begin[r + 1]; ++a) {
-        for (int b = rows_.begin[r]; b <= a; ++b)
-          add(rows_.vertex[a], rows_.vertex[b], rows_.weight[a] * rows_.weight[b] * block);
-      }
+      const double* weight = &rows_.weight[rows_.begin[r]];
+      add_all_blocks(
+          &rows_.vertex[rows_.begin[r]], rows_.begin[r + 1] - rows_.begin[r],
+          [&](int a, int b) { return Mat3(weight[a] * weight[b] * block); }, add);
     }
   }
 
