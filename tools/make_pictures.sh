@@ -35,6 +35,9 @@ done
 # Gas in closed cloth.
 "$weft" render pressure/cushion --frame 25 --camera 25,8 --look-at 0,0.2,0 --distance 1.2 --size 960x540 --out "$images/pressure.jpg"
 
+# Cloth that tears.
+"$weft" render tearing/ball --frames 34,42,50,119 --columns 4 --camera 30,38 --look-at 0,0.8,0 --distance 2.2 --size 400x360 --out "$images/tearing.jpg"
+
 # Values of cloth in colours.
 "$weft" render paper/fig6_ball --frame 60 --color strain --size 960x540 --out "$images/strain.jpg"
 

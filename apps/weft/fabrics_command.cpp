@@ -36,6 +36,7 @@ std::vector<Row> rows(const FabricPreset& preset) {
   if (f.bend_hysteresis_weft > 0)
     rows.push_back({"bend_hysteresis_weft", f.bend_hysteresis_weft, "N", &s.bending});
   if (f.bend_set > 0) rows.push_back({"bend_set", f.bend_set, "1/m", &s.bending});
+  if (f.strength > 0) rows.push_back({"strength", f.strength, "N/m", &s.stretch});
   if (f.strain_limit > 0) rows.push_back({"strain_limit", f.strain_limit, "1", &s.stretch});
   return rows;
 }

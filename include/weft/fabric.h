@@ -93,6 +93,11 @@ struct Fabric {
   /// more work for the solver. `springs` apply it along each spring [1].
   double strain_limit = 0;
 
+  /// Tension at which the fabric tears, in any direction; 0: never. Strips for tests of breaking force are 50 mm wide:
+  /// 500 N are 10000 N/m. Typical: 3000 (chiffon) to 40000 (denim), less for an effect. Higher: tears later. Needs
+  /// triangles as membranes; not with hysteresis or set of bending. >= 0 [N/m].
+  double strength = 0;
+
   /// Measured curves along warp and weft, from the origin through these points, at most kMaxStretchPoints;
   /// strain, tension and tension over stretch must rise. Empty: straight lines of slope c11 and c22, which
   /// always apply in compression. The membrane stays positive definite: c12² is less than the product of the

@@ -219,6 +219,7 @@ void bind_fabrics(nb::module_& m) {
   number("thickness", &Fabric::thickness);
   number("friction", &Fabric::friction);
   number("strain_limit", &Fabric::strain_limit);
+  number("strength", &Fabric::strength);
   constexpr const char* kCurve = "collections.abc.Sequence[tuple[float, float]]";
   fabric.property("stretch_warp", warp.first, warp.second, kCurve,
                   doc("cloth.fabric.stretch_warp", "fabric"));

@@ -30,21 +30,27 @@ nb::ndarray<nb::numpy, const float> view_offsets(nb::handle_t<LockedWorld> self,
 template <class Number>
 using Output = nb::ndarray<Number, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
-/// Sizes are checked by the package's Python half.
+/// Sizes are checked by the package's Python half, and here again: cloth may have torn since.
+template <class Number, class Copy>
+void copy_to(const Output<Number>& out, LockedWorld& own, const ClothId& id, const Copy& copy) {
+  Number* const data = out.data();
+  const std::size_t count = out.shape(0);
+  with(own, [&](const World& world) {
+    if (std::cmp_not_equal(count, world.num_particles(id))) throw InputError("the cloth has torn meanwhile");
+    copy(world, data);
+  });
+}
 template <class Number>
 void copy_positions(LockedWorld& own, const ClothId& id, const Output<Number>& out) {
-  Number* const data = out.data();
-  with(own, [&](const World& world) { world.copy_positions(id, data); });
+  copy_to(out, own, id, [&](const World& world, Number* data) { world.copy_positions(id, data); });
 }
 template <class Number>
 void copy_velocities(LockedWorld& own, const ClothId& id, const Output<Number>& out) {
-  Number* const data = out.data();
-  with(own, [&](const World& world) { world.copy_velocities(id, data); });
+  copy_to(out, own, id, [&](const World& world, Number* data) { world.copy_velocities(id, data); });
 }
 template <class Number>
 void copy_normals(LockedWorld& own, const ClothId& id, const Output<Number>& out) {
-  Number* const data = out.data();
-  with(own, [&](const World& world) { world.copy_normals(id, data); });
+  copy_to(out, own, id, [&](const World& world, Number* data) { world.copy_normals(id, data); });
 }
 
 /// A world as bytes.
@@ -531,10 +537,15 @@ struct Recording {
   nb::ndarray<float, nb::shape<-1, -1, -1, 3>, nb::c_contig, nb::device::cpu>
       out;  // (worlds, steps, particles)
 
+  /// Of cloth that has torn, the particles that it had.
   void copy(int w, std::size_t step, const World& world) const {
     float* const to = &out(static_cast<std::size_t>(w), step, 0, 0);
     const ClothId& cloth = cloths[static_cast<std::size_t>(w)];
-    is_velocity ? world.copy_velocities(cloth, to) : world.copy_positions(cloth, to);
+    const std::size_t count = out.shape(2), present = static_cast<std::size_t>(world.num_particles(cloth));
+    std::vector<float> all(present > count ? 3 * present : 0);
+    float* const into = all.empty() ? to : all.data();
+    is_velocity ? world.copy_velocities(cloth, into) : world.copy_positions(cloth, into);
+    if (!all.empty()) std::copy_n(all.data(), 3 * count, to);
   }
 };
 

@@ -19,7 +19,7 @@ class Fabric:
     A fabric in SI units, independent of the mesh; the defaults are those of cotton shirting.
     """
 
-    def __init__(self, *, density: float = 0.12, c11: float = 2800.0, c22: float = 1400.0, c12: float = 0.0, g: float = 45.0, bend_warp: float = 7e-06, bend_weft: float = 6e-06, bend_bias: float = 6e-06, bend_hysteresis_warp: float = 0.0, bend_hysteresis_weft: float = 0.0, bend_set: float = 0.0, damping: float = 0.002, thickness: float = 0.0005, friction: float = 0.3, strain_limit: float = 0.0, stretch_warp: Sequence[tuple[float, float]] = [], stretch_weft: Sequence[tuple[float, float]] = []) -> None: ...
+    def __init__(self, *, density: float = 0.12, c11: float = 2800.0, c22: float = 1400.0, c12: float = 0.0, g: float = 45.0, bend_warp: float = 7e-06, bend_weft: float = 6e-06, bend_bias: float = 6e-06, bend_hysteresis_warp: float = 0.0, bend_hysteresis_weft: float = 0.0, bend_set: float = 0.0, damping: float = 0.002, thickness: float = 0.0005, friction: float = 0.3, strain_limit: float = 0.0, strength: float = 0.0, stretch_warp: Sequence[tuple[float, float]] = [], stretch_weft: Sequence[tuple[float, float]] = []) -> None: ...
 
     @property
     def density(self) -> float:
@@ -155,6 +155,15 @@ class Fabric:
 
     @strain_limit.setter
     def strain_limit(self, value: float, /) -> None: ...
+
+    @property
+    def strength(self) -> float:
+        """
+        Tension at which the fabric tears. Typical: 3000 (chiffon) to 40000 (denim), less for an effect; 0: never. Higher: tears later. [N/m]
+        """
+
+    @strength.setter
+    def strength(self, value: float, /) -> None: ...
 
     @property
     def stretch_warp(self) -> Sequence[tuple[float, float]]:
@@ -1484,6 +1493,12 @@ class StepReport:
     @property
     def zones(self) -> int:
         """Its rigid impact zones"""
+
+    @property
+    def torn(self) -> int:
+        """
+        Vertices at which cloth tore; its particles and triangles have then changed
+        """
 
     @property
     def infeasible(self) -> list[InfeasiblePair]:

@@ -48,7 +48,10 @@ class Cloth:
 
     def __init__(self, world: World, id: _core.ClothId) -> None:
         self._world, self._core, self._id = world, world._core, id
-        self._count = self._core.num_particles(id)
+
+    @property
+    def _count(self) -> int:
+        return self._core.num_particles(self._id)
 
     def __repr__(self) -> str:
         return f"<weft.Cloth {self.name!r}, {self._count} particles>"
@@ -77,7 +80,7 @@ class Cloth:
 
     @property
     def num_particles(self) -> int:
-        """The number of its particles, also `len(cloth)`."""
+        """The number of its particles, also `len(cloth)`; more where it has torn."""
         return self._count
 
     # Shape.

@@ -50,7 +50,7 @@ TEST(FabricFile, GivesEveryNumberAndTheDefaultsOfTheRest) {
 TEST(FabricFile, TakesTheOptionalKeys) {
   const Fabric f =
       parse_fabric(kDenim +
-                       "damping = 0.01\nthickness = 0.0008\nfriction = 0.5\nstrain_limit = 0.01\n"
+                       "damping = 0.01\nthickness = 0.0008\nfriction = 0.5\nstrain_limit = 0.01\nstrength = 12000\n"
                        "bend_hysteresis_warp = 0.001\nbend_hysteresis_weft = 0.002\nbend_set = 500\n",
                    "denim.toml")
           .fabric;
@@ -58,6 +58,7 @@ TEST(FabricFile, TakesTheOptionalKeys) {
   EXPECT_EQ(f.thickness, 0.0008);
   EXPECT_EQ(f.friction, 0.5);
   EXPECT_EQ(f.strain_limit, 0.01);
+  EXPECT_EQ(f.strength, 12000);
   EXPECT_EQ(f.bend_hysteresis_warp, 0.001);
   EXPECT_EQ(f.bend_hysteresis_weft, 0.002);
   EXPECT_EQ(f.bend_set, 500);

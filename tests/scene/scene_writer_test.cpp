@@ -133,7 +133,7 @@ grid = { size = [1, 1], cells = [2, 2] }
 fabric = { name = "mine", density = 0.2, c11 = 500, c22 = 400, g = 30, stretch_warp = [[0.01, 5], [0.02, 12]], strain_limit = 0.2, bend_hysteresis_warp = 0.001, bend_hysteresis_weft = 0.002, bend_set = 500 }
 [[cloth]]
 grid = { size = [1, 1], cells = [2, 2] }
-fabric = "silk"
+fabric = { base = "silk", strength = 900 }
 [[collider]]
 shape = "plane"
 normal = [1, 2, 3]

@@ -58,6 +58,7 @@ void check_ranges(const Fabric& f, FabricChecker& checker) {
   checker.require_range(engine::kThicknessRange, "thickness", f.thickness);
   checker.require_range(engine::kFrictionRange, "friction", f.friction);
   checker.require_range(engine::kStrainLimitRange, "strain_limit", f.strain_limit);
+  checker.require(f.strength >= 0, "strength", f.strength, "0 N/m (never tears) or above");
 }
 
 /// Relations between the numbers.

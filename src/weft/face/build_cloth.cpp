@@ -29,6 +29,7 @@ std::optional<GridWarp> grid_warp(const ClothDesc& desc) {
 
 /// What only meshes have; a grid with it is treated as one.
 bool needs_mesh(const ClothDesc& desc) {
+  if (const Fabric* fabric = std::get_if<Fabric>(&desc.fabric); fabric && fabric->strength > 0) return true;
   return !desc.seams.empty() || !desc.stitches.empty() || !desc.rest_scales.empty();
 }
 
@@ -39,6 +40,15 @@ void require_fabric(const ClothDesc& desc) {
     throw InputError("rest_scales follow warp and weft, which springs do not have; give it a fabric");
   if (std::holds_alternative<Grid>(desc.shape) && needs_mesh(desc))
     throw InputError("a grid of springs has no seams; give it a fabric");
+}
+
+/// Throws InputError for a strength where cloth does not tear.
+void require_tearable(const ClothDesc& desc, const Fabric& fabric, const std::string& who) {
+  if (fabric.strength == 0) return;
+  if (desc.membrane == Membrane::springs)
+    throw InputError(who + "springs do not tear; use membrane = \"triangle\", or strength = 0");
+  if (has_bending_memory(fabric))
+    throw InputError(who + "cloth with hysteresis or set of bending does not tear; leave out one of them");
 }
 
 CellDiagonals cell_diagonals(SpringModel model) {
@@ -134,11 +144,18 @@ ClothSubstance make_springs(const ClothDesc& desc, const Fabric& fabric, const R
 ClothSubstance make_triangles(const ClothDesc& desc, const Fabric& fabric, const RestShape& rest,
                               const std::string& who, std::vector<std::string>& warnings) {
   const ClothTopology& topology = *rest.topology;
-  const auto elements =
-      topology.grid ? build_grid_elements(*topology.grid, topology.mesh, *grid_warp(desc), fabric)
-                    : build_mesh_elements(topology.mesh,
-                                          find_warp(desc, topology.mesh, rest.uv, who, warnings), fabric);
-  return {make_material(fabric), elements};
+  ClothSubstance made{make_material(fabric), nullptr, nullptr};
+  if (topology.grid) {
+    if (fabric.strength > 0)
+      throw InputError(who + "a grid that was added without strength does not tear; add it with one");
+    made.elements = build_grid_elements(*topology.grid, topology.mesh, *grid_warp(desc), fabric);
+    return made;
+  }
+  const WarpField warp = find_warp(desc, topology.mesh, rest.uv, who, warnings);
+  made.elements = build_mesh_elements(topology.mesh, warp, fabric);
+  if (fabric.strength > 0)
+    made.tearing = std::make_shared<const TearingCloth>(TearingCloth{rest.topology, warp, fabric});
+  return made;
 }
 
 /// At most half the mean edge length, so that few neighbours are nearer than the thickness.
@@ -301,6 +318,7 @@ ClothSubstance build_substance(const ClothDesc& desc, const RestShape& rest, con
   ClothSubstance made;
   if (const Fabric* fabric = std::get_if<Fabric>(&desc.fabric)) {
     validate_fabric(*fabric, desc.fabric_name);
+    require_tearable(desc, *fabric, who);
     made = desc.membrane == Membrane::springs ? make_springs(desc, *fabric, rest, who, warnings)
                                               : make_triangles(desc, *fabric, rest, who, warnings);
   } else {

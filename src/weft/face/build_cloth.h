@@ -8,6 +8,7 @@
 
 #include "weft/cloth.h"
 #include "weft/model/cloth_model.h"
+#include "weft/model/torn_cloth.h"
 
 namespace weft::engine {
 
@@ -43,6 +44,7 @@ std::vector<Vec3> to_particles(const std::vector<Vec3>& of_vertices, const RestS
 struct ClothSubstance {
   ClothMaterial material;
   std::shared_ptr<const ClothElements> elements;  // null: springs only
+  std::shared_ptr<const TearingCloth> tearing;    // of a fabric with a strength
 };
 
 /// Throws InputError, beginning with `who`, for an invalid fabric.

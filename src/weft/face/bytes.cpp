@@ -77,7 +77,7 @@ template <class Archive>
 void describe(Archive& archive, Fabric& f) {
   members(archive, f.density, f.c11, f.c22, f.c12, f.g, f.bend_warp, f.bend_weft, f.bend_bias,
           f.bend_hysteresis_warp, f.bend_hysteresis_weft, f.bend_set, f.damping, f.thickness, f.friction,
-          f.strain_limit, f.stretch_warp, f.stretch_weft);
+          f.strain_limit, f.strength, f.stretch_warp, f.stretch_weft);
 }
 template <class Archive>
 void describe(Archive& archive, Springs& s) {
@@ -197,7 +197,7 @@ template <class Archive>
 void describe(Archive& archive, ClothState& s) {
   members(archive, s.origin, s.x, s.v, s.history.step, s.history.had_contact, s.history.displacement,
           s.history.velocity, s.history.pressed, s.precise.x, s.precise.v, s.precise.displacement,
-          s.precise.velocity, s.bending.slip, s.bending.set, s.seam_time, s.caught);
+          s.precise.velocity, s.bending.slip, s.bending.set, s.seam_time, s.caught, s.torn);
 }
 template <class Archive>
 void describe(Archive& archive, RigidMotion::Passage& p) {
@@ -267,7 +267,7 @@ using engine::Reader;
 using engine::Writer;
 
 constexpr std::uint32_t kMagic = 0x54464557;  // "WEFT"
-constexpr std::uint32_t kVersion = 10;        // of the format
+constexpr std::uint32_t kVersion = 11;        // of the format
 constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// All data that determines the next steps.
@@ -432,7 +432,9 @@ void check_sizes(const SavedWorld& saved) {
     const Grid* grid = std::get_if<Grid>(&saved.cloths[c].desc.shape);
     if (!grid) continue;
     require(grid->cells_x > 0 && grid->cells_z > 0);
-    require((grid->cells_x + 1.0) * (grid->cells_z + 1.0) == static_cast<double>(state.states[c].x.size()));
+    const double least = (grid->cells_x + 1.0) * (grid->cells_z + 1.0),
+                 found = static_cast<double>(state.states[c].x.size());
+    require(state.states[c].torn.empty() ? least == found : least <= found);
   }
 }
 
@@ -440,8 +442,9 @@ void check(const SavedWorld& saved, const engine::World& world) {
   const engine::World::Snapshot& state = saved.state;
   require(std::isfinite(state.time) && std::isfinite(state.part) && state.part >= 0);
   for (std::size_t c = 0; c < saved.cloths.size(); ++c) {
-    const auto count =
-        static_cast<std::size_t>(world.model(world.cloth(static_cast<int>(c))).num_particles());
+    const ClothId cloth = world.cloth(static_cast<int>(c));
+    const auto count = world.can_tear(cloth) ? state.states[c].x.size()  // World::restore() checks it
+                                             : static_cast<std::size_t>(world.model(cloth).num_particles());
     check(state.states[c], count);
     check(state.held[c], count, saved.cloths[c].is_soft, world.colliders());
   }

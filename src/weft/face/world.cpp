@@ -60,7 +60,8 @@ ClothId World::Impl::add(ClothDesc desc) {
                                       .elements = made.elements,
                                       .positions = std::move(positions),
                                       .velocity = to_engine(cloth.desc.velocity),
-                                      .layer = cloth.desc.layer});
+                                      .layer = cloth.desc.layer,
+                                      .tearing = made.tearing});
   cloth.desc.name = world.name(id);
   cloths.push_back(std::move(cloth));
   return id;
@@ -165,7 +166,14 @@ void World::set_fabric(ClothId cloth, const std::variant<Fabric, Springs>& fabri
   engine::ClothSubstance made = engine::build_substance(desc, own.rest, who("cloth", desc.name), warnings);
   for (const Stiffening& s : own.stiffened)
     engine::multiply_spring_factors(*own.rest.topology, s.particles, s.factor, made.material.spring_factors);
-  impl_->world.set_material(cloth, made.material, made.elements);
+  if (made.tearing) {
+    impl_->world.set_material(cloth, made.material, made.tearing);
+  } else {
+    if (impl_->world.can_tear(cloth))
+      throw InputError(who("cloth", desc.name) +
+                       "it was added with a strength; give it a large one in place of 0");
+    impl_->world.set_material(cloth, made.material, made.elements);
+  }
   own.desc = std::move(desc);
 }
 

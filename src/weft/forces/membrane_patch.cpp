@@ -88,13 +88,21 @@ double patch_energy(const MembranePatch& patch, const PatchLaw& law, const Patch
   return energy;
 }
 
-PatchCorners patch_force(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
+std::array<TriangleCorners, 2> patch_triangle_forces(const MembranePatch& patch, const PatchLaw& law,
+                                                     const PatchCorners& x) {
   const auto stress = stresses(patch, respond(patch, law, x));
+  std::array<TriangleCorners, 2> force;
+  for (int t = 0; t < patch.num_triangles; ++t)
+    force[t] = stress_force(patch.rest[t], stress[t], triangle_of(patch, t, x));
+  return force;
+}
+
+PatchCorners patch_force(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x) {
+  const auto own = patch_triangle_forces(patch, law, x);
   PatchCorners force;
   force.fill(Vec3::Zero());
   for (int t = 0; t < patch.num_triangles; ++t) {
-    const TriangleCorners own = stress_force(patch.rest[t], stress[t], triangle_of(patch, t, x));
-    for (int c = 0; c < 3; ++c) force[patch.corners[t][c]] += own[c];
+    for (int c = 0; c < 3; ++c) force[patch.corners[t][c]] += own[t][c];
   }
   return force;
 }

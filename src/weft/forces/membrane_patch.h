@@ -50,7 +50,11 @@ double difference_area(const MembranePatch& patch);
 /// W [J].
 double patch_energy(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x);
 
-/// Force on each vertex [N]. Forces and their moments sum to zero.
+/// Force of each triangle on its corners [N]. Forces of a triangle, and their moments, sum to zero.
+std::array<TriangleCorners, 2> patch_triangle_forces(const MembranePatch& patch, const PatchLaw& law,
+                                                     const PatchCorners& x);
+
+/// Force on each vertex: the sum of its triangles' [N].
 PatchCorners patch_force(const MembranePatch& patch, const PatchLaw& law, const PatchCorners& x);
 
 /// Second derivatives of W, split as in MembraneHessian: the stress term is each triangle's own.

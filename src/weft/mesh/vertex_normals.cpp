@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "weft/mesh/soup.h"
+
 namespace weft::engine {
 namespace {
 
@@ -13,8 +15,20 @@ Vec3 vertex(std::span<const float> positions, int v) {
 
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions) {
-  const std::vector<Vec3> sums =
-      sum_triangle_normals(triangles, positions.size() / 3, [&](int v) { return vertex(positions, v); });
+  const auto add_up = [&](const std::vector<Triangle>& of) {
+    return sum_triangle_normals(of, positions.size() / 3, [&](int v) { return vertex(positions, v); });
+  };
+  std::vector<Vec3> sums;
+  if (is_soup(triangles)) {
+    const std::vector<Triangle> joined = join_soup(triangles, positions);
+    const std::vector<Vec3> at_places = add_up(joined);
+    for (const Triangle& t : joined) {
+      for (const int v : t) sums.push_back(at_places[v]);
+    }
+    sums.resize(positions.size() / 3, Vec3::Zero());
+  } else {
+    sums = add_up(triangles);
+  }
   std::vector<float> normals;
   normals.reserve(positions.size());
   for (const Vec3& sum : sums) {

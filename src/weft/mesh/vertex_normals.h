@@ -23,6 +23,7 @@ std::vector<Vec3> sum_triangle_normals(const std::vector<Triangle>& triangles, s
 }
 
 /// Area-weighted unit normals of the vertices (num_vertices x 3). Up if the sum is too short. `positions` are (num_vertices x 3) [m].
+/// Vertices of a triangle soup (soup.h) in one place have the same normal.
 std::vector<float> compute_vertex_normals(const std::vector<Triangle>& triangles,
                                           std::span<const float> positions);
 

@@ -63,6 +63,7 @@ struct ClothState {
   BendingMemory bending;
   double seam_time = 0;                // since seams began to close; 0 without seams [s]
   std::vector<CaughtParticle> caught;  // in ascending order of particles
+  std::vector<int> torn;               // edges of the whole mesh that broke (mesh/tear.h)
 
   Vec3 position(std::size_t i) const { return origin + x.get(i); }
   void set_position(std::size_t i, const Vec3& position) { x.set(i, position - origin); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "weft/mesh/soup.h"
 #include "weft/mesh/vertex_normals.h"
 
 namespace weft::engine {
@@ -132,7 +133,20 @@ void add_arc(const Vec3& a, const Vec3& b, const Vec3& side, std::vector<Vec3>& 
   }
 }
 
-void draw_springs(const DrawnMesh& cloth, const ClothTopology& topology, Picture& picture) {
+/// The particles of cloth that an animation shows as a triangle soup.
+DrawnMesh join(const DrawnMesh& soup, const ClothTopology& topology) {
+  DrawnMesh joined;
+  joined.triangles = topology.mesh.triangles;
+  joined.positions.resize(3 * topology.mesh.positions.size());
+  for (std::size_t t = 0; t < joined.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      std::copy_n(&soup.positions[3 * (3 * t + k)], 3, &joined.positions[3 * joined.triangles[t][k]]);
+  }
+  return joined;
+}
+
+void draw_springs(const DrawnMesh& shown, const ClothTopology& topology, Picture& picture) {
+  const DrawnMesh cloth = is_soup(shown.triangles) ? join(shown, topology) : shown;
   const std::vector<float> normals = compute_vertex_normals(cloth.triangles, cloth.positions);
   DrawnLines structural{.ends = {}, .color = kStructural, .width = 2.2},
       shear{.ends = {}, .color = kShear, .width = 2.2}, bend{.ends = {}, .color = kBend, .width = 1.4};
@@ -161,13 +175,20 @@ ScenePictures::ScenePictures(const Animation& meshes, const AnimationFrame& star
   if (*style_.smooth > 0) inset_ = std::min(kInset * find_edge_length(meshes, start), kMaxInset);
   for (std::size_t c = 0; c < meshes.cloths.size(); ++c) {
     const AnimatedCloth& cloth = meshes.cloths[c];
-    const int num_vertices = static_cast<int>(start.cloths[c].size() / 3);
-    LoopSubdivision subdivision(cloth.triangles, num_vertices, *style_.smooth);
-    Hem hem(subdivision.triangles(), subdivision.num_vertices());
-    std::vector<float> coordinates;
-    if (!cloth.fabric_coordinates.empty()) coordinates = subdivision.fit(cloth.fabric_coordinates, 2);
-    smooth_.push_back({std::move(subdivision), std::move(hem), std::move(coordinates)});
+    smooth_.push_back(make_smooth(cloth, start.cloths[c]));
   }
+}
+
+/// Of a triangle soup: of its triangles that are joined at these positions.
+ScenePictures::Smooth ScenePictures::make_smooth(const AnimatedCloth& cloth,
+                                                 const std::vector<float>& positions) const {
+  const std::vector<Triangle> triangles =
+      is_soup(cloth.triangles) ? join_soup(cloth.triangles, positions) : cloth.triangles;
+  LoopSubdivision subdivision(triangles, static_cast<int>(positions.size() / 3), *style_.smooth);
+  Hem hem(subdivision.triangles(), subdivision.num_vertices());
+  std::vector<float> coordinates;
+  if (!cloth.fabric_coordinates.empty()) coordinates = subdivision.fit(cloth.fabric_coordinates, 2);
+  return {std::move(subdivision), std::move(hem), std::move(coordinates)};
 }
 
 DrawnMesh ScenePictures::draw_cloth(int index, const AnimationFrame& frame, const Camera& camera) const {
@@ -183,7 +204,9 @@ DrawnMesh ScenePictures::draw_cloth(int index, const AnimationFrame& frame, cons
     mesh.range = style_.range;
   }
   if (smooth_.empty() || find_springs(index)) return mesh;
-  const auto& [subdivision, hem, coordinates] = smooth_[index];
+  std::optional<Smooth> now;  // of cloth that tears
+  if (is_soup(cloth.triangles)) now = make_smooth(cloth, mesh.positions);
+  const auto& [subdivision, hem, coordinates] = now ? *now : smooth_[index];
   mesh.triangles = subdivision.triangles();
   mesh.positions = subdivision.fit(mesh.positions, 3);
   mesh.fabric_coordinates = coordinates;

@@ -63,6 +63,7 @@ class ScenePictures {
     std::vector<float> fabric_coordinates;
   };
 
+  Smooth make_smooth(const AnimatedCloth& cloth, const std::vector<float>& positions) const;
   const SpringsToDraw* find_springs(int cloth) const;
   DrawnMesh draw_cloth(int cloth, const AnimationFrame& frame, const Camera& camera) const;
 

@@ -4,6 +4,7 @@
 #include "weft/face/convert.h"
 #include "weft/io/glb_writer.h"
 #include "weft/io/obj_reader.h"
+#include "weft/mesh/soup.h"
 #include "weft/run/film.h"
 #include "weft/run/scene_run.h"
 #include "weft/run/shown_vertices.h"
@@ -22,10 +23,27 @@ std::vector<std::string> file_names(const World& world) {
 
 constexpr std::size_t kMostFrames = 1000;  // of a .glb without a warning
 
-/// The vertices of cloth `c`'s mesh as it was given (num_vertices) [m].
+bool is_soup(const SceneRun& run, std::size_t c) {
+  return run.world().can_tear(run.world().cloth(static_cast<int>(c)));
+}
+
+/// The vertices of cloth `c`'s mesh as it was given (num_vertices), or of its soup [m].
 std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
   const weft::World& world = run.public_world();
-  return to_engine(world.vertex_positions(world.cloth(static_cast<int>(c))));
+  const ClothId id = world.cloth(static_cast<int>(c));
+  if (!is_soup(run, c)) return to_engine(world.vertex_positions(id));
+  std::vector<Vec3> corners;
+  for (const Triangle& t : world.triangles(id)) {
+    for (const int i : t) corners.push_back(run.world().state(id).position(i));
+  }
+  return corners;
+}
+
+/// The faces of cloth `c` as they were given, or those of its soup.
+MeshFaces faces_of(const SceneRun& run, std::size_t c) {
+  if (!is_soup(run, c)) return read_faces(run.scene().cloths[c]);
+  const ClothTopology& topology = *run.world().model(run.world().cloth(static_cast<int>(c))).topology;
+  return make_faces(make_soup(topology.mesh.num_triangles()));
 }
 
 /// x, y, z of each point.
@@ -45,7 +63,7 @@ void GlbSink::make_meshes(const SceneRun& run) {
   meshes_ = make_animation(run.scene(), run.world());
   const weft::World& world = run.public_world();
   for (std::size_t c = 0; c < meshes_.cloths.size(); ++c)
-    meshes_.cloths[c].shown = show_vertices(world, world.cloth(static_cast<int>(c)));
+    if (!is_soup(run, c)) meshes_.cloths[c].shown = show_vertices(world, world.cloth(static_cast<int>(c)));
 }
 
 void GlbSink::begin(SceneRun& run, RunReport& report) {
@@ -93,7 +111,7 @@ void GlbSink::finish(const SceneRun&, RunReport&) {
 void Pc2Sink::begin(SceneRun& run, RunReport& report) {
   open(run, 0);
   for (std::size_t c = 0; c < meshes_.size(); ++c) {
-    meshes_[c]->out() << obj_text(vertices_of(run, c), read_faces(run.scene().cloths[c]));
+    meshes_[c]->out() << obj_text(vertices_of(run, c), faces_of(run, c));
     meshes_[c]->finish();
   }
   add_frame(run, report);
@@ -114,8 +132,7 @@ void Pc2Sink::open(const SceneRun& run, int num_frames) {
   for (const std::string& name : file_names(run.world())) {
     const Names& own = names_.emplace_back(Names{name + kCacheEnding, name + kMeshEnding});
     for (const std::string& file : {own.cache, own.mesh}) require_writable(folder_ / file);
-    const ClothId cloth = run.public_world().cloth(static_cast<int>(caches_.size()));
-    const std::size_t num_points = run.public_world().notes(cloth).particle_of_vertex.size();
+    const std::size_t num_points = vertices_of(run, caches_.size()).size();
     caches_.push_back(std::make_unique<Cache>(folder_ / own.cache, part_ / own.cache,
                                               static_cast<int>(num_points), num_frames));
     const std::uintmax_t kept = num_frames > 0 ? std::filesystem::file_size(part_ / own.mesh) : 0;
@@ -150,7 +167,7 @@ void ObjSink::resume(SceneRun& run, RunReport&, Reader&) { open(run); }
 
 void ObjSink::open(const SceneRun& run) {
   names_ = file_names(run.world());
-  for (const ClothSceneDesc& cloth : run.scene().cloths) faces_.push_back(read_faces(cloth));
+  for (std::size_t c = 0; c < names_.size(); ++c) faces_.push_back(faces_of(run, c));
 }
 
 void ObjSink::add_frame(const SceneRun& run, RunReport&) { write(run); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "weft/mesh/soup.h"
 #include "weft/run/scene_run.h"
 
 namespace weft::engine {
@@ -80,9 +81,10 @@ Animation make_animation(const World& world) {
     const ClothTopology& topology = *world.model(world.cloth(c)).topology;
     AnimatedCloth mesh;
     mesh.name = world.name(world.cloth(c));
-    mesh.triangles = topology.mesh.triangles;
+    const bool is_soup = world.can_tear(world.cloth(c));
+    mesh.triangles = is_soup ? make_soup(topology.mesh.num_triangles()) : topology.mesh.triangles;
     mesh.color = ClothSceneDesc().color;
-    mesh.fabric_coordinates = make_fabric_coordinates(topology);
+    mesh.fabric_coordinates = show(world, world.cloth(c), 2, make_fabric_coordinates(topology));
     animation.cloths.push_back(std::move(mesh));
   }
   for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
@@ -102,7 +104,10 @@ Animation make_animation(const SceneDesc& scene, const World& world) {
 
 AnimationFrame capture_frame(const World& world) {
   AnimationFrame frame;
-  for (int c = 0; c < world.num_cloths(); ++c) frame.cloths.push_back(positions(world.state(world.cloth(c))));
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothId cloth = world.cloth(c);
+    frame.cloths.push_back(show(world, cloth, 3, positions(world.state(cloth))));
+  }
   for (const Collider& collider : world.colliders()) {
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);
     frame.body_vertices.push_back(mesh && mesh->source ? positions(*mesh, world.time())
@@ -111,6 +116,18 @@ AnimationFrame capture_frame(const World& world) {
     frame.poses.push_back({pivot(collider.shape) + pose.translation, Eigen::Quaterniond(pose.rotation)});
   }
   return frame;
+}
+
+std::vector<float> show(const World& world, ClothId cloth, int width, std::vector<float> of_particles) {
+  if (!world.can_tear(cloth)) return of_particles;
+  std::vector<float> of_corners;
+  for (const Triangle& t : world.model(cloth).topology->mesh.triangles) {
+    for (const int i : t) {
+      for (int n = 0; n < width; ++n)
+        of_corners.push_back(of_particles[static_cast<std::size_t>(i) * width + n]);
+    }
+  }
+  return of_corners;
 }
 
 void FilmSink::begin(SceneRun& run, RunReport&) {
@@ -135,7 +152,7 @@ void FilmSpool::add_frame(const SceneRun& run, RunReport&) {
   const World& world = run.world();
   AnimationFrame frame = capture_frame(world);
   for (int c = 0; value_ && c < world.num_cloths(); ++c)
-    frame.values.push_back(compute_values(*value_, world, world.cloth(c)));
+    frame.values.push_back(show(world, world.cloth(c), 1, compute_values(*value_, world, world.cloth(c))));
   frames_.append(std::move(frame));
 }
 

@@ -13,7 +13,8 @@
 
 namespace weft::engine {
 
-/// The meshes of a world, without frames; cloth in the default colour of scenes.
+/// The meshes of a world, without frames; cloth in the default colour of scenes. Cloth that tears is a triangle soup
+/// (mesh/soup.h).
 Animation make_animation(const World& world);
 
 /// The same of a world that was built from a scene, with the scene's name, frame rate and colours.
@@ -21,6 +22,9 @@ Animation make_animation(const SceneDesc& scene, const World& world);
 
 /// The current state of the world.
 AnimationFrame capture_frame(const World& world);
+
+/// Numbers of a cloth's particles, `width` each, as those of its vertices in an animation.
+std::vector<float> show(const World& world, ClothId cloth, int width, std::vector<float> of_particles);
 
 /// Keeps every frame in memory, with the start, for pictures of short runs.
 class FilmSink : public FrameSink {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "weft/mesh/soup.h"
 #include "weft/verify/passages.h"
 
 namespace weft::engine {
@@ -132,7 +133,10 @@ class AnimationFrames {
     result.solid = solid_;
     for (std::size_t c = 0; c < meshes_.cloths.size(); ++c) {
       const AnimatedCloth& cloth = meshes_.cloths[c];
-      add_cloth(cloth.name, cloth.triangles, to_positions(frame.cloths[c]), result);
+      const bool is_joined = !is_soup(cloth.triangles);
+      if (!is_joined) result.joined.push_back(join_soup(cloth.triangles, frame.cloths[c]));
+      add_cloth(cloth.name, is_joined ? cloth.triangles : result.joined.back(), to_positions(frame.cloths[c]),
+                result);
     }
     for (std::size_t b = 0; b < meshes_.bodies.size(); ++b) {
       const AnimatedBody& body = meshes_.bodies[b];

@@ -20,6 +20,7 @@ struct FrameToCheck {
 
   verify::Frame frame;
   std::vector<std::vector<Vec3>> positions;  // of cloths, then of meshes among the colliders
+  std::vector<std::vector<Triangle>> joined;  // of cloths that files show as triangle soups
   std::shared_ptr<const std::vector<std::vector<Triangle>>> solid;  // of colliders: triangles with an inside
 };
 

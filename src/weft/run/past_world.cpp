@@ -20,6 +20,7 @@ const World& PastWorld::world() const { return WorldAccess::engine(world_); }
 
 std::vector<float> PastWorld::to_particles(int cloth, const std::vector<float>& vertices) const {
   const ClothId id = world_.cloth(cloth);
+  if (world().can_tear(id)) return vertices;
   const std::vector<Vec3> points =
       engine::to_particles(to_points(vertices), WorldAccess::rest(world_, id), world_.notes(id));
   std::vector<float> numbers;

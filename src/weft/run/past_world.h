@@ -20,7 +20,8 @@ class PastWorld {
   const weft::World& public_world() const { return world_; }
   const World& world() const;
 
-  /// Positions of particles from those of the vertices of a cloth's mesh as it was given (num_vertices x 3) [m].
+  /// Positions of particles from those of the vertices of a cloth's mesh as it was given (num_vertices x 3) [m]. Cloth
+  /// that tears keeps those of its triangles.
   std::vector<float> to_particles(int cloth, const std::vector<float>& vertices) const;
 
   /// Puts colliders where they are at a time, cloth aside.

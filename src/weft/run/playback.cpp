@@ -129,7 +129,15 @@ FramesAndWorld open_frames_and_world(const fs::path& path) {
   const PastRun run = read_past_run(path);
   if (!run.frames.empty()) return open_unfinished(run);
   try {
-    return open_scene(run);
+    FramesAndWorld all = open_scene(run);
+    const World& world = all.world->world();
+    for (int c = 0; c < world.num_cloths(); ++c) {
+      if (!world.can_tear(world.cloth(c))) continue;
+      return {
+          .why_not = "cloth \"" + world.name(world.cloth(c)) + "\" tears: its past frames are positions only",
+          .frames = std::make_unique<FramesOfScene>(std::move(all))};
+    }
+    return all;
   } catch (const InputError& error) {
     if (run.animation.empty()) throw;
     return {.why_not = error.what(), .frames = open_glb(run.animation)};

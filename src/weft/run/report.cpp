@@ -96,6 +96,7 @@ std::string to_json(const RunReport& r) {
       {"contact_zones", or_null(r.contact_zones)},
       {"guard_events", or_null(r.guard_events)},
       {"divisions", r.divisions},
+      {"torn", r.torn},
       {"retries", r.retries},
       {"faults", r.faults},
       {"newton_steps", r.newton_steps.empty() ? null : nlohmann::ordered_json(r.newton_steps)},

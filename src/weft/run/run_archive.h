@@ -37,7 +37,7 @@ void describe(Archive& archive, RunReport& r) {
           r.springs, r.frames, r.seconds_simulated, r.threads, r.ms_per_frame_median, r.ms_per_frame_p95,
           r.cpu_ms_per_frame, r.untangle_seconds, r.max_strain, r.min_strain, r.mean_strain, r.max_stretch,
           r.min_stretch, r.kinetic_energy, r.potential_energy, r.energy, r.lowest_y, r.newton_steps,
-          r.cg_iterations, r.guard_events, r.divisions, r.retries, r.faults, r.work, r.contact_hits,
+          r.cg_iterations, r.guard_events, r.divisions, r.torn, r.retries, r.faults, r.work, r.contact_hits,
           r.contact_zones, r.infeasible, r.intersections, r.crossings_at_end, r.passages, r.first_passage,
           r.penetration_max, r.state_hash, r.warnings, r.notes, r.problems);
 }

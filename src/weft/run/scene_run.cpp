@@ -138,6 +138,7 @@ void SceneRun::add_work(const StepReport& done) {
   report_.divisions.back() += done.divisions;
   report_.retries += done.retries;
   report_.work += done.work;
+  report_.torn += done.torn;
   if (done.fault) ++report_.faults[to_string(*done.fault)];
   if (scene_.contact) add_contact(done);
   if (done.guard_events) report_.guard_events = report_.guard_events.value_or(0) + *done.guard_events;

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "weft/error.h"
+#include "weft/fabric/bending_rows.h"
 #include "weft/scene/fabric_reader.h"
 #include "weft/scene/scene_sections.h"
 
@@ -119,6 +120,7 @@ constexpr std::array kSiKeys = {"c11",
                                 "bend_hysteresis_weft",
                                 "bend_set",
                                 "strain_limit",
+                                "strength",
                                 "stretch_warp",
                                 "stretch_weft"};
 
@@ -206,6 +208,10 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   if (is_grid && !cloth.has("model")) desc.model = SpringModel::alternating;
   if (!is_grid && desc.fabric->membrane == Membrane::springs && f.strain_limit > 0)
     cloth.get("membrane").expected("\"triangle\": springs support a strain_limit on grids only");
+  if (desc.fabric->membrane == Membrane::springs && f.strength > 0)
+    cloth.get("membrane").expected("\"triangle\": springs do not tear");
+  if (f.strength > 0 && has_bending_memory(f))
+    cloth.get("fabric").mistake("strength is not for cloth with bend_hysteresis or bend_set");
 }
 
 std::vector<Seam> read_seams(TomlTable& cloth) {

@@ -92,6 +92,7 @@ Fabric read_fabric_numbers(TomlTable& table, bool needs_all, const Fabric& base)
   read_within("thickness", f.thickness, above_zero("m"), kThicknessRange);
   read_within("friction", f.friction, not_negative(), kFrictionRange);
   read_within("strain_limit", f.strain_limit, not_negative(), kStrainLimitRange);
+  table.read("strength", f.strength, not_negative("N/m"));
   read_curve(table, "stretch_warp", f.stretch_warp);
   read_curve(table, "stretch_weft", f.stretch_weft);
   check_fabric(table, f);

@@ -13,7 +13,7 @@
 ///     thickness = 0.0008     # optional [m]
 ///     friction  = 0.5        # of the fabric on itself, optional [1]
 ///
-/// Also optional: `bend_hysteresis_warp`, `bend_hysteresis_weft`, `bend_set`, `strain_limit` and the curves `stretch_warp` and `stretch_weft` ([[strain, tension], …]).
+/// Also optional: `bend_hysteresis_warp`, `bend_hysteresis_weft`, `bend_set`, `strain_limit`, `strength` and the curves `stretch_warp` and `stretch_weft` ([[strain, tension], …]).
 /// Fabric documents each number and its default.
 
 #include <filesystem>

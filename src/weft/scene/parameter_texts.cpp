@@ -148,6 +148,9 @@ constexpr ParameterText kTexts[] = {
     {"cloth.fabric.strain_limit", "fabric",
      "Greatest strain in any direction; 0: no limit, 0.01: 1 %. Higher: more rubbery, and less work for the "
      "solver."},
+    {"cloth.fabric.strength", "fabric",
+     "Tension at which the fabric tears. Typical: 3000 (chiffon) to 40000 (denim), less for an effect; 0: never. "
+     "Higher: tears later."},
     {"cloth.fabric.stretch_warp", "fabric",
      "Measured curve along warp, instead of c11: points of strain [1] and tension [N/m], both rising."},
     {"cloth.fabric.stretch_weft", "fabric",

@@ -263,7 +263,8 @@ std::string fabric_text(const FabricDesc& fabric) {
       .add("damping", f.damping)
       .add("thickness", f.thickness)
       .add("friction", f.friction)
-      .add("strain_limit", f.strain_limit, Fabric().strain_limit);
+      .add("strain_limit", f.strain_limit, Fabric().strain_limit)
+      .add("strength", f.strength, Fabric().strength);
   if (!f.stretch_warp.empty()) table.add_text("stretch_warp", curve_text(f.stretch_warp));
   if (!f.stretch_weft.empty()) table.add_text("stretch_weft", curve_text(f.stretch_weft));
   return table.in_line();

@@ -80,7 +80,8 @@ class Lister {
                                                          {"damping", &f.damping},
                                                          {"thickness", &f.thickness},
                                                          {"friction", &f.friction},
-                                                         {"strain_limit", &f.strain_limit}};
+                                                         {"strain_limit", &f.strain_limit},
+                                                         {"strength", &f.strength}};
       for (const auto& [name, number] : numbers) add(path, name, number, "fabric");
       return;
     }

@@ -226,7 +226,20 @@ void PassageWatch::read(const Frame& frame) {
     surfaces_[s++].end = std::visit(FeaturesInside{tolerance_}, collider.shape);
 }
 
+bool PassageWatch::fits(const Frame& frame) const {
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    if (!std::ranges::equal(frame.cloths[c].triangles, surfaces_[c].triangles)) return false;
+  }
+  return true;
+}
+
 std::vector<FeaturePair> PassageWatch::advance(const Frame& next) {
+  if (!fits(next)) {
+    const int num_left_out = pending_.num_left_out;
+    *this = PassageWatch(next, tolerance_);
+    pending_.num_left_out = num_left_out;
+    return {};
+  }
   read(next);
   for (const MovingSurface& surface : surfaces_) {
     if (is_finite(surface.end)) continue;

@@ -23,8 +23,8 @@
 
 namespace weft::engine::verify {
 
-/// Checks a motion, frame by frame. All frames have the same cloths and colliders, the same number of
-/// vertices and the same triangles; coordinates are in the range of pair_motion.h.
+/// Checks a motion, frame by frame. All frames have the same cloths and colliders; coordinates are in the range of
+/// pair_motion.h. Where cloth has torn, and its triangles have changed, the check begins again.
 class PassageWatch {
  public:
   /// A touching pair, or a particle in a shape.
@@ -53,6 +53,7 @@ class PassageWatch {
   void set_pending(Pending pending) { pending_ = std::move(pending); }
 
  private:
+  bool fits(const Frame& frame) const;
   void read(const Frame& frame);
   void test_features(const Frame& next);
   void test_particles(const Frame& next, int cloth, int collider);

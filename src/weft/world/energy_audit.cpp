@@ -139,8 +139,8 @@ EnergyAudit finish_energy_audit(const AuditStart& start, const World& world) {
   const std::vector<ContactPoint> contacts = world.contact_points();
   audit.work_shapes = compute_shape_work(world.colliders(), contacts, start.state.time, world.time());
   for (int c = 0; c < world.num_cloths(); ++c) {
-    const ClothStep cloth{world.model(world.cloth(c)), start.state.states.at(c), world.state(world.cloth(c)),
-                          step};
+    const ClothState before = world.split(world.cloth(c), start.state.states.at(c));
+    const ClothStep cloth{world.model(world.cloth(c)), before, world.state(world.cloth(c)), step};
     Forces outside = compute_wind_forces(cloth.model, cloth.before, cloth.after, world.wind(), world.time());
     audit.work_wind += compute_work(outside, cloth);
     add_contact_forces(c, contacts, outside);

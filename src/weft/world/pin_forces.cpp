@@ -10,7 +10,7 @@ std::vector<Vec3> World::pin_forces(ClothId id) const {
   std::vector<Vec3> reactions(cloth.pinned.size(), Vec3::Zero());
   if (last_step_ == 0 || reactions.empty()) return reactions;
   const int index = this->index(id);
-  const ClothState& before = before_step_.states[index];
+  const ClothState before = split(id, before_step_.states[index]);
   const ClothModel& model = *cloth.model;
   std::vector<Vec3> force = compute_wind_forces(model, before, cloth.state, wind_, time_);
   const std::vector<Vec3> elastic = compute_elastic_forces(model, cloth.state),

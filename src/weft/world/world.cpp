@@ -78,8 +78,10 @@ void require_points(const std::vector<Vec3>& values, std::size_t count, const st
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kMaxParts = 1 << 12;  // of one step [1]
 constexpr int kCalmParts = 4;       // consecutive ones before parts become longer
-constexpr double kFarTooLong = 4;   // severity from which a part is divided in four [1]
-constexpr double kCalm = 0.5;       // severity of a part that could have been longer [1]
+constexpr int kTearingParts =
+    4;  // of a step at least while cloth tears, by an edge at each end of a tear in each
+constexpr double kFarTooLong = 4;  // severity from which a part is divided in four [1]
+constexpr double kCalm = 0.5;      // severity of a part that could have been longer [1]
 
 }  // namespace
 
@@ -156,6 +158,7 @@ ClothId World::add_cloth(const ClothParts& given) {
           "cloth \"" + desc.name + "\" has a non-finite position or velocity");
   cloth.is_pinned.assign(positions.size(), 0);
   cloth.layer = desc.layer;
+  cloth.tearing = desc.tearing;
   cloth.number = ++last_number_;
   last_step_ = 0;
   cloths_.push_back(std::move(cloth));
@@ -914,6 +917,8 @@ StepReport World::fail(const StepCheck& check, StepReport report) {
   part_ = before_step_.part;
   calm_ = before_step_.calm;
   restore_states(before_step_.states);
+  for (std::size_t c = 0; c < before_step_.held.size(); ++c)
+    hold(cloth(static_cast<int>(c)), before_step_.held[c]);
   report.work = clock_.stop();
   return report;
 }
@@ -926,6 +931,8 @@ StepReport World::step(double dt) {
   save(before_step_);
   guide_colliders(dt);
   guide_points(dt);
+  before_step_.held.clear();
+  if (can_tear()) save_held(before_step_);
   for (Cloth& cloth : cloths_) cloth.attachment_impulse.setZero();
   const int most = num_parts_at_most(dt);  // shortest parts of the step
   int parts = 1;                           // number of parts at the present length
@@ -974,6 +981,13 @@ StepReport World::step(double dt) {
       calm_ = 0;
     }
     for (Cloth& cloth : cloths_) follow_cloth(cloth.state);
+    const int torn = tear();
+    if (torn > 0 && observer_) clock_.leave_out([&] { observer_(start + dt * done / most); });
+    report.torn += torn;
+    if (torn > 0) {
+      parts = std::min(most, std::max(parts, kTearingParts));
+      calm_ = 0;
+    }
   }
   if (report.retries > 0) report.fault = worst.fault;
   part_ = parts > 1 ? dt / parts : 0;
@@ -998,7 +1012,7 @@ void World::save_states(std::vector<ClothState>& states) const {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   save(snapshot);
-  for (int c = 0; c < num_cloths(); ++c) snapshot.held.push_back(held(cloth(c)));
+  save_held(snapshot);
   snapshot.guides = guides_;
   for (std::size_t c = 0; c < colliders_.size(); ++c) {
     snapshot.guides[c].motion = colliders_[c].motion;
@@ -1006,6 +1020,11 @@ World::Snapshot World::snapshot() const {
       snapshot.guides[c].source = shape->source;
   }
   return snapshot;
+}
+
+void World::save_held(Snapshot& snapshot) const {
+  snapshot.held.clear();
+  for (int c = 0; c < num_cloths(); ++c) snapshot.held.push_back(held(cloth(c)));
 }
 
 World::Held World::held(ClothId id) const {
@@ -1042,8 +1061,10 @@ void World::hold(ClothId id, Held held) {
 void World::restore(const Snapshot& snapshot) {
   require(snapshot.states.size() == cloths_.size(),
           "the snapshot and the world have different numbers of cloths");
+  std::vector<std::shared_ptr<const ClothModel>> models;
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    require(snapshot.states[c].x.size() == cloths_[c].state.x.size(),
+    models.push_back(model_for(cloths_[c], snapshot.states[c].torn));
+    require(std::cmp_equal(snapshot.states[c].x.size(), models.back()->num_particles()),
             "the snapshot's cloth \"" + cloths_[c].name + "\" has a different number of particles");
   }
   require(snapshot.guides.size() == guides_.size(),
@@ -1052,6 +1073,7 @@ void World::restore(const Snapshot& snapshot) {
   part_ = snapshot.part;
   calm_ = snapshot.calm;
   last_step_ = 0;
+  for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].model = std::move(models[c]);
   restore_states(snapshot.states);
   for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(cloth(static_cast<int>(c)), snapshot.held[c]);
   const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
@@ -1067,7 +1089,10 @@ void World::restore(const Snapshot& snapshot) {
 }
 
 void World::restore_states(const std::vector<ClothState>& states) {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].state = states[c];
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    cloths_[c].model = model_for(cloths_[c], states[c].torn);
+    cloths_[c].state = states[c];
+  }
 }
 
 std::uint64_t World::state_hash() const {

@@ -17,6 +17,7 @@
 #include "weft/core/work_times.h"
 #include "weft/ids.h"
 #include "weft/integrators/integrator.h"
+#include "weft/model/torn_cloth.h"
 #include "weft/report.h"
 #include "weft/world/attachment.h"
 #include "weft/world/step_check.h"
@@ -32,6 +33,7 @@ struct ClothParts {
   std::vector<Vec3> positions;                    // (num_particles) at the start; empty: the rest shape [m]
   Vec3 velocity = Vec3::Zero();                   // of all particles at the start [m/s]
   int layer = 0;                                  // see ClothDesc::layer
+  std::shared_ptr<const TearingCloth> tearing;    // of `topology` and `elements`; null: it does not tear
 };
 
 /// Particles with prescribed motion: static, along key frames from their positions when pinned, or bound to a
@@ -120,6 +122,9 @@ class World {
   void set_material(ClothId cloth, const ClothMaterial& material);  // keeps the elements
   void set_material(ClothId cloth, const ClothMaterial& material,
                     std::shared_ptr<const ClothElements> elements);
+  /// The same for cloth that tears, from now on. `tearing` is of the cloth as it was added.
+  void set_material(ClothId cloth, const ClothMaterial& material,
+                    std::shared_ptr<const TearingCloth> tearing);
   /// Teleportation (num_particles): nothing is swept on the way. Pins hold their particles at the new
   /// positions. Throws InputError for wrong numbers of values, and for values that are not finite.
   void set_positions(ClothId cloth, const std::vector<Vec3>& positions);    // keeps velocities [m]
@@ -154,11 +159,12 @@ class World {
   /// otherwise it is a no-op. Calls on_round with the number of each round.
   UntangleReport untangle(const std::function<void(int round)>& on_round = {});
 
-  /// Advances the world by dt > 0 [s].
+  /// Advances the world by dt > 0 [s]. Where cloth tears, its model has more particles afterwards.
   StepReport step(double dt);
 
   /// Called in step() at the end of every substep, with the time that the cloths have reached [s]; time() is
-  /// the start of the step until the step is done. Also called in steps that fail and are undone.
+  /// the start of the step until the step is done. Also called in steps that fail and are undone, and once more
+  /// where cloth has torn.
   void set_observer(std::function<void(double time)> after_substep) { observer_ = std::move(after_substep); }
 
   double time() const { return time_; }  // [s]
@@ -177,6 +183,9 @@ class World {
   const std::string& name(ClothId cloth) const { return at(cloth).name; }
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
+  bool can_tear(ClothId cloth) const { return at(cloth).tearing != nullptr; }
+  /// A state from before the last tears, with the particles of now.
+  ClothState split(ClothId cloth, const ClothState& state) const;
   const Vec3& attachment_impulse(ClothId cloth) const {
     return at(cloth).attachment_impulse;
   }  // in the last step [N·s]
@@ -279,9 +288,10 @@ class World {
     Attachments attachments;
     PointGuide pin_guide, attachment_guide;  // of pins and attachments moved by the program
     int layer = 0;
-    std::vector<Vec3> forces;                // external (num_particles; empty: none) [N]
-    const ClothModel* held_model = nullptr;  // of a substep: `model`, heavier where attached
-    Vec3 attachment_impulse = Vec3::Zero();  // of all attachments in the last step [N·s]
+    std::shared_ptr<const TearingCloth> tearing;  // null: it does not tear
+    std::vector<Vec3> forces;                     // external (num_particles; empty: none) [N]
+    const ClothModel* held_model = nullptr;       // of a substep: `model`, heavier where attached
+    Vec3 attachment_impulse = Vec3::Zero();       // of all attachments in the last step [N·s]
   };
 
   std::size_t index_of(ClothId id) const;
@@ -302,6 +312,10 @@ class World {
   StepCheck check_part(const Snapshot& before, double dt, StepReport& report);
   StepCheck try_part(const Snapshot& before, double time, double dt, StepReport& report);
   void accept(const StepReport& part, StepReport& report);
+  bool can_tear() const;
+  static std::shared_ptr<const ClothModel> model_for(const Cloth& cloth, const std::vector<int>& torn);
+  int tear();
+  int tear(ClothId id);
   void restore_states(const std::vector<ClothState>& states);
   StepReport fail(const StepCheck& check, StepReport report);
   void begin_contact(double time, double dt);
@@ -320,6 +334,7 @@ class World {
   void set_friction_at(BodyPlace a, BodyPlace b, double friction, double static_friction);
   void save(Snapshot& snapshot) const;
   void save_states(std::vector<ClothState>& states) const;
+  void save_held(Snapshot& snapshot) const;
   void place_pins(Cloth& cloth, std::vector<Pin> pins);
   void bind_pins(Cloth& cloth) const;
   static void release_followers(int collider, Cloth& cloth);

@@ -1,0 +1,97 @@
+/// Runs of cloth that tears: every file shows it, and the checker reads them.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/message_of.h"
+#include "tests/run/shipped.h"
+#include "weft/io/glb_reader.h"
+#include "weft/io/obj_reader.h"
+#include "weft/mesh/soup.h"
+#include "weft/run/frame_checks.h"
+#include "weft/run/playback.h"
+#include "weft/run/run_folder.h"
+
+namespace weft::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 45;
+
+/// A ball through a sheet of 12 × 12 cells.
+SceneDesc scene() {
+  return shipped("tearing/ball", {"cloth[0].grid.cells=[12, 12]", "cloth[0].fabric.strength=60"});
+}
+
+class RunOfTornCloth : public testing::Test {
+ protected:
+  void SetUp() override { fs::remove_all(folder_); }
+
+  RunOptions options(const char* name, Unfinished unfinished = Unfinished::refuse) const {
+    return {.frames = kFrames,
+            .folder = (folder_ / name).string(),
+            .obj = true,
+            .unfinished = unfinished,
+            .checkpoint_every = 10};
+  }
+
+  fs::path folder_ = fs::path(WEFT_OUTPUT_DIR) / "torn_cloth";
+};
+
+/// The number of places that the corners of a soup have.
+std::size_t count_places(const std::vector<Triangle>& soup, const std::vector<float>& positions) {
+  std::set<int> places;
+  for (const Triangle& t : join_soup(soup, positions)) places.insert(t.begin(), t.end());
+  return places.size();
+}
+
+TEST_F(RunOfTornCloth, IsShownByEveryFileAndHasNoIntersections) {
+  const FinishedRun run = run_to_folder(scene(), options("run"));
+  ASSERT_EQ(run.report.outcome, RunOutcome::done);
+  EXPECT_GT(run.report.torn, 3);
+  EXPECT_EQ(run.report.intersections, 0);
+  EXPECT_EQ(run.report.passages, 0);
+  const auto glb = open_frames(folder_ / "run");
+  ASSERT_EQ(glb->num_frames(), kFrames + 1);
+  const std::vector<Triangle>& soup = glb->meshes().cloths[0].triangles;
+  ASSERT_TRUE(is_soup(soup));
+  EXPECT_EQ(soup.size(), 288U);
+  EXPECT_EQ(count_places(soup, glb->read(0).cloths[0]), 169U);
+  EXPECT_GT(count_places(soup, glb->read(kFrames).cloths[0]), 169U + 3);
+  EXPECT_TRUE(check_animation(*glb, {.passages_offend = true}).is_clean);
+  const MeshFromFile last = read_obj(folder_ / "run/obj/sheet_0045.obj");
+  EXPECT_EQ(last.mesh.num_vertices(), 3 * 288);
+  // Without the animation the point cache has the same frames.
+  RunOptions without = options("caches");
+  without.glb = false;
+  run_to_folder(scene(), without);
+  const FramesAndWorld cached = open_frames_and_world(folder_ / "caches");
+  EXPECT_EQ(cached.world, nullptr);
+  EXPECT_EQ(cached.why_not, "cloth \"sheet\" tears: its past frames are positions only");
+  EXPECT_EQ(cached.frames->read(kFrames).cloths[0].size(), 9U * 288);
+  EXPECT_EQ(count_places(soup, cached.frames->read(kFrames).cloths[0]),
+            count_places(soup, glb->read(kFrames).cloths[0]));
+}
+
+TEST_F(RunOfTornCloth, GoesOnAfterAnInterruption) {
+  const FinishedRun whole = run_to_folder(scene(), options("whole"));
+  run_to_folder(scene(), options("broken"), {},
+                [](const Progress& progress) { return progress.frame < kFrames - 4; });
+  const FinishedRun rest = run_to_folder(scene(), options("broken", Unfinished::resume));
+  EXPECT_EQ(rest.report.state_hash, whole.report.state_hash);
+  EXPECT_EQ(rest.report.torn, whole.report.torn);
+}
+
+TEST_F(RunOfTornCloth, IsNoStartOfAnother) {
+  run_to_folder(scene(), options("run"));
+  RunOptions next = options("next");
+  next.start_from = (folder_ / "run").string() + "@last";
+  EXPECT_NE(message_of([&] { run_to_folder(scene(), next); }).find("169 vertices in the scene, but 864 in"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace weft::engine
