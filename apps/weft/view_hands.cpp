@@ -304,7 +304,11 @@ void Hands::pin(int cloth, const std::vector<int>& particles, bool removes) {
   if (pins.vertices.size() != pinned.pins.size())
     return viewer_.say("the pins that are shown are not the newest: go on for a step first");
   std::vector<int> vertices;
-  for (const int particle : particles) vertices.push_back(pins.vertex_of_particle[particle]);
+  for (const int particle : particles) {
+    if (std::cmp_less(particle, pins.vertex_of_particle.size()))
+      vertices.push_back(pins.vertex_of_particle[particle]);
+  }
+  if (vertices.empty()) return viewer_.say("this side of a tear has no vertex to pin: choose the other one");
   removes ? unpin_vertices(vertices, pins.vertices, pinned) : pin_vertices(vertices, pins.vertices, pinned);
   viewer_.edit(std::move(next), "pins");
   viewer_.settle_edits();

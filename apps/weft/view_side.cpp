@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "weft/run/film.h"
+
 namespace weft::engine::app {
 namespace {
 
@@ -202,9 +204,12 @@ bool LiveSide::update() {
   for (const LiveSample& sample : newest_.samples) samples_.push_back(sample);
   while (samples_.size() > kSamples) samples_.pop_front();
   newest_.samples.clear();
+  for (std::size_t c = 0; c < newest_.topologies.size(); ++c) {
+    meshes_.cloths[c].triangles = newest_.topologies[c]->mesh.triangles;
+    meshes_.cloths[c].fabric_coordinates =
+        make_fabric_coordinates(*newest_.topologies[c]);  // torn cloth has more
+  }
   topologies_ = newest_.topologies;
-  for (std::size_t c = 0; c < topologies_.size(); ++c)
-    meshes_.cloths[c].triangles = topologies_[c]->mesh.triangles;
   return true;
 }
 

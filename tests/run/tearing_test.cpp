@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <chrono>
 #include <set>
+#include <thread>
 
 #include "tests/message_of.h"
 #include "tests/run/shipped.h"
@@ -11,6 +12,7 @@
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/soup.h"
 #include "weft/run/frame_checks.h"
+#include "weft/run/live.h"
 #include "weft/run/playback.h"
 #include "weft/run/run_folder.h"
 
@@ -91,6 +93,35 @@ TEST_F(RunOfTornCloth, IsNoStartOfAnother) {
   next.start_from = (folder_ / "run").string() + "@last";
   EXPECT_NE(message_of([&] { run_to_folder(scene(), next); }).find("169 vertices in the scene, but 864 in"),
             std::string::npos);
+}
+
+TEST(LiveTornCloth, ShowsItsPresentMeshAndIsWholeAfterAReset) {
+  LiveSimulation live(scene(), {.playing = false});
+  live.measure({.color = ParticleValue::strain,
+                .contacts = true,
+                .yarns = true,
+                .probe = ClothPoint{0, 140, {1, 0, 0}}});
+  live.grab({0, 150, {0.2, 0.3, 0.5}});
+  const auto frame_of = [&](std::int64_t steps) {
+    LiveFrame frame;
+    for (int n = 0; n < 60000 && (!live.take_newest(frame) || frame.status.steps != steps); ++n)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(frame.status.steps, steps) << frame.status.failure;
+    return frame;
+  };
+  live.step(kFrames);
+  const LiveFrame torn = frame_of(kFrames);
+  const RestMesh& mesh = torn.topologies[0]->mesh;
+  EXPECT_GT(mesh.num_vertices(), 169 + 3);
+  EXPECT_EQ(torn.meshes.cloths[0].size(), 3U * mesh.num_vertices());
+  EXPECT_EQ(torn.meshes.values[0].size(), static_cast<std::size_t>(mesh.num_vertices()));
+  EXPECT_TRUE(torn.probe);
+  live.seek(kFrames - 20);
+  EXPECT_EQ(frame_of(kFrames - 20).status.steps, kFrames - 20);
+  live.reset();
+  const LiveFrame whole = frame_of(0);
+  EXPECT_EQ(whole.topologies[0]->mesh.num_vertices(), 169);
+  EXPECT_EQ(whole.meshes.cloths[0].size(), 3U * 169);
 }
 
 }  // namespace

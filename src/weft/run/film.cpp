@@ -11,24 +11,6 @@ namespace {
 constexpr double kPlaneSide = 4;  // of the square that shows a plane [m]
 constexpr int kSphereRings = 32;
 
-/// Rest coordinates of each particle along warp and weft: a grid's own axes, or the two axes along which a
-/// mesh at rest is longest.
-std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
-  std::array<int, 2> axes = {0, 2};
-  if (!topology.grid) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : topology.mesh.positions) box.extend(p);
-    int shortest = 0;
-    box.sizes().minCoeff(&shortest);
-    axes = {shortest == 0 ? 1 : 0, shortest == 2 ? 1 : 2};
-  }
-  std::vector<float> coordinates;
-  for (const Vec3& p : topology.mesh.positions) {
-    for (const int axis : axes) coordinates.push_back(static_cast<float>(p[axis]));
-  }
-  return coordinates;
-}
-
 /// The collider's shape around its own pivot, exact and as a mesh for drawing.
 AnimatedBody show(const Collider& collider) {
   AnimatedBody body;
@@ -75,24 +57,41 @@ std::vector<float> positions(const ClothState& state) {
 
 }  // namespace
 
-Animation make_animation(const World& world) {
+std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
+  std::array<int, 2> axes = {0, 2};
+  if (!topology.grid) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : topology.mesh.positions) box.extend(p);
+    int shortest = 0;
+    box.sizes().minCoeff(&shortest);
+    axes = {shortest == 0 ? 1 : 0, shortest == 2 ? 1 : 2};
+  }
+  std::vector<float> coordinates;
+  for (const Vec3& p : topology.mesh.positions) {
+    for (const int axis : axes) coordinates.push_back(static_cast<float>(p[axis]));
+  }
+  return coordinates;
+}
+
+Animation make_animation(const World& world, TornCloth torn) {
   Animation animation{.title = {}, .cloths = {}, .bodies = {}, .passing = world.non_colliding_pairs()};
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothTopology& topology = *world.model(world.cloth(c)).topology;
     AnimatedCloth mesh;
     mesh.name = world.name(world.cloth(c));
-    const bool is_soup = world.can_tear(world.cloth(c));
+    const bool is_soup = torn == TornCloth::soup && world.can_tear(world.cloth(c));
     mesh.triangles = is_soup ? make_soup(topology.mesh.num_triangles()) : topology.mesh.triangles;
     mesh.color = ClothSceneDesc().color;
-    mesh.fabric_coordinates = show(world, world.cloth(c), 2, make_fabric_coordinates(topology));
+    mesh.fabric_coordinates = make_fabric_coordinates(topology);
+    if (is_soup) mesh.fabric_coordinates = show(world, world.cloth(c), 2, std::move(mesh.fabric_coordinates));
     animation.cloths.push_back(std::move(mesh));
   }
   for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
   return animation;
 }
 
-Animation make_animation(const SceneDesc& scene, const World& world) {
-  Animation animation = make_animation(world);
+Animation make_animation(const SceneDesc& scene, const World& world, TornCloth torn) {
+  Animation animation = make_animation(world, torn);
   animation.title = scene.name;
   animation.frames_per_second = scene.fps;
   for (std::size_t c = 0; c < animation.cloths.size(); ++c) {
@@ -102,11 +101,12 @@ Animation make_animation(const SceneDesc& scene, const World& world) {
   return animation;
 }
 
-AnimationFrame capture_frame(const World& world) {
+AnimationFrame capture_frame(const World& world, TornCloth torn) {
   AnimationFrame frame;
   for (int c = 0; c < world.num_cloths(); ++c) {
     const ClothId cloth = world.cloth(c);
-    frame.cloths.push_back(show(world, cloth, 3, positions(world.state(cloth))));
+    std::vector<float> own = positions(world.state(cloth));
+    frame.cloths.push_back(torn == TornCloth::soup ? show(world, cloth, 3, std::move(own)) : std::move(own));
   }
   for (const Collider& collider : world.colliders()) {
     const MeshShape* mesh = std::get_if<MeshShape>(&collider.shape);

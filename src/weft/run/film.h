@@ -13,17 +13,23 @@
 
 namespace weft::engine {
 
-/// The meshes of a world, without frames; cloth in the default colour of scenes. Cloth that tears is a triangle soup
-/// (mesh/soup.h).
-Animation make_animation(const World& world);
+/// How cloth that tears is shown: as a triangle soup (mesh/soup.h), the same in all frames, or as its present mesh.
+enum class TornCloth { soup, present };
+
+/// The meshes of a world, without frames; cloth in the default colour of scenes.
+Animation make_animation(const World& world, TornCloth torn = TornCloth::soup);
 
 /// The same of a world that was built from a scene, with the scene's name, frame rate and colours.
-Animation make_animation(const SceneDesc& scene, const World& world);
+Animation make_animation(const SceneDesc& scene, const World& world, TornCloth torn = TornCloth::soup);
 
 /// The current state of the world.
-AnimationFrame capture_frame(const World& world);
+AnimationFrame capture_frame(const World& world, TornCloth torn = TornCloth::soup);
 
-/// Numbers of a cloth's particles, `width` each, as those of its vertices in an animation.
+/// Coordinates of the particles at rest (num_particles x 2): along a grid's axes, or the two along which a mesh is
+/// longest [m].
+std::vector<float> make_fabric_coordinates(const ClothTopology& topology);
+
+/// Numbers of a cloth's particles, `width` each, as those of its vertices where torn cloth is a soup.
 std::vector<float> show(const World& world, ClothId cloth, int width, std::vector<float> of_particles);
 
 /// Keeps every frame in memory, with the start, for pictures of short runs.

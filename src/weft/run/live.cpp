@@ -44,8 +44,8 @@ LiveSimulation::LiveSimulation(SceneDesc scene, const LiveSettings& settings)
       snapshot_(run_->public_world().snapshot()) {
   warnings_ = run_->notes().warnings;
   reach_ = find_reach(world());
-  start_ = make_animation(start_scene_, world());
-  append_frame(capture_frame(world()), start_);
+  start_ = make_animation(start_scene_, world(), TornCloth::present);
+  append_frame(capture_frame(world(), TornCloth::present), start_);
   show_world();
   clear_problems();
   status_.playing = settings.playing;
@@ -457,7 +457,7 @@ void LiveSimulation::hold() {
 
 /// Meshes and seams, after a change of bodies.
 void LiveSimulation::show_world() {
-  meshes_ = std::make_shared<const Animation>(make_animation(scene_now(), world()));
+  meshes_ = std::make_shared<const Animation>(make_animation(scene_now(), world(), TornCloth::present));
   seams_ = std::make_shared<const std::vector<SeamEdges>>(find_seams(run_->public_world()));
   pins_.reset();
   find_pins();
@@ -507,7 +507,7 @@ void LiveSimulation::publish() {
   measure_frame();
   next_.status = measure();
   next_.start = meshes_;
-  next_.meshes = capture_frame(world());
+  next_.meshes = capture_frame(world(), TornCloth::present);
   next_.topologies.clear();
   for (int c = 0; c < world().num_cloths(); ++c)
     next_.topologies.push_back(world().model(world().cloth(c)).topology);

@@ -6,7 +6,6 @@
 
 #include "weft/error.h"
 #include "weft/face/world_impl.h"
-#include "weft/run/film.h"
 #include "weft/scene/scene_world.h"
 #include "weft/world/measures.h"
 
@@ -16,7 +15,7 @@ namespace {
 std::vector<std::vector<float>> read_colors(ParticleValue value, const World& world) {
   std::vector<std::vector<float>> values;
   for (int c = 0; c < world.num_cloths(); ++c)
-    values.push_back(show(world, world.cloth(c), 1, compute_values(value, world, world.cloth(c))));
+    values.push_back(compute_values(value, world, world.cloth(c)));
   return values;
 }
 
