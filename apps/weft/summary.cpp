@@ -47,7 +47,7 @@ std::string summarise(const RunReport& r) {
   if (!r.energy.left_over.empty())
     text += fmt::format("  audit        {}\n", format_left_over(r.energy.left_over));
   text += fmt::format("  lowest point {:.3f} m at the end\n", last(r.lowest_y));
-  if (r.torn > 0) text += fmt::format("  tears        {} vertices\n", r.torn);
+  if (r.torn > 0) text += fmt::format("  tears        {} cuts\n", r.torn);
   if (r.intersections) text += fmt::format("  crossings    {} in the worst frame\n", *r.intersections);
   if (r.passages) text += fmt::format("  passages     {}{}\n", *r.passages, first_passage_in_words(r));
   if (r.penetration_max) text += fmt::format("  penetration  at most {}\n", format_depth(r));

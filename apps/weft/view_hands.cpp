@@ -305,8 +305,9 @@ void Hands::pin(int cloth, const std::vector<int>& particles, bool removes) {
     return viewer_.say("the pins that are shown are not the newest: go on for a step first");
   std::vector<int> vertices;
   for (const int particle : particles) {
-    if (std::cmp_less(particle, pins.vertex_of_particle.size()))
-      vertices.push_back(pins.vertex_of_particle[particle]);
+    const auto at = static_cast<std::size_t>(particle);
+    const int vertex = at < pins.vertex_of_particle.size() ? pins.vertex_of_particle[at] : -1;
+    if (vertex >= 0) vertices.push_back(vertex);
   }
   if (vertices.empty()) return viewer_.say("this side of a tear has no vertex to pin: choose the other one");
   removes ? unpin_vertices(vertices, pins.vertices, pinned) : pin_vertices(vertices, pins.vertices, pinned);

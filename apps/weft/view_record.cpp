@@ -24,6 +24,11 @@ Image join(const std::vector<Image>& images) {
   return images.size() == 1 ? images[0] : make_contact_sheet(images, static_cast<int>(images.size()), 0);
 }
 
+bool can_tear(const SceneDesc& scene) {
+  return std::ranges::any_of(
+      scene.cloths, [](const ClothSceneDesc& c) { return c.fabric && c.fabric->numbers.strength > 0; });
+}
+
 }  // namespace
 
 Recording::Recording(Viewer& viewer, const RecordRequest& request)
@@ -33,6 +38,8 @@ Recording::Recording(Viewer& viewer, const RecordRequest& request)
   const double rate = viewer_.frames_per_second() / request_.every;
   if (file.extension() == ".glb") {
     if (viewer_.num_sides() > 1) throw InputError("a .glb holds one simulation: record it without --compare");
+    if (viewer_.edits() && can_tear(viewer_.edits()->now()))
+      throw InputError("the window records no .glb of cloth that tears: use weft run");
     glb_file_ = std::make_unique<StagedFile>(file);
     glb_ = std::make_unique<GlbWriter>(*glb_file_, without_frames(viewer_.side(0).meshes()));
   } else if (is_video(file)) {

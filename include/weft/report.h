@@ -92,7 +92,7 @@ struct StepReport {
   std::optional<int> guard_events = {};  // of newton's guard; empty for integrators without one [1]
   int hits = 0;   // pairs that reached the fail-safe, continuous collision detection [1]
   int zones = 0;  // its rigid impact zones [1]
-  int torn = 0;   // vertices at which cloth tore (Fabric::strength); particles and triangles have changed [1]
+  int torn = 0;   // cuts through vertices (Fabric::strength): particles and triangles have changed [1]
   std::vector<InfeasiblePair> infeasible = {};  // pushed through each other by prescribed motions, once each
   WorkTimes work = {};                          // of all parts, including repeated ones
 };

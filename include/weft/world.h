@@ -41,7 +41,8 @@ enum class ForceKind {
 
 /// Positions of particles as the engine stores them: floats relative to an origin, which follows the cloth.
 /// Component c of particle i is data[c · stride + i], and its position origin + that. The memory shows the
-/// newest state after every call on the world; after remove() and the world's end it keeps the last one.
+/// newest state after every call on the world; after remove() and the world's end it keeps the last one. Where cloth
+/// tears, it has other memory from then on.
 struct ClothOffsets {
   std::shared_ptr<const float> data = {};  // (3 x stride) [m]
   std::size_t num_particles = 0;

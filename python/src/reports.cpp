@@ -90,7 +90,7 @@ void bind_reports(nb::module_& m) {
       .def_ro("hits", &StepReport::hits, "Pairs that reached continuous collision detection")
       .def_ro("zones", &StepReport::zones, "Its rigid impact zones")
       .def_ro("torn", &StepReport::torn,
-              "Vertices at which cloth tore; its particles and triangles have then changed")
+              "Cuts through vertices where cloth tore: its particles and triangles have changed")
       .def_ro("infeasible", &StepReport::infeasible, nb::rv_policy::copy,
               "Pairs pushed through each other by prescribed motions")
       .def_ro("work", &StepReport::work, "Wall time by kind of work")

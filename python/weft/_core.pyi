@@ -1497,7 +1497,7 @@ class StepReport:
     @property
     def torn(self) -> int:
         """
-        Vertices at which cloth tore; its particles and triangles have then changed
+        Cuts through vertices where cloth tore: its particles and triangles have changed
         """
 
     @property

@@ -1,5 +1,7 @@
 """Cloth that tears: arrays of its particles grow."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -57,3 +59,14 @@ def test_arrays_of_a_batch_keep_their_particles() -> None:
         np.testing.assert_array_equal(positions[w], batch[w]["strip"].positions[:count].astype(np.float32))
     batch.reset()
     assert all(batch[w]["strip"].num_particles == count for w in range(3))
+
+
+def test_a_run_shows_the_corners_of_triangles(tmp_path: Path) -> None:
+    scene = weft.load_scene("tearing/ball")
+    scene.set("cloth[0].grid.cells=[12, 12]")
+    scene.set("cloth[0].fabric.strength=60")
+    run = weft.run(scene, frames=45, out=tmp_path / "torn")
+    positions = run.positions["sheet"]
+    assert positions.shape == (46, 3 * 288, 3)
+    count = [len(np.unique(frame, axis=0)) for frame in positions]
+    assert count[0] == 169 < count[-1]

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/message_of.h"
+#include "tests/read_text.h"
 #include "tests/run/shipped.h"
 #include "weft/io/glb_reader.h"
 #include "weft/io/obj_reader.h"
@@ -85,6 +86,8 @@ TEST_F(RunOfTornCloth, GoesOnAfterAnInterruption) {
   const FinishedRun rest = run_to_folder(scene(), options("broken", Unfinished::resume));
   EXPECT_EQ(rest.report.state_hash, whole.report.state_hash);
   EXPECT_EQ(rest.report.torn, whole.report.torn);
+  for (const char* file : {"animation.glb", "sheet.pc2", "sheet.mesh.obj", "run.json"})
+    EXPECT_EQ(read_text(folder_ / "whole" / file) == read_text(folder_ / "broken" / file), true) << file;
 }
 
 TEST_F(RunOfTornCloth, IsNoStartOfAnother) {

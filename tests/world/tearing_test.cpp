@@ -61,7 +61,7 @@ struct TensileTest {
   World world;
   ClothId strip;
   std::vector<Vec3> held;
-  std::size_t num_fixed = 0;
+  std::size_t num_fixed = 0, num_clamped = 0;
 
   explicit TensileTest(int notch, const Fabric& fabric = weak()) {
     world.set_gravity({});
@@ -75,10 +75,11 @@ struct TensileTest {
     num_fixed = fixed.particles.size();
     world.set_pins(strip, {fixed, moving});
     for (const int i : world.pinned_particles(strip)) held.push_back(positions[i]);
+    num_clamped = held.size();
   }
 
   StepReport pull(double speed) {
-    for (std::size_t k = num_fixed; k < held.size(); ++k) held[k].x += speed * kStep;
+    for (std::size_t k = num_fixed; k < num_clamped; ++k) held[k].x += speed * kStep;
     world.move_pins(strip, held);
     const StepReport report = world.step(kStep);
     EXPECT_TRUE(report.ok);
@@ -88,7 +89,7 @@ struct TensileTest {
   double load() const {
     double sum = 0;
     const std::vector<Vec3> forces = world.pin_forces(strip);
-    for (std::size_t k = num_fixed; k < forces.size(); ++k) sum += forces[k].x;
+    for (std::size_t k = num_fixed; k < num_clamped; ++k) sum += forces[k].x;
     return sum;
   }
 
@@ -243,8 +244,13 @@ TEST(Tearing, KeepsPinsGrabsAndForcesOnTheirParticles) {
   std::vector<Vec3> forces(static_cast<std::size_t>(test.world.num_particles(test.strip)));
   forces[free] = {0, 0, 1e-3};
   test.world.set_forces(test.strip, forces);
+  const int grabbed = kCellsX / 4 + kCellsZ * (kCellsX + 1);  // on the other border
+  const Vec3 place = test.world.positions(test.strip)[grabbed];
+  test.world.add_pin(test.strip, {.particles = {grabbed}, .stiffness = 1e4, .damping = 1});
+  test.held.push_back(place);
   tear(test);
   EXPECT_EQ(test.world.pinned_particles(test.strip).size(), test.held.size());
+  EXPECT_LT(length(test.world.positions(test.strip)[grabbed] - place), 1e-3);
   const std::vector<Vec3> now = test.world.forces(test.strip, ForceKind::external);
   ASSERT_EQ(now.size(), static_cast<std::size_t>(test.world.num_particles(test.strip)));
   Vec3 sum;
@@ -253,16 +259,62 @@ TEST(Tearing, KeepsPinsGrabsAndForcesOnTheirParticles) {
   EXPECT_EQ(now[free], Vec3({0, 0, 1e-3}));
 }
 
-TEST(Tearing, PinnedClothHoldsAtItsPins) {
+TEST(Tearing, EndsBeforeParticlesThatArePinned) {
+  // A third clamp along one side, which the tear would divide.
   TensileTest test(0);
-  std::vector<int> all(static_cast<std::size_t>(test.world.num_particles(test.strip)));
-  std::iota(all.begin(), all.end(), 0);
   const std::vector<Vec3> start = test.world.positions(test.strip);
-  test.world.set_pins(test.strip, {{.particles = all}});
-  std::vector<Vec3> far;
-  for (const Vec3& p : start) far.push_back({2 * p.x, p.y, p.z});
-  test.world.move_pins(test.strip, far);
-  EXPECT_EQ(test.world.step(kStep).torn, 0);
+  std::vector<int> side;
+  for (int i = 0; i < static_cast<int>(start.size()); ++i) {
+    if (start[i].z < 1e-6 && start[i].x > 1e-6 && start[i].x < kLength - 1e-6) side.push_back(i);
+  }
+  test.world.add_pin(test.strip, {.particles = side});
+  int torn = 0;
+  std::vector<Vec3> goal;
+  for (const int i : test.world.pinned_particles(test.strip)) goal.push_back(start[i]);
+  for (int n = 0; n < 120; ++n) {
+    for (Vec3& p : goal) p.x *= 1.003;
+    test.world.move_pins(test.strip, goal);
+    torn += test.world.step(kStep).torn;
+  }
+  EXPECT_GT(torn, 5);
+  const std::vector<Vec3> now = test.world.positions(test.strip);
+  const std::vector<int> pinned = test.world.pinned_particles(test.strip);
+  std::vector<int> num_triangles(now.size(), 0), before(now.size(), 0);
+  for (const Triangle& t : test.world.triangles(test.strip)) {
+    for (const int v : t) ++num_triangles[v];
+  }
+  for (const Triangle& t : make_strip(0).triangles) {
+    for (const int v : t) ++before[v];
+  }
+  for (const int i : pinned) EXPECT_EQ(num_triangles[i], before[i]) << i;  // no part has left it
+}
+
+TEST(Tearing, ContactForcesAreThoseOfThePresentParticles) {
+  World world;
+  world.set_contact({.tracks_points = true});
+  Fabric weaker = weak();
+  weaker.strength = 40;
+  const Grid grid{0.4, 0.4, 16, 16};
+  const ClothId sheet = world.add_cloth({.shape = grid, .fabric = weaker, .pose = {{-0.2, 0, -0.2}, {}}});
+  Pin pin;
+  for (int k = 0; k <= 16; ++k) {
+    pin.particles.push_back(grid.index(0, k));
+    pin.particles.push_back(grid.index(16, k));
+  }
+  world.set_pins(sheet, {pin});
+  const ColliderId ball = world.add_collider({.shape = Sphere{.center = {0, 0.09, 0}, .radius = 0.08}});
+  const Snapshot whole = world.snapshot();
+  int torn = 0;
+  for (int n = 0; n < 40; ++n) {
+    world.move_collider(ball, {{0, 0.09 - 0.008 * n, 0}, {}});
+    torn += world.step(kStep).torn;
+    EXPECT_EQ(world.forces(sheet, ForceKind::contact).size(),
+              static_cast<std::size_t>(world.num_particles(sheet)));
+  }
+  ASSERT_GT(torn, 0);
+  world.restore(whole);
+  EXPECT_TRUE(world.contact_points().empty());
+  EXPECT_EQ(world.forces(sheet, ForceKind::contact).size(), static_cast<std::size_t>(grid.num_particles()));
 }
 
 TEST(Tearing, StrongerClothAndClothWithoutStrengthStaysWhole) {

@@ -201,8 +201,8 @@ void ClothClearance::measure_row(const ClothMotion& motion, int row, const Grid&
     for (int column = 0; column < level.columns; ++column) {
       const int i = column * kCells;
       const auto put = [&](const Minima& m, int more, Float4& min, Float4& max) {
-        min[k] = std::min(m.of[i], m.of[i + more]);
-        max[k] = -std::min(m.of_opposite[i], m.of_opposite[i + more]);
+        min.set(k, std::min(m.of[i], m.of[i + more]));
+        max.set(k, -std::min(m.of_opposite[i], m.of_opposite[i + more]));
       };
       Block& block = level.at(column, row);
       put(least.across, 0, block.across_min, block.across_max);

@@ -17,11 +17,10 @@ constexpr int kCellsPerPatch = 2;  // of a grid, along each side
 constexpr float kRounding = 1e-4f;
 
 Float4 normal_to(const Float4& a, const Float4& b) {
-  const Eigen::Vector3f n = a.head<3>().cross(b.head<3>());
+  const Eigen::Vector3f n = a.xyz().cross(b.xyz());
   const float length = n.norm();
-  Float4 result = Float4::Zero();
-  if (length > 0) result.head<3>() = n / length;
-  return result;
+  if (!(length > 0)) return Float4::Zero();
+  return {n.x() / length, n.y() / length, n.z() / length, 0};
 }
 
 /// Shortest path lengths from `from` along the edges of some triangles.
@@ -306,7 +305,7 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
   std::vector<int> region;
   for (const int q : members) region.insert(region.end(), triangles(q).begin(), triangles(q).end());
   const std::size_t own = triangles(members[0]).size();
-  const Vec3 normal = mesh_parts_[parts_[members[0]].index].frame[2].head<3>().cast<double>();
+  const Vec3 normal = mesh_parts_[parts_[members[0]].index].frame[2].xyz().cast<double>();
   double facing = 1;
   for (const int t : region) {
     const auto [i, j, k] = surface.triangles[t];

@@ -702,7 +702,7 @@ bool Proximity::is_sharp(int vertex, const std::vector<Float4>& x) const {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (std::size_t f = 0; f < one_ring.size(); ++f) {
     const auto [i, j, k] = surface_.triangles[one_ring[f]];
-    const Eigen::Vector3f a = (x[j] - x[i]).head<3>(), b = (x[k] - x[i]).head<3>(), area = a.cross(b);
+    const Eigen::Vector3f a = (x[j] - x[i]).xyz(), b = (x[k] - x[i]).xyz(), area = a.cross(b);
     const float size = area.norm(),
                 longest_sq = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
     if (!(size > 0)) return true;

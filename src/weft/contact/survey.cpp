@@ -141,11 +141,11 @@ Survey::Result Survey::survey(const StepBodies& bodies, std::span<const Vec3Arra
 /// Bounds of cloth during the surveyed step, enlarged by `fall`.
 Survey::Region Survey::surveyed_region(const StepBodies& bodies, double fall) const {
   const SweptBox& bounds = clearance_.bounds();
-  const Float4 low = bounds.min + bounds.way_min.cwiseMin(0.0f),
-               high = bounds.max + bounds.way_max.cwiseMax(0.0f);
+  const Float4 low = bounds.min + bounds.way_min.cwiseMin(Float4::Zero()),
+               high = bounds.max + bounds.way_max.cwiseMax(Float4::Zero());
   const Vec3 origin = bodies.cloths[0].state->origin, margin = Vec3::Constant(fall);
   const double way = bounds.way_min.cwiseAbs().cwiseMax(bounds.way_max.cwiseAbs()).norm() + fall;
-  return {origin + low.head<3>().cast<double>() - margin, origin + high.head<3>().cast<double>() + margin,
+  return {origin + low.xyz().cast<double>() - margin, origin + high.xyz().cast<double>() + margin,
           2 * bodies.thickest + way + kRoomFromColliders};
 }
 

@@ -1,15 +1,11 @@
 #pragma once
 /// Private to contact/: a swept AABB in SIMD registers.
 
-#include <Eigen/Core>
-
+#include "weft/core/float4.h"
 #include "weft/core/vec.h"
 #include "weft/geometry/aabb.h"
 
 namespace weft::engine {
-
-/// A point or a vector in floats; the last component is 0 and pads the register.
-using Float4 = Eigen::Vector4f;
 
 inline Float4 to_float4(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
@@ -22,10 +18,9 @@ struct SweptBox {
 
   /// As MovingAabb::may_meet.
   bool may_meet(const SweptBox& other) const {
-    const Float4 towards = (other.way_max - way_min).cwiseMax(0.0f),
-                 away = (way_max - other.way_min).cwiseMax(0.0f);
-    return ((min - other.max).array() <= towards.array()).all() &&
-           ((other.min - max).array() <= away.array()).all();
+    const Float4 towards = (other.way_max - way_min).cwiseMax(Float4::Zero()),
+                 away = (way_max - other.way_min).cwiseMax(Float4::Zero());
+    return (min - other.max).is_at_most(towards) && (other.min - max).is_at_most(away);
   }
 
   void add(const Float4& place, const Float4& way) {

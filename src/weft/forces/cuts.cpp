@@ -85,7 +85,7 @@ class CutFinder {
   double bound(int particle) const { return bound_[particle]; }
 
   /// The worst cut of each chosen particle; without ends: none.
-  std::vector<Cut> find_worst(std::span<const char> is_chosen) const {
+  std::vector<Cut> find_worst(std::span<const char> is_chosen, std::span<const char> holds) const {
     std::vector<std::vector<Wedge>> wedges(x_.size());
     for (int t = 0; t < mesh_.num_triangles(); ++t) {
       const Triangle& corners = mesh_.triangles[t];
@@ -98,16 +98,18 @@ class CutFinder {
     for (int p = 0; std::cmp_less(p, x_.size()); ++p) {
       cuts[p].particle = p;
       if (wedges[p].empty()) continue;
-      if (const std::optional<OneRing> ring = arrange(std::move(wedges[p]))) find_worst(*ring, cuts[p]);
+      if (const std::optional<OneRing> ring = arrange(std::move(wedges[p])))
+        find_worst(*ring, holds, cuts[p]);
     }
     return cuts;
   }
 
  private:
-  void find_worst(const OneRing& ring, Cut& worst) const {
+  void find_worst(const OneRing& ring, std::span<const char> holds, Cut& worst) const {
     const int count = static_cast<int>(ring.wedges.size());
     for (int begin = 0; begin < (ring.is_closed() ? count : 1); ++begin) {
       for (int end = begin + 1; end < count; ++end) {
+        if (holds[ring.spokes[end]] || (ring.is_closed() && holds[ring.spokes[begin]])) continue;
         const double tension = find_tension(ring, worst.particle, begin, end);
         if (!(tension > worst.tension)) continue;
         worst.ends = {ring.spokes[end], ring.is_closed() ? ring.spokes[begin] : -1};
@@ -157,7 +159,7 @@ std::vector<Cut> find_cuts(const ClothModel& model, const ClothState& state, std
   }
   std::vector<Cut> cuts;
   if (!is_any) return cuts;
-  const std::vector<Cut> worst = finder.find_worst(is_chosen);
+  const std::vector<Cut> worst = finder.find_worst(is_chosen, holds);
   std::vector<char> is_exceeded(holds.size(), 0);  // by a neighbour
   for (const Triangle& t : model.topology->mesh.triangles) {
     for (const int a : t) {

@@ -2,6 +2,7 @@
 
 #include "weft/core/file_name.h"
 #include "weft/face/convert.h"
+#include "weft/face/world_impl.h"
 #include "weft/io/glb_writer.h"
 #include "weft/io/obj_reader.h"
 #include "weft/mesh/soup.h"
@@ -42,8 +43,8 @@ std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
 /// The faces of cloth `c` as they were given, or those of its soup.
 MeshFaces faces_of(const SceneRun& run, std::size_t c) {
   if (!is_soup(run, c)) return read_faces(run.scene().cloths[c]);
-  const ClothTopology& topology = *run.world().model(run.world().cloth(static_cast<int>(c))).topology;
-  return make_faces(make_soup(topology.mesh.num_triangles()));
+  const RestShape& rest = WorldAccess::rest(run.public_world(), run.world().cloth(static_cast<int>(c)));
+  return make_faces(make_soup(rest.topology->mesh.num_triangles()), rest.uv);
 }
 
 /// x, y, z of each point.
@@ -63,7 +64,7 @@ void GlbSink::make_meshes(const SceneRun& run) {
   meshes_ = make_animation(run.scene(), run.world());
   const weft::World& world = run.public_world();
   for (std::size_t c = 0; c < meshes_.cloths.size(); ++c)
-    if (!is_soup(run, c)) meshes_.cloths[c].shown = show_vertices(world, world.cloth(static_cast<int>(c)));
+    meshes_.cloths[c].shown = show_vertices(world, world.cloth(static_cast<int>(c)));
 }
 
 void GlbSink::begin(SceneRun& run, RunReport& report) {

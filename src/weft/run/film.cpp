@@ -55,6 +55,22 @@ std::vector<float> positions(const ClothState& state) {
   return values;
 }
 
+/// Numbers of vertices, `width` each, as those of the triangles' corners.
+std::vector<float> of_corners(const std::vector<Triangle>& triangles, int width,
+                              const std::vector<float>& of_vertices) {
+  std::vector<float> result;
+  for (const Triangle& t : triangles) {
+    for (const int v : t) {
+      for (int n = 0; n < width; ++n) result.push_back(of_vertices[static_cast<std::size_t>(v) * width + n]);
+    }
+  }
+  return result;
+}
+
+std::vector<float> make_soup_coordinates(const ClothTopology& whole) {
+  return of_corners(whole.mesh.triangles, 2, make_fabric_coordinates(whole));
+}
+
 }  // namespace
 
 std::vector<float> make_fabric_coordinates(const ClothTopology& topology) {
@@ -82,8 +98,8 @@ Animation make_animation(const World& world, TornCloth torn) {
     const bool is_soup = torn == TornCloth::soup && world.can_tear(world.cloth(c));
     mesh.triangles = is_soup ? make_soup(topology.mesh.num_triangles()) : topology.mesh.triangles;
     mesh.color = ClothSceneDesc().color;
-    mesh.fabric_coordinates = make_fabric_coordinates(topology);
-    if (is_soup) mesh.fabric_coordinates = show(world, world.cloth(c), 2, std::move(mesh.fabric_coordinates));
+    mesh.fabric_coordinates = is_soup ? make_soup_coordinates(world.whole_topology(world.cloth(c)))
+                                      : make_fabric_coordinates(topology);
     animation.cloths.push_back(std::move(mesh));
   }
   for (const Collider& collider : world.colliders()) animation.bodies.push_back(show(collider));
@@ -120,14 +136,7 @@ AnimationFrame capture_frame(const World& world, TornCloth torn) {
 
 std::vector<float> show(const World& world, ClothId cloth, int width, std::vector<float> of_particles) {
   if (!world.can_tear(cloth)) return of_particles;
-  std::vector<float> of_corners;
-  for (const Triangle& t : world.model(cloth).topology->mesh.triangles) {
-    for (const int i : t) {
-      for (int n = 0; n < width; ++n)
-        of_corners.push_back(of_particles[static_cast<std::size_t>(i) * width + n]);
-    }
-  }
-  return of_corners;
+  return of_corners(world.model(cloth).topology->mesh.triangles, width, of_particles);
 }
 
 void FilmSink::begin(SceneRun& run, RunReport&) {

@@ -14,6 +14,13 @@
 namespace weft::engine {
 namespace {
 
+bool has_torn(const World& world) {
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    if (!world.state(world.cloth(c)).torn.empty()) return true;
+  }
+  return false;
+}
+
 constexpr double kPatience = 0.05;         // maximum delay to real time before slow motion [s]
 constexpr double kWindow = 1;              // for measuring the pace [s]
 constexpr double kSlow = 0.95;             // of real time: a lower pace is too heavy [1]
@@ -415,7 +422,7 @@ void LiveSimulation::apply(const SceneDesc& wanted) {
 /// A new world. Pins depend on initial positions: it is built at the start, and the state put in.
 void LiveSimulation::rebuild(SceneDesc scene, bool keeps_state) {
   std::optional<World::Snapshot> now;
-  if (keeps_state) now = world().snapshot();
+  if (keeps_state && !has_torn(world())) now = world().snapshot();
   auto run = std::make_unique<SceneRun>(scene, jobs_);
   run_ = std::move(run);
   built_ = std::move(scene);

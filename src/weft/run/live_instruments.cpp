@@ -14,8 +14,7 @@ namespace {
 
 std::vector<std::vector<float>> read_colors(ParticleValue value, const World& world) {
   std::vector<std::vector<float>> values;
-  for (int c = 0; c < world.num_cloths(); ++c)
-    values.push_back(compute_values(value, world, world.cloth(c)));
+  for (int c = 0; c < world.num_cloths(); ++c) values.push_back(compute_values(value, world, world.cloth(c)));
   return values;
 }
 
@@ -102,7 +101,7 @@ std::vector<LivePins> find_pins(const SceneDesc& scene, const weft::World& world
     const ClothId id = world.cloth(c);
     LivePins pins;
     const std::vector<int>& particle_of_vertex = world.notes(id).particle_of_vertex;
-    pins.vertex_of_particle.resize(world.num_particles(id));
+    pins.vertex_of_particle.resize(world.num_particles(id), -1);
     for (std::size_t v = particle_of_vertex.size(); v-- > 0;) {
       if (particle_of_vertex[v] >= 0) pins.vertex_of_particle[particle_of_vertex[v]] = static_cast<int>(v);
     }

@@ -75,7 +75,7 @@ struct ProbeReading {
 
 /// Pins of a cloth.
 struct LivePins {
-  std::vector<int> vertex_of_particle;  // numbered as ParticleIndices does
+  std::vector<int> vertex_of_particle;  // numbered as ParticleIndices does; -1: none
   PinnedVertices vertices;              // by the pins of the scene that is simulated
   std::vector<int> particles;           // of all pins, soft ones too, ascending
 };

@@ -113,6 +113,19 @@ FramesAndWorld open_scene(const PastRun& run) {
   return result;
 }
 
+/// The frames alone, if a cloth tears: they do not show its state.
+FramesAndWorld without_torn_world(FramesAndWorld all) {
+  const World& world = all.world->world();
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothId cloth = world.cloth(c);
+    if (!world.can_tear(cloth)) continue;
+    const std::string why_not =
+        "cloth \"" + world.name(cloth) + "\" tears: its past frames are positions only";
+    return {.why_not = why_not, .frames = std::make_unique<FramesOfScene>(std::move(all))};
+  }
+  return all;
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> open_frames(const fs::path& path) {
@@ -127,17 +140,9 @@ FramesAndWorld open_frames_and_world(const fs::path& path) {
   if (!fs::is_directory(path))
     return {.why_not = path.string() + " contains positions only", .frames = open_glb(path)};
   const PastRun run = read_past_run(path);
-  if (!run.frames.empty()) return open_unfinished(run);
+  if (!run.frames.empty()) return without_torn_world(open_unfinished(run));
   try {
-    FramesAndWorld all = open_scene(run);
-    const World& world = all.world->world();
-    for (int c = 0; c < world.num_cloths(); ++c) {
-      if (!world.can_tear(world.cloth(c))) continue;
-      return {
-          .why_not = "cloth \"" + world.name(world.cloth(c)) + "\" tears: its past frames are positions only",
-          .frames = std::make_unique<FramesOfScene>(std::move(all))};
-    }
-    return all;
+    return without_torn_world(open_scene(run));
   } catch (const InputError& error) {
     if (run.animation.empty()) throw;
     return {.why_not = error.what(), .frames = open_glb(run.animation)};

@@ -47,7 +47,7 @@ struct RunReport {
   int retries = 0;                    // parts that were too long and were repeated [1]
   std::map<std::string, int> faults;  // reasons for that, the worst of a step: "stretch", "energy", … [1]
   WorkTimes work;                     // time of all steps by phase
-  int torn = 0;                       // vertices at which cloth tore [1]
+  int torn = 0;                       // cuts through vertices, where cloth tore [1]
   // Work of the CCD fail-safe (contact/ccd_fail_safe.h) over the run; empty without contact:
   std::optional<int> contact_hits;                     // CCD hits: pairs of features [1]
   std::optional<int> contact_zones;                    // rigid impact zones [1]

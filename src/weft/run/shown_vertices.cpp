@@ -1,11 +1,13 @@
 #include "weft/run/shown_vertices.h"
 
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
 
 #include "weft/face/convert.h"
 #include "weft/face/world_impl.h"
+#include "weft/mesh/soup.h"
 
 namespace weft::engine {
 namespace {
@@ -57,10 +59,27 @@ bool are_particles(const ShownVertices& shown, int num_particles) {
   return shown.texture.empty() && shown.particles == all;
 }
 
+/// Of a triangle soup: its corners.
+std::optional<ShownVertices> show_corners(const RestShape& rest) {
+  if (rest.uv.empty()) return std::nullopt;
+  ShownVertices shown{.particles = std::vector<int>(3 * rest.uv.size()),
+                      .triangles = make_soup(static_cast<int>(rest.uv.size())),
+                      .rest = std::vector<float>(9 * rest.uv.size(), 0.0f),
+                      .texture = {}};
+  std::iota(shown.particles.begin(), shown.particles.end(), 0);
+  for (const CornerUv& corners : rest.uv) {
+    for (const Eigen::Vector2d& uv : corners) {
+      for (const double t : uv) shown.texture.push_back(std::isfinite(t) ? static_cast<float>(t) : 0.0f);
+    }
+  }
+  return shown;
+}
+
 }  // namespace
 
 std::optional<ShownVertices> show_vertices(const weft::World& world, ClothId cloth) {
   const RestShape& rest = WorldAccess::rest(world, cloth);
+  if (WorldAccess::engine(world).can_tear(cloth)) return show_corners(rest);
   const std::vector<Triangle>& triangles = rest.topology->mesh.triangles;
   Builder builder(world.notes(cloth).particle_of_vertex, to_engine(world.vertex_positions(cloth)),
                   !rest.uv.empty());

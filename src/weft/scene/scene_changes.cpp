@@ -20,11 +20,12 @@ constexpr double kLag = 0.07;       // of a gliding collider [s]
 constexpr double kMaxTurn = 6.3;    // of a gliding collider [rad/s]
 constexpr double kArrival = 1e-4;   // distance to the place, and angle, that a glide ends within [m], [rad]
 
-/// A fabric stays a fabric with the same membrane and warp, springs stay springs.
+/// A fabric stays a fabric with the same membrane and warp, springs stay springs; cloth that tears, or does not, also.
 bool has_same_kind(const ClothSceneDesc& a, const ClothSceneDesc& b) {
   if (a.fabric.has_value() != b.fabric.has_value() || a.has_own_thickness != b.has_own_thickness)
     return false;
-  return !a.fabric || (a.fabric->membrane == b.fabric->membrane && a.fabric->warp == b.fabric->warp);
+  return !a.fabric || (a.fabric->membrane == b.fabric->membrane && a.fabric->warp == b.fabric->warp &&
+                       (a.fabric->numbers.strength > 0) == (b.fabric->numbers.strength > 0));
 }
 
 bool has_same_fabric(const ClothSceneDesc& a, const ClothSceneDesc& b) {

@@ -42,8 +42,9 @@ std::vector<int> break_edges(const std::vector<Cut>& cuts, const RestMesh& whole
   return break_edges(whole, edges, broken);
 }
 
-/// Moves the particles with new parts apart.
-void open_tears(const std::vector<Triangle>& triangles, const std::vector<int>& sources, ClothState& state) {
+/// Moves the parts of particles apart, at most by `most` each [m].
+void open_tears(const std::vector<Triangle>& triangles, const std::vector<int>& sources, double most,
+                ClothState& state) {
   std::vector<int> num_parts(sources.size(), 0);
   for (const int source : sources) ++num_parts[source];
   std::vector<char> is_part;
@@ -51,7 +52,9 @@ void open_tears(const std::vector<Triangle>& triangles, const std::vector<int>& 
   std::vector<Vec3> positions = positions_of(state);
   draw_in(triangles, is_part, positions);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (is_part[i]) state.set_position(i, positions[i]);
+    if (!is_part[i]) continue;
+    const Vec3 from = state.position(i), way = positions[i] - from;
+    state.set_position(i, from + std::min(1.0, most / std::max(way.norm(), most)) * way);
   }
 }
 
@@ -106,7 +109,7 @@ int World::tear() {
   return count;
 }
 
-/// Particles that are pinned or sewn stay whole.
+/// Particles that are pinned or sewn stay whole: no cut goes through them, or to them.
 int World::tear(ClothId id) {
   Cloth& cloth = at(id);
   std::vector<char> holds = cloth.is_pinned;
@@ -124,7 +127,7 @@ int World::tear(ClothId id) {
   const std::vector<int> to = find_same_corners(before.triangles, before.num_vertices(), triangles);
   const std::vector<int> sources = find_same_corners(triangles, model->num_particles(), before.triangles);
   ClothState state = split_particles(cloth.state, sources, std::move(broken));
-  open_tears(triangles, sources, state);
+  open_tears(triangles, sources, cloth.model->material.thickness / 4, state);
   for (Pin& pin : held.pins) move(to, pin.particles);
   for (Attachment& attachment : held.attachments) move(to, attachment.particles);
   if (!held.forces.empty()) {
@@ -133,6 +136,8 @@ int World::tear(ClothId id) {
     held.forces = std::move(forces);
   }
   held.gas = {};
+  for (CaughtParticle& caught : state.caught) caught.particle = to[caught.particle];
+  std::ranges::sort(state.caught, {}, &CaughtParticle::particle);
   cloth.model = model;
   cloth.state = std::move(state);
   hold(id, std::move(held));

@@ -911,6 +911,7 @@ void World::accept(const StepReport& part, StepReport& report) {
 /// Rolls the failed step back.
 StepReport World::fail(const StepCheck& check, StepReport report) {
   report.ok = false;
+  report.torn = 0;
   last_step_ = 0;
   report.warnings.push_back({WarningCode::non_finite, check.cloth, check.particle});
   time_ = before_step_.time;
@@ -1073,8 +1074,8 @@ void World::restore(const Snapshot& snapshot) {
   part_ = snapshot.part;
   calm_ = snapshot.calm;
   last_step_ = 0;
-  for (std::size_t c = 0; c < cloths_.size(); ++c) cloths_[c].model = std::move(models[c]);
-  restore_states(snapshot.states);
+  for (std::size_t c = 0; c < cloths_.size(); ++c)
+    put_back(snapshot.states[c], std::move(models[c]), cloths_[c]);
   for (std::size_t c = 0; c < snapshot.held.size(); ++c) hold(cloth(static_cast<int>(c)), snapshot.held[c]);
   const auto is_by_hand = [](const Guide& g) { return g.moves_by_hand || g.deforms_by_hand; };
   if (std::ranges::any_of(guides_, is_by_hand) || std::ranges::any_of(snapshot.guides, is_by_hand))
@@ -1089,10 +1090,15 @@ void World::restore(const Snapshot& snapshot) {
 }
 
 void World::restore_states(const std::vector<ClothState>& states) {
-  for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    cloths_[c].model = model_for(cloths_[c], states[c].torn);
-    cloths_[c].state = states[c];
-  }
+  for (std::size_t c = 0; c < cloths_.size(); ++c)
+    put_back(states[c], model_for(cloths_[c], states[c].torn), cloths_[c]);
+}
+
+/// Contacts refer to particles: those of cloth that has other tears are forgotten.
+void World::put_back(const ClothState& state, std::shared_ptr<const ClothModel> model, Cloth& cloth) {
+  if (state.torn != cloth.state.torn) contact_system_ = {};
+  cloth.model = std::move(model);
+  cloth.state = state;
 }
 
 std::uint64_t World::state_hash() const {

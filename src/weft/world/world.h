@@ -184,6 +184,10 @@ class World {
   const ClothModel& model(ClothId cloth) const { return *at(cloth).model; }
   const ClothState& state(ClothId cloth) const { return at(cloth).state; }
   bool can_tear(ClothId cloth) const { return at(cloth).tearing != nullptr; }
+  /// Of the cloth without its tears.
+  const ClothTopology& whole_topology(ClothId cloth) const {
+    return can_tear(cloth) ? *at(cloth).tearing->whole : *at(cloth).model->topology;
+  }
   /// A state from before the last tears, with the particles of now.
   ClothState split(ClothId cloth, const ClothState& state) const;
   const Vec3& attachment_impulse(ClothId cloth) const {
@@ -317,6 +321,7 @@ class World {
   int tear();
   int tear(ClothId id);
   void restore_states(const std::vector<ClothState>& states);
+  void put_back(const ClothState& state, std::shared_ptr<const ClothModel> model, Cloth& cloth);
   StepReport fail(const StepCheck& check, StepReport report);
   void begin_contact(double time, double dt);
   void run_ccd_fail_safe(StepReport& report);
