@@ -198,6 +198,7 @@ bool LiveSide::update() {
   if (start_ != newest_.start) {
     start_ = newest_.start;
     meshes_ = without_frames(*start_);
+    topologies_.clear();
   }
   frame_ = newest_.meshes;
   ++num_updates_;
@@ -205,6 +206,7 @@ bool LiveSide::update() {
   while (samples_.size() > kSamples) samples_.pop_front();
   newest_.samples.clear();
   for (std::size_t c = 0; c < newest_.topologies.size(); ++c) {
+    if (c < topologies_.size() && topologies_[c] == newest_.topologies[c]) continue;
     meshes_.cloths[c].triangles = newest_.topologies[c]->mesh.triangles;
     meshes_.cloths[c].fabric_coordinates =
         make_fabric_coordinates(*newest_.topologies[c]);  // torn cloth has more

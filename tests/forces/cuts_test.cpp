@@ -97,13 +97,19 @@ TEST(Cuts, CompressedSlackAndRotatedClothHasNone) {
   }
 }
 
-TEST(Cuts, ParticlesThatHoldHaveNone) {
+TEST(Cuts, ParticlesThatHoldHaveNoneAndEndNone) {
+  constexpr int kColumns = 11, kFree = 6;
   Sheet sheet = stretch(GridDiagonals::parallel, 0, along(1.1, 1));
   std::ranges::fill(sheet.holds, 1);
-  sheet.holds[50] = 0;
+  sheet.holds[4 * kColumns + kFree] = 0;  // all cuts through it end at particles that hold
+  EXPECT_TRUE(find_cuts(*sheet.model, sheet.state, sheet.holds, 1).empty());
+  for (std::size_t i = kFree; i < sheet.holds.size(); i += kColumns) sheet.holds[i] = 0;
   const std::vector<Cut> cuts = find_cuts(*sheet.model, sheet.state, sheet.holds, 1);
-  ASSERT_EQ(cuts.size(), 1U);
-  EXPECT_EQ(cuts[0].particle, 50);
+  ASSERT_FALSE(cuts.empty());
+  for (const Cut& cut : cuts) {
+    EXPECT_EQ(cut.particle % kColumns, kFree);
+    for (const int end : cut.ends) EXPECT_TRUE(end < 0 || end % kColumns == kFree);
+  }
 }
 
 TEST(Cuts, FloatingPointRotationsChangeTheTensionByRoundingOnly) {

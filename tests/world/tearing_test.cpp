@@ -159,7 +159,7 @@ TEST(Tearing, ANotchedStripTearsAtTheNotchAtTheLoadOfItsStrength) {
     load = test.load();
     if (test.pull(kSpeed / 4).torn > 0) break;
   }
-  // Tension rises with the load: from two thirds of the strength follows the load that tears.
+  // Tension rises with the load: from 0.7 of the strength follows the load that tears.
   const double expected = lower_load * kStrength / lower_tension;
   ASSERT_GT(lower_load, 0);
   EXPECT_NEAR(load, expected, 0.05 * expected);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "weft/core/pack.h"
 #include "weft/core/vec.h"
 
 namespace weft::engine {
@@ -20,7 +21,7 @@ class Float4 {
   void set(int lane, float value) { lanes_[lane] = value; }
   Eigen::Vector3f xyz() const { return {lanes_[0], lanes_[1], lanes_[2]}; }
 
-  Float4 operator-() const { return Float4(-lanes_); }
+  Float4 operator-() const { return -1.0f * *this; }
   Float4 operator+(const Float4& b) const { return Float4(lanes_ + b.lanes_); }
   Float4 operator-(const Float4& b) const { return Float4(lanes_ - b.lanes_); }
   Float4 operator/(float b) const { return Float4(lanes_ / Constant(b).lanes_); }
@@ -29,30 +30,25 @@ class Float4 {
   Float4& operator-=(const Float4& b) { return *this = *this - b; }
   Float4& operator/=(float b) { return *this = *this / b; }
 
-  Float4 cwiseMin(const Float4& b) const { return Float4(b.lanes_ < lanes_ ? b.lanes_ : lanes_); }
-  Float4 cwiseMax(const Float4& b) const { return Float4(lanes_ < b.lanes_ ? b.lanes_ : lanes_); }
-  Float4 cwiseAbs() const { return Float4(lanes_ < 0.0f ? -lanes_ : lanes_); }
+  Float4 cwiseMin(const Float4& b) const { return Float4(select_less(b.lanes_, lanes_, b.lanes_, lanes_)); }
+  Float4 cwiseMax(const Float4& b) const { return Float4(select_less(lanes_, b.lanes_, b.lanes_, lanes_)); }
+  Float4 cwiseAbs() const { return Float4(select_less(lanes_, Zero().lanes_, (-*this).lanes_, lanes_)); }
   float maxCoeff() const { return std::max(std::max(lanes_[0], lanes_[1]), std::max(lanes_[2], lanes_[3])); }
 
   /// Whether every component is at most that of b.
-  bool is_at_most(const Float4& b) const {
-    const auto is = lanes_ <= b.lanes_;
-    return (is[0] & is[1] & is[2] & is[3]) != 0;
-  }
+  bool is_at_most(const Float4& b) const { return are_at_most(lanes_, b.lanes_); }
 
   float dot(const Float4& b) const {
-    const Lanes product = lanes_ * b.lanes_;
+    const Pack<4> product = lanes_ * b.lanes_;
     return (product[0] + product[1]) + (product[2] + product[3]);
   }
   float squaredNorm() const { return dot(*this); }
   float norm() const { return std::sqrt(squaredNorm()); }
 
  private:
-  using Lanes [[gnu::vector_size(4 * sizeof(float))]] = float;
+  explicit Float4(const Pack<4>& lanes) : lanes_(lanes) {}
 
-  explicit Float4(const Lanes& lanes) : lanes_(lanes) {}
-
-  Lanes lanes_;
+  Pack<4> lanes_;
 };
 
 }  // namespace weft::engine

@@ -49,6 +49,12 @@ template <class V>
 WEFT_ALWAYS_INLINE V select_less(V value, V bound, V a, V b) {
   return value < bound ? a : b;
 }
+
+/// Whether a[lane] <= b[lane] in all four lanes.
+WEFT_ALWAYS_INLINE bool are_at_most(Pack<4> a, Pack<4> b) {
+  const Mask<4> is = a <= b;
+  return (is[0] & is[1] & is[2] & is[3]) != 0;
+}
 #else
 template <int W>
 struct Pack {
@@ -111,6 +117,10 @@ Pack<W> select_less(const Pack<W>& value, const Pack<W>& bound, const Pack<W>& a
   Pack<W> r;
   for (int l = 0; l < W; ++l) r[l] = value[l] < bound[l] ? a[l] : b[l];
   return r;
+}
+
+inline bool are_at_most(const Pack<4>& a, const Pack<4>& b) {
+  return a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && a[3] <= b[3];
 }
 #endif
 

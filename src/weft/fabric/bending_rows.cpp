@@ -91,8 +91,7 @@ class Neighbourhood {
   /// The corner `steps` after `center` in the triangle's orientation.
   int next_corner(int t, int center, int steps) const {
     const Triangle& v = mesh_.triangles[t];
-    const int at = v[0] == center ? 0 : v[1] == center ? 1 : 2;
-    return v[(at + steps) % 3];
+    return v[(corner_of(v, center) + steps) % 3];
   }
 
   /// The only triangle in which `from` follows `center`, -1 if there is none or more than one.

@@ -29,8 +29,8 @@ struct Cut {
 };
 
 /// The cuts with more tension than `strength` [N/m], of each particle the worst, if none of its neighbours has a worse
-/// one. Particles that hold (num_particles) have none and end none, nor those whose triangles are not one sequence, each beside the next. Only the forces
-/// of membranes count, without damping. The cloth has membranes.
+/// one. Particles that hold (num_particles) have none and end none. Nor have those whose triangles are not one sequence,
+/// each beside the next. Only the forces of membranes count, without damping. The cloth has membranes.
 std::vector<Cut> find_cuts(const ClothModel& model, const ClothState& state, std::span<const char> holds,
                            double strength);
 

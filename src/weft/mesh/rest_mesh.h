@@ -27,9 +27,7 @@ struct RestMesh : TriangleMesh {
   /// From vertex a to vertex b of triangle t, at rest [m].
   Vec3 between(int t, int a, int b) const {
     if (at_rest.empty()) return positions[b] - positions[a];
-    const Triangle& v = triangles[t];
-    const auto at = [&](int vertex) { return at_rest[t][v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2]; };
-    return at(b) - at(a);
+    return at_rest[t][corner_of(triangles[t], b)] - at_rest[t][corner_of(triangles[t], a)];
   }
 };
 

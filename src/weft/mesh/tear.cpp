@@ -28,10 +28,6 @@ class CornerSets {
   std::vector<int> parent_;
 };
 
-int corner_at(const Triangle& triangle, int vertex) {
-  return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
-}
-
 }  // namespace
 
 RestMesh tear_mesh(const RestMesh& whole, std::span<const int> broken) {
@@ -48,7 +44,7 @@ RestMesh tear_mesh(const RestMesh& whole, std::span<const int> broken) {
       if (is_broken) is_at_tear[v] = 1;
       for (std::size_t k = 1; !is_broken && k < same.size(); ++k) {
         const int s = same[k - 1].triangle, t = same[k].triangle;
-        sets.unite(3 * s + corner_at(whole.triangles[s], v), 3 * t + corner_at(whole.triangles[t], v));
+        sets.unite(3 * s + corner_of(whole.triangles[s], v), 3 * t + corner_of(whole.triangles[t], v));
       }
     }
   });

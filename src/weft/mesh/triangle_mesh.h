@@ -12,6 +12,11 @@ namespace weft::engine {
 /// Texture coordinates of a triangle's corners: a vertex on a texture seam has several.
 using CornerUv = std::array<Eigen::Vector2d, 3>;
 
+/// The corner, 0 to 2, at which a triangle has one of its vertices.
+inline int corner_of(const Triangle& triangle, int vertex) {
+  return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+}
+
 /// The places of a triangle's corners [m].
 using TriangleCorners = std::array<Vec3, 3>;
 

@@ -1,8 +1,8 @@
 #pragma once
 /// A cloth's constants: material and topology. Its variables are in ClothState.
 ///
-/// Topology changes only where cloth tears (torn_cloth.h). Material numbers (mass, stiffness, damping) may be replaced between any two steps:
-/// that creates a new ClothModel on the same ClothTopology, and recomputes only numbers.
+/// Topology changes only where cloth tears (torn_cloth.h). Material numbers (mass, stiffness, damping) may be replaced
+/// between any two steps: that creates a new ClothModel on the same ClothTopology, and recomputes only numbers.
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "weft/model/torn_cloth.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "weft/mesh/tear.h"
 
@@ -46,22 +46,6 @@ ClothState split_particles(const ClothState& state, std::span<const int> sources
     split(sources, *values);
   result.torn = std::move(broken);
   return result;
-}
-
-std::vector<int> break_edges(const RestMesh& whole, std::span<const std::array<int, 2>> edges,
-                             std::span<const int> broken) {
-  std::vector<int> all(broken.begin(), broken.end());
-  const std::vector<Edge> known = build_edges(whole);
-  for (const auto& [a, b] : edges) {
-    const std::array wanted = {std::min(a, b), std::max(a, b)};
-    const auto found = std::ranges::lower_bound(known, wanted, {}, [](const Edge& e) {
-      return std::array{e.a, e.b};
-    });
-    all.push_back(static_cast<int>(found - known.begin()));
-  }
-  std::ranges::sort(all);
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all;
 }
 
 }  // namespace weft::engine

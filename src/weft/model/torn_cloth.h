@@ -1,7 +1,6 @@
 #pragma once
 /// Cloth that can tear: its models and states, whatever has torn.
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,9 +25,5 @@ std::shared_ptr<const ClothModel> build_torn_model(const TearingCloth& cloth, co
 
 /// The state with more particles: of each, the present one that it is or comes from. Sets ClothState::torn to `broken`.
 ClothState split_particles(const ClothState& state, std::span<const int> sources, std::vector<int> broken);
-
-/// Breaks the edges between pairs of vertices of the whole mesh, beside those that are broken. Returns all of them.
-std::vector<int> break_edges(const RestMesh& whole, std::span<const std::array<int, 2>> edges,
-                             std::span<const int> broken);
 
 }  // namespace weft::engine

@@ -146,7 +146,9 @@ DrawnMesh join(const DrawnMesh& soup, const ClothTopology& topology) {
 }
 
 void draw_springs(const DrawnMesh& shown, const ClothTopology& topology, Picture& picture) {
-  const DrawnMesh cloth = is_soup(shown.triangles) ? join(shown, topology) : shown;
+  std::optional<DrawnMesh> joined;
+  if (is_soup(shown.triangles)) joined = join(shown, topology);
+  const DrawnMesh& cloth = joined ? *joined : shown;
   const std::vector<float> normals = compute_vertex_normals(cloth.triangles, cloth.positions);
   DrawnLines structural{.ends = {}, .color = kStructural, .width = 2.2},
       shear{.ends = {}, .color = kShear, .width = 2.2}, bend{.ends = {}, .color = kBend, .width = 1.4};

@@ -24,7 +24,7 @@ std::vector<std::string> file_names(const World& world) {
 
 constexpr std::size_t kMostFrames = 1000;  // of a .glb without a warning
 
-bool is_soup(const SceneRun& run, std::size_t c) {
+bool can_tear(const SceneRun& run, std::size_t c) {
   return run.world().can_tear(run.world().cloth(static_cast<int>(c)));
 }
 
@@ -32,7 +32,7 @@ bool is_soup(const SceneRun& run, std::size_t c) {
 std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
   const weft::World& world = run.public_world();
   const ClothId id = world.cloth(static_cast<int>(c));
-  if (!is_soup(run, c)) return to_engine(world.vertex_positions(id));
+  if (!can_tear(run, c)) return to_engine(world.vertex_positions(id));
   std::vector<Vec3> corners;
   for (const Triangle& t : world.triangles(id)) {
     for (const int i : t) corners.push_back(run.world().state(id).position(i));
@@ -42,7 +42,7 @@ std::vector<Vec3> vertices_of(const SceneRun& run, std::size_t c) {
 
 /// The faces of cloth `c` as they were given, or those of its soup.
 MeshFaces faces_of(const SceneRun& run, std::size_t c) {
-  if (!is_soup(run, c)) return read_faces(run.scene().cloths[c]);
+  if (!can_tear(run, c)) return read_faces(run.scene().cloths[c]);
   const RestShape& rest = WorldAccess::rest(run.public_world(), run.world().cloth(static_cast<int>(c)));
   return make_faces(make_soup(rest.topology->mesh.num_triangles()), rest.uv);
 }
@@ -58,6 +58,12 @@ std::vector<float> to_floats(const std::vector<Vec3>& points) {
 }
 
 }  // namespace
+
+std::size_t count_points(const SceneRun& run, int c) {
+  const ClothId cloth = run.public_world().cloth(c);
+  if (can_tear(run, static_cast<std::size_t>(c))) return 3 * run.public_world().triangles(cloth).size();
+  return run.public_world().notes(cloth).particle_of_vertex.size();
+}
 
 /// With the vertices of the cloths' files.
 void GlbSink::make_meshes(const SceneRun& run) {
@@ -133,7 +139,7 @@ void Pc2Sink::open(const SceneRun& run, int num_frames) {
   for (const std::string& name : file_names(run.world())) {
     const Names& own = names_.emplace_back(Names{name + kCacheEnding, name + kMeshEnding});
     for (const std::string& file : {own.cache, own.mesh}) require_writable(folder_ / file);
-    const std::size_t num_points = vertices_of(run, caches_.size()).size();
+    const std::size_t num_points = count_points(run, static_cast<int>(caches_.size()));
     caches_.push_back(std::make_unique<Cache>(folder_ / own.cache, part_ / own.cache,
                                               static_cast<int>(num_points), num_frames));
     const std::uintmax_t kept = num_frames > 0 ? std::filesystem::file_size(part_ / own.mesh) : 0;

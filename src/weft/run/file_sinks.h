@@ -43,6 +43,10 @@ class GlbSink : public FrameSink {
   std::optional<StagedFile> glb_;
 };
 
+/// The number of points that files have of cloth `c`: vertices of its mesh as it was given, or corners of triangles where
+/// it tears.
+std::size_t count_points(const SceneRun& run, int c);
+
 inline constexpr const char* kCacheEnding = ".pc2";
 inline constexpr const char* kMeshEnding = ".mesh.obj";
 

@@ -133,9 +133,9 @@ class AnimationFrames {
     result.solid = solid_;
     for (std::size_t c = 0; c < meshes_.cloths.size(); ++c) {
       const AnimatedCloth& cloth = meshes_.cloths[c];
-      const bool is_joined = !is_soup(cloth.triangles);
-      if (!is_joined) result.joined.push_back(join_soup(cloth.triangles, frame.cloths[c]));
-      add_cloth(cloth.name, is_joined ? cloth.triangles : result.joined.back(), to_positions(frame.cloths[c]),
+      const bool tears = is_soup(cloth.triangles);
+      if (tears) result.joined.push_back(join_soup(cloth.triangles, frame.cloths[c]));
+      add_cloth(cloth.name, tears ? result.joined.back() : cloth.triangles, to_positions(frame.cloths[c]),
                 result);
     }
     for (std::size_t b = 0; b < meshes_.bodies.size(); ++b) {

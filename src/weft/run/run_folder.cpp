@@ -231,12 +231,6 @@ class RunFiles : public FrameSink {
   }
 
  private:
-  /// Of a cloth in point caches.
-  static std::size_t num_shown_vertices(const SceneRun& run, ClothId cloth) {
-    if (run.world().can_tear(cloth)) return 3 * run.public_world().triangles(cloth).size();
-    return run.public_world().notes(cloth).particle_of_vertex.size();
-  }
-
   void list_cloths(const SceneRun& run) {
     const weft::World& world = run.public_world();
     for (int c = 0; c < world.num_cloths(); ++c) {
@@ -245,7 +239,7 @@ class RunFiles : public FrameSink {
                          {"positions", pc2_ ? Json(pc2_->names()[c].cache) : Json(nullptr)},
                          {"mesh", pc2_ ? Json(pc2_->names()[c].mesh) : Json(nullptr)},
                          {"color", run.scene().cloths[c].color},
-                         {"vertices", num_shown_vertices(run, cloth)},
+                         {"vertices", count_points(run, c)},
                          {"particles", run.world().whole_topology(cloth).num_particles()}});
     }
     fps_ = run.scene().fps;

@@ -10,17 +10,21 @@
 namespace weft::engine {
 namespace {
 
+/// Edges of the whole mesh, and its vertices by particle of torn cloth.
+struct WholeMesh {
+  std::vector<Edge> edges;
+  std::vector<int> vertex;
+};
+
 /// Of the cuts those at the ends of tears, and the worst of the others: where one tear begins, tension beside it falls.
-std::vector<Cut> choose(const std::vector<Cut>& cuts, const RestMesh& whole, const RestMesh& torn,
+std::vector<Cut> choose(const std::vector<Cut>& cuts, const WholeMesh& whole,
                         const std::vector<int>& broken) {
-  const std::vector<Edge> edges = broken.empty() ? std::vector<Edge>() : build_edges(whole);
-  std::vector<char> is_at_tear(whole.positions.size(), 0);
-  for (const int e : broken) is_at_tear[edges[e].a] = is_at_tear[edges[e].b] = 1;
-  const std::vector<int> vertex = find_same_corners(torn.triangles, torn.num_vertices(), whole.triangles);
+  std::vector<char> is_at_tear(whole.vertex.size(), 0);
+  for (const int e : broken) is_at_tear[whole.edges[e].a] = is_at_tear[whole.edges[e].b] = 1;
   std::vector<Cut> chosen;
   const Cut* worst = nullptr;
   for (const Cut& cut : cuts) {
-    if (is_at_tear[vertex[cut.particle]])
+    if (is_at_tear[whole.vertex[cut.particle]])
       chosen.push_back(cut);
     else if (!worst || cut.tension > worst->tension)
       worst = &cut;
@@ -29,17 +33,20 @@ std::vector<Cut> choose(const std::vector<Cut>& cuts, const RestMesh& whole, con
   return chosen;
 }
 
-/// Breaks the edges of the cuts. Returns the new list of broken edges.
-std::vector<int> break_edges(const std::vector<Cut>& cuts, const RestMesh& whole, const RestMesh& torn,
-                             const std::vector<int>& broken) {
-  const std::vector<int> vertex = find_same_corners(torn.triangles, torn.num_vertices(), whole.triangles);
-  std::vector<std::array<int, 2>> edges;
+/// Breaks the edges of the cuts, beside those that are broken. Returns all of them.
+std::vector<int> break_edges(const std::vector<Cut>& cuts, const WholeMesh& whole, std::vector<int> broken) {
   for (const Cut& cut : cuts) {
     for (const int end : cut.ends) {
-      if (end >= 0) edges.push_back({vertex[cut.particle], vertex[end]});
+      if (end < 0) continue;
+      const auto [a, b] = std::minmax(whole.vertex[cut.particle], whole.vertex[end]);
+      const auto found = std::ranges::lower_bound(whole.edges, std::pair(a, b), {},
+                                                  [](const Edge& e) { return std::pair(e.a, e.b); });
+      broken.push_back(static_cast<int>(found - whole.edges.begin()));
     }
   }
-  return break_edges(whole, edges, broken);
+  std::ranges::sort(broken);
+  broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
+  return broken;
 }
 
 /// Moves the parts of particles apart, at most by `most` each [m].
@@ -119,9 +126,11 @@ int World::tear(ClothId id) {
   const std::vector<Cut> found = find_cuts(*cloth.model, cloth.state, holds, cloth.tearing->fabric.strength);
   if (found.empty()) return 0;
   Held held = this->held(id);
-  const RestMesh &whole = cloth.tearing->whole->mesh, &before = cloth.model->topology->mesh;
-  const std::vector<Cut> cuts = choose(found, whole, before, cloth.state.torn);
-  std::vector<int> broken = break_edges(cuts, whole, before, cloth.state.torn);
+  const RestMesh &mesh = cloth.tearing->whole->mesh, &before = cloth.model->topology->mesh;
+  const WholeMesh whole{build_edges(mesh),
+                        find_same_corners(before.triangles, before.num_vertices(), mesh.triangles)};
+  const std::vector<Cut> cuts = choose(found, whole, cloth.state.torn);
+  std::vector<int> broken = break_edges(cuts, whole, cloth.state.torn);
   const std::shared_ptr<const ClothModel> model = build_torn_model(*cloth.tearing, *cloth.model, broken);
   const std::vector<Triangle>& triangles = model->topology->mesh.triangles;
   const std::vector<int> to = find_same_corners(before.triangles, before.num_vertices(), triangles);

@@ -78,10 +78,9 @@ void require_points(const std::vector<Vec3>& values, std::size_t count, const st
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kMaxParts = 1 << 12;  // of one step [1]
 constexpr int kCalmParts = 4;       // consecutive ones before parts become longer
-constexpr int kTearingParts =
-    4;  // of a step at least while cloth tears, by an edge at each end of a tear in each
-constexpr double kFarTooLong = 4;  // severity from which a part is divided in four [1]
-constexpr double kCalm = 0.5;      // severity of a part that could have been longer [1]
+constexpr int kTearingParts = 4;    // least number while cloth tears [1]
+constexpr double kFarTooLong = 4;   // severity from which a part is divided in four [1]
+constexpr double kCalm = 0.5;       // severity of a part that could have been longer [1]
 
 }  // namespace
 
@@ -983,12 +982,11 @@ StepReport World::step(double dt) {
     }
     for (Cloth& cloth : cloths_) follow_cloth(cloth.state);
     const int torn = tear();
-    if (torn > 0 && observer_) clock_.leave_out([&] { observer_(start + dt * done / most); });
+    if (torn == 0) continue;
     report.torn += torn;
-    if (torn > 0) {
-      parts = std::min(most, std::max(parts, kTearingParts));
-      calm_ = 0;
-    }
+    parts = std::min(most, std::max(parts, kTearingParts));
+    calm_ = 0;
+    if (observer_) clock_.leave_out([&] { observer_(start + dt * done / most); });
   }
   if (report.retries > 0) report.fault = worst.fault;
   part_ = parts > 1 ? dt / parts : 0;
