@@ -116,7 +116,7 @@ TEST(Tear, MoreBrokenEdgesNeverJoinWhatIsApart) {
     std::ranges::sort(first);
     std::ranges::sort(both);
     const RestMesh one = tear_mesh(whole, first), two = tear_mesh(whole, both);
-    // Parts of what is whole later are whole before: no corners join again.
+    // No corners that were apart join again.
     const std::vector<int> source = find_same_corners(two.triangles, two.num_vertices(), one.triangles);
     for (int t = 0; t < whole.num_triangles(); ++t) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(source[two.triangles[t][k]], one.triangles[t][k]);
