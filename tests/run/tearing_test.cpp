@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/message_of.h"
+#include "tests/own_folder.h"
 #include "tests/read_text.h"
 #include "tests/run/shipped.h"
 #include "weft/io/glb_reader.h"
@@ -20,8 +21,6 @@
 namespace weft::engine {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kFrames = 45;
 
 /// A ball through a sheet of 12 × 12 cells.
@@ -31,8 +30,6 @@ SceneDesc scene() {
 
 class RunOfTornCloth : public testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-
   RunOptions options(const char* name, Unfinished unfinished = Unfinished::refuse) const {
     return {.frames = kFrames,
             .folder = (folder_ / name).string(),
@@ -41,7 +38,7 @@ class RunOfTornCloth : public testing::Test {
             .checkpoint_every = 10};
   }
 
-  fs::path folder_ = fs::path(WEFT_OUTPUT_DIR) / "torn_cloth";
+  const std::filesystem::path folder_ = make_own_folder();
 };
 
 /// The number of places that the corners of a soup have.
