@@ -97,7 +97,7 @@ struct ClothDesc {
   double sew = 0;
 
   /// Seams of panels, which draw together within `seam_time`, and then hold, with borders 1.2 thicknesses
-  /// apart. For `newton` and `implicit_euler`; not on grids of springs.
+  /// apart. For `newton`, `implicit_euler` and `xpbd`; not on grids of springs.
   std::vector<Seam> seams = {};
 
   /// Pairs of vertices that draw together likewise, such as the sewing edges of Blender. Empty: none.

@@ -139,7 +139,7 @@ class WEFT_API World {
   /// Gas inside closed cloth, in excess of the air outside; 0: none, unless it is sealed [Pa]. The excess is kept,
   /// or a sealed amount of gas keeps the product of absolute pressure and volume (Boyle), from `pressure` at the
   /// present volume. Throws InputError for cloth with a border or with edges whose triangles face opposite ways, for
-  /// integrators besides newton and implicit_euler, for a number that is not finite, and for sealed gas without a
+  /// integrators besides newton, implicit_euler and xpbd, for a number that is not finite, and for sealed gas without a
   /// volume, or at an excess of -101325 Pa or less.
   void set_pressure(ClothId cloth, double pressure, bool sealed = false);
   double pressure(ClothId cloth) const;  // present excess [Pa]

@@ -104,6 +104,16 @@ TriangleCorners collapse_force(const RestTriangle& rest, const StrainLimit& law,
   return corners_of(rest, axes, push(0), push(1));
 }
 
+std::array<CollapseAxis, 2> collapse_axes(const RestTriangle& rest, const StrainLimit& law,
+                                          const TriangleCorners& x) {
+  const Columns f = deformation(rest, x);
+  if (is_wide(f)) return {};
+  const PrincipalAxes axes = principal_axes(f);
+  const Vec3 none = Vec3::Zero();
+  return {CollapseAxis{respond(law, axes.stretch[0]), corners_of(rest, axes, -axes.in_space[0], none)},
+          CollapseAxis{respond(law, axes.stretch[1]), corners_of(rest, axes, none, -axes.in_space[1])}};
+}
+
 CollapseHessian collapse_hessian(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x,
                                  HessianKind kind) {
   const Columns f = deformation(rest, x);

@@ -47,6 +47,15 @@ double collapse_energy(const RestTriangle& rest, const StrainLimit& law, const T
 /// Force on each corner: −∂W/∂x [N]. Forces and their moments sum to zero.
 TriangleCorners collapse_force(const RestTriangle& rest, const StrainLimit& law, const TriangleCorners& x);
 
+/// Along a principal axis: ψ of the narrowing 1 − σ, and the derivative of the narrowing at each corner [1/m].
+struct CollapseAxis {
+  LimitResponse response;
+  TriangleCorners gradient;
+};
+/// Both axes; without response where the triangle is wide.
+std::array<CollapseAxis, 2> collapse_axes(const RestTriangle& rest, const StrainLimit& law,
+                                          const TriangleCorners& x);
+
 /// ∂²W/∂x² = Σ_m stiffness_m w_m w_mᵀ with the closed-form eigenvectors of an isotropic energy (B. Smith, F.
 /// de Goes, T. Kim, Analytic Eigensystems for Isotropic Distortion Energies, ACM TOG 38(1), 2019): w_m has
 /// one vector per corner. The w_m are orthogonal as functions of F, and no stiffness exceeds A k: the Hessian

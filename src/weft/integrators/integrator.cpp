@@ -7,8 +7,11 @@
 namespace weft {
 
 const std::vector<std::string_view>& integrator_names() {
-  static const std::vector<std::string_view> names = {"explicit",       "paper",  "paper_fixed", "desbrun",
-                                                      "implicit_euler", "newton", "xpbd"};
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> list;
+    for (const engine::IntegratorRow& row : engine::integrator_rows()) list.push_back(row.name);
+    return list;
+  }();
   return names;
 }
 
@@ -17,9 +20,34 @@ const std::vector<std::string_view>& integrator_names() {
 namespace weft::engine {
 namespace {
 
-bool solves_implicitly(std::string_view integrator) {
-  return integrator == "newton" || integrator == "implicit_euler";
-}
+constexpr const char* kPaperAdvice =
+    "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
+
+constexpr Support kSpringsOnly;
+constexpr Support kEverything{.elements = true,
+                              .seams = true,
+                              .pressure = true,
+                              .bending_memory = true,
+                              .aerodynamics = true,
+                              .step_division = true};
+
+using Settings = const IntegratorSettings&;
+
+constexpr IntegratorRow kIntegrators[] = {
+    {"explicit", [](Settings s) { return make_explicit(s.explicit_euler); }, nullptr, kSpringsOnly, false,
+     "raise solver.explicit.substeps (0 chooses them), or soften the springs"},
+    {"paper", [](Settings s) { return make_paper(s.paper); }, nullptr, kSpringsOnly, false, kPaperAdvice},
+    {"paper_fixed", [](Settings) { return make_paper_fixed(); }, nullptr, kSpringsOnly, false, kPaperAdvice},
+    {"desbrun", [](Settings) { return make_desbrun(); }, nullptr, kSpringsOnly, false, kPaperAdvice},
+    {"implicit_euler", [](Settings s) { return make_implicit_euler(s.implicit_euler); },
+     [](Settings s) { return make_implicit_euler_in_double(s.implicit_euler); }, kEverything, false,
+     "raise solver.steps_per_frame, or set solver.adaptive = true"},
+    {"newton", [](Settings s) { return make_newton(s.newton); }, [](Settings) { return make_newton_in_double(); },
+     kEverything, true, "raise solver.max_steps_per_frame or solver.steps_per_frame"},
+    {"xpbd", [](Settings s) { return make_xpbd(s.xpbd); }, nullptr,
+     {.elements = true, .seams = true, .pressure = true}, false,
+     "raise solver.xpbd.substeps or solver.steps_per_frame"},
+};
 
 }  // namespace
 
@@ -40,40 +68,22 @@ void IntegratorReport::include(const IntegratorReport& other, int cloth) {
   add_count(other.guard_events, guard_events);
 }
 
-bool supports_elements(std::string_view integrator) {
-  return integrator == "implicit_euler" || integrator == "newton" || integrator == "xpbd";
+std::span<const IntegratorRow> integrator_rows() { return kIntegrators; }
+
+const IntegratorRow& find_integrator(std::string_view name) {
+  for (const IntegratorRow& row : kIntegrators) {
+    if (row.name == name) return row;
+  }
+  throw InputError("unknown integrator \"" + std::string(name) + "\"; available: " +
+                   list_integrators([](const IntegratorRow&) { return true; }));
 }
 
-bool supports_bending_memory(std::string_view integrator) { return solves_implicitly(integrator); }
-
-bool supports_pressure(std::string_view integrator) { return solves_implicitly(integrator); }
-
-bool supports_seams(std::string_view integrator) { return solves_implicitly(integrator); }
-
-bool supports_aerodynamics(std::string_view integrator) { return solves_implicitly(integrator); }
-
-bool supports_step_division(std::string_view integrator) { return solves_implicitly(integrator); }
-
-bool supports_double_precision(std::string_view integrator) { return solves_implicitly(integrator); }
-
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {
-  const std::string& name = settings.integrator;
-  if (settings.is_double) {
-    if (name == "implicit_euler") return make_implicit_euler_in_double(settings.implicit_euler);
-    if (name == "newton") return make_newton_in_double();
-    throw InputError("integrator \"" + name +
-                     "\" does not support double precision; newton and implicit_euler do");
-  }
-  if (name == "explicit") return make_explicit(settings.explicit_euler);
-  if (name == "paper") return make_paper(settings.paper);
-  if (name == "paper_fixed") return make_paper_fixed();
-  if (name == "desbrun") return make_desbrun();
-  if (name == "implicit_euler") return make_implicit_euler(settings.implicit_euler);
-  if (name == "newton") return make_newton(settings.newton);
-  if (name == "xpbd") return make_xpbd(settings.xpbd);
-  std::string known;
-  for (const std::string_view n : integrator_names()) known += (known.empty() ? "" : ", ") + std::string(n);
-  throw InputError("unknown integrator \"" + name + "\"; available: " + known);
+  const IntegratorRow& row = find_integrator(settings.integrator);
+  if (!settings.is_double) return row.make(settings);
+  if (row.make_in_double) return row.make_in_double(settings);
+  throw InputError("integrator \"" + settings.integrator + "\" does not support double precision; use " +
+                   list_in_double());
 }
 
 double compute_stiffness_number(const ClothModel& model, double step) {

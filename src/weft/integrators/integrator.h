@@ -103,27 +103,53 @@ class Integrator {
   }
 };
 
-/// Whether the integrator supports membrane and bending elements (ClothModel::elements); the others support
-/// springs only.
-bool supports_elements(std::string_view integrator);
+/// What only some integrators support.
+struct Support {
+  bool elements = false;        // membranes and bending elements (ClothModel::elements)
+  bool seams = false;           // ClothTopology::seams
+  bool pressure = false;        // gas inside closed cloth (ClothModel::gas)
+  bool bending_memory = false;  // ClothElements::thread_bends
+  bool aerodynamics = false;    // drag and lift (Wind::air); all support the paper's wind
+  bool step_division = false;   // steps divided where they are too long for an impact (World::set_division)
+};
 
-/// Whether it supports the memory of bending (ClothElements::thread_bends).
-bool supports_bending_memory(std::string_view integrator);
+struct IntegratorRow {
+  std::string_view name;
+  std::unique_ptr<Integrator> (*make)(const IntegratorSettings& settings);
+  std::unique_ptr<Integrator> (*make_in_double)(const IntegratorSettings& settings);  // null: in floats only
+  Support supports;
+  bool divides_steps;         // by default
+  const char* shorter_steps;  // advice where steps are too long
+};
 
-/// Whether it supports gas inside closed cloth (ClothModel::gas).
-bool supports_pressure(std::string_view integrator);
+/// Every integrator, in the order of integrator_names().
+std::span<const IntegratorRow> integrator_rows();
 
-/// Whether it supports seams (ClothTopology::seams).
-bool supports_seams(std::string_view integrator);
+/// Throws InputError for an unknown name.
+const IntegratorRow& find_integrator(std::string_view name);
 
-/// Whether it supports aerodynamic drag and lift (Wind::air); the others support the paper's wind only.
-bool supports_aerodynamics(std::string_view integrator);
+/// The integrators for which `is_meant(row)`, for messages: `a, b or c`, each between two quotes.
+template <class IsMeant>
+std::string list_integrators(const IsMeant& is_meant, const std::string& quote = "") {
+  std::vector<std::string> names;
+  for (const IntegratorRow& row : integrator_rows()) {
+    if (is_meant(row)) names.push_back(quote + std::string(row.name) + quote);
+  }
+  std::string list;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    list += (k == 0 ? "" : k + 1 < names.size() ? ", " : " or ") + names[k];
+  return list;
+}
 
-/// Whether its steps can be divided where they are too long for an impact (World::set_division).
-bool supports_step_division(std::string_view integrator);
+/// Those that support it.
+inline std::string list_supporting(bool Support::* what, const std::string& quote = "") {
+  return list_integrators([=](const IntegratorRow& row) { return row.supports.*what; }, quote);
+}
 
-/// Whether it supports double precision.
-bool supports_double_precision(std::string_view integrator);
+/// Those that have double precision.
+inline std::string list_in_double(const std::string& quote = "") {
+  return list_integrators([](const IntegratorRow& row) { return row.make_in_double != nullptr; }, quote);
+}
 
 /// Throws InputError for an unknown name, and for double precision where it is not supported.
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);

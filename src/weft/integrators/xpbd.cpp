@@ -1,6 +1,8 @@
 /// XPBD with small steps, as in most engines: the baseline for `newton`. xpbd_projection.h describes the
 /// method and its source, xpbd_elements.h the method for fabrics.
 
+#include "weft/forces/seam_springs.h"
+#include "weft/forces/terms.h"
 #include "weft/integrators/common.h"
 #include "weft/integrators/xpbd_projection.h"
 
@@ -18,7 +20,8 @@ class XpbdIntegrator final : public ClothIntegrator {
   IntegratorReport advance(const ClothModel& model, const Environment& environment, double step,
                            JobSystem& jobs, ClothState& state) override {
     fit(model, environment.pins);
-    const XpbdSubstep substep = make_substep(model, environment, step);
+    advance_memory(model, step, state);
+    const XpbdSubstep substep = make_substep(model, environment, step, state);
     pin_motion_.prepare(environment.pins, step, state);
     cloth_->predict(substep, jobs, state);
     for (std::size_t p = 0; p < pinned_.size(); ++p) {
@@ -59,13 +62,16 @@ class XpbdIntegrator final : public ClothIntegrator {
     cloth_->set_numbers(model, pinned_);
   }
 
-  static XpbdSubstep make_substep(const ClothModel& model, const Environment& environment, double step) {
+  static XpbdSubstep make_substep(const ClothModel& model, const Environment& environment, double step,
+                                  const ClothState& state) {
     const double wind = step * environment.wind.drag / model.material.density, drag_factor = 1 / (1 + wind);
     const Vec3 velocity_gain = drag_factor * (step * environment.gravity + wind * environment.wind.velocity);
     return {.step = static_cast<float>(step),
             .drag_factor = static_cast<float>(drag_factor),
             .velocity_gain = velocity_gain.cast<float>(),
-            .is_projected = model.material.damping_kind == DampingKind::projected};
+            .is_projected = model.material.damping_kind == DampingKind::projected,
+            .seam_opening = seam_opening(model, state),
+            .gas = model.gas};
   }
 
   XpbdSettings settings_;

@@ -3,8 +3,11 @@
 #include <array>
 #include <span>
 
+#include "weft/forces/collapse.h"
 #include "weft/forces/hinge.h"
 #include "weft/forces/membrane_patch.h"
+#include "weft/forces/pressure.h"
+#include "weft/forces/seam_springs.h"
 
 namespace weft::engine {
 namespace {
@@ -48,39 +51,6 @@ void project_strains(const MembranePatch& patch, const std::array<Mat3, 4>& deri
   }
 }
 
-/// The mean strain; of a pair then the difference, and the triangles' limits.
-void project_patch(const MembranePatch& patch, const PatchLaw& law, const Step& step,
-                   XpbdParticles& particles) {
-  const auto read = [&] {
-    PatchCorners x;
-    x.fill(Vec3::Zero());
-    for (int v = 0; v < patch.num_vertices(); ++v) x[v] = particles.position(patch.vertices[v]);
-    return x;
-  };
-  const bool is_pair = patch.num_triangles == 2;
-  PatchCorners x = read();
-  project_strains(patch, patch_strain_derivative(patch, x).mean, patch.area(),
-                  membrane_response(is_pair ? law.mean : law.alone, patch_strain(patch, x).mean), step,
-                  particles);
-  if (!is_pair) return;
-  x = read();
-  project_strains(patch, patch_strain_derivative(patch, x).difference, difference_area(patch),
-                  difference_response(law.difference, patch_strain(patch, x).difference), step, particles);
-  if (law.limit.limit.stiffness == 0) return;
-  for (int t = 0; t < 2; ++t) {
-    x = read();
-    const auto& [a, b, c] = patch.corners[t];
-    const TriangleCorners own = {x[a], x[b], x[c]};
-    const MembraneResponse response = membrane_response(law.limit, membrane_strain(patch.rest[t], own));
-    if (response.stress.isZero(0)) continue;
-    std::array<Mat3, 4> derivative;
-    derivative.fill(Mat3::Zero());
-    const std::array<Mat3, 3> of_triangle = membrane_strain_derivative(patch.rest[t], own);
-    for (int k = 0; k < 3; ++k) derivative[patch.corners[t][k]] = of_triangle[k];
-    project_strains(patch, derivative, patch.rest[t].area, response, {.h = step.h}, particles);
-  }
-}
-
 void project_stencil(const BendingRows& rows, int row, const Step& step, XpbdParticles& particles) {
   Vec3 curvature = Vec3::Zero(), grown = Vec3::Zero();
   double compliance = 0;
@@ -116,6 +86,55 @@ void project_scalar(const std::array<int, N>& vertices, const std::array<Vec3, N
     particles.move(vertices[c], -particles.particle[vertices[c]].inv_mass() * lambda * gradient[c]);
 }
 
+/// Positions of the patch's vertices.
+PatchCorners corners_of(const MembranePatch& patch, const XpbdParticles& particles) {
+  PatchCorners x;
+  x.fill(Vec3::Zero());
+  for (int v = 0; v < patch.num_vertices(); ++v) x[v] = particles.position(patch.vertices[v]);
+  return x;
+}
+
+/// The mean strain; of a pair then the difference, and the triangles' limits.
+void project_strains(const MembranePatch& patch, const PatchLaw& law, const Step& step,
+                     XpbdParticles& particles) {
+  const bool is_pair = patch.num_triangles == 2;
+  PatchCorners x = corners_of(patch, particles);
+  project_strains(patch, patch_strain_derivative(patch, x).mean, patch.area(),
+                  membrane_response(is_pair ? law.mean : law.alone, patch_strain(patch, x).mean), step,
+                  particles);
+  if (!is_pair) return;
+  x = corners_of(patch, particles);
+  project_strains(patch, patch_strain_derivative(patch, x).difference, difference_area(patch),
+                  difference_response(law.difference, patch_strain(patch, x).difference), step, particles);
+  if (law.limit.limit.stiffness == 0) return;
+  for (int t = 0; t < 2; ++t) {
+    x = corners_of(patch, particles);
+    const auto& [a, b, c] = patch.corners[t];
+    const TriangleCorners own = {x[a], x[b], x[c]};
+    const MembraneResponse response = membrane_response(law.limit, membrane_strain(patch.rest[t], own));
+    if (response.stress.isZero(0)) continue;
+    std::array<Mat3, 4> derivative;
+    derivative.fill(Mat3::Zero());
+    const std::array<Mat3, 3> of_triangle = membrane_strain_derivative(patch.rest[t], own);
+    for (int k = 0; k < 3; ++k) derivative[patch.corners[t][k]] = of_triangle[k];
+    project_strains(patch, derivative, patch.rest[t].area, response, {.h = step.h}, particles);
+  }
+}
+
+void project_collapse(const MembranePatch& patch, const StrainLimit& law, double h, XpbdParticles& particles) {
+  for (int t = 0; t < patch.num_triangles; ++t) {
+    const auto& [a, b, c] = patch.corners[t];
+    const std::array<int, 3> vertices = {patch.vertices[a], patch.vertices[b], patch.vertices[c]};
+    const TriangleCorners x = {particles.position(vertices[0]), particles.position(vertices[1]),
+                               particles.position(vertices[2])};
+    const double area = patch.rest[t].area;
+    for (const auto& [response, gradient] : collapse_axes(patch.rest[t], law, x)) {
+      if (response.tension == 0) continue;
+      project_scalar(vertices, gradient, {area * response.tension, area * response.stiffness}, {.h = h}, particles);
+    }
+  }
+}
+
 void project_hinge(const HingeElement& hinge, const Step& step, XpbdParticles& particles) {
   HingeCorners x;
   for (int c = 0; c < 4; ++c) x[c] = particles.position(hinge.vertices[c]);
@@ -134,6 +153,17 @@ void project_limit(const Spring& spring, const StrainLimit& limit, double h, Xpb
                  {response.tension, response.stiffness / spring.rest_length}, {.h = h}, particles);
 }
 
+void project_seam(const SeamSpring& spring, double closed, double opening, double h, XpbdParticles& particles) {
+  const Vec3 gap = seam_gap(spring, [&](int particle) { return particles.position(particle); });
+  const SeamPull pull = seam_pull(spring, closed, opening, gap);
+  if (pull.along == 0) return;
+  const auto weights = spring.weights();
+  project_scalar(spring.particles,
+                 std::array<Vec3, 3>{weights[0] * pull.direction, weights[1] * pull.direction,
+                                     weights[2] * pull.direction},
+                 {-pull.force.dot(pull.direction), pull.along}, {.h = h}, particles);
+}
+
 /// body(item) for all items, one colour after the other.
 template <class Body>
 void for_colours(const Colours& colours, JobSystem& jobs, const Body& body) {
@@ -147,10 +177,16 @@ void for_colours(const Colours& colours, JobSystem& jobs, const Body& body) {
 
 }  // namespace
 
-XpbdElements::XpbdElements(const ClothModel& model)
-    : topology_(model.topology), elements_(model.elements), law_(elements_->law()) {
-  const int num_particles = model.num_particles();
-  const ClothElements& e = *elements_;
+XpbdElements::XpbdElements(const ClothModel& model) : topology_(model.topology), elements_(model.elements) {
+  if (elements_) colour_elements(*elements_);
+  const std::vector<SeamSpring>& seams = topology_->seams.springs;
+  seams_ = colour_items(static_cast<int>(seams.size()), model.num_particles(),
+                        [&](int k) -> const std::array<int, 3>& { return seams[k].particles; });
+}
+
+void XpbdElements::colour_elements(const ClothElements& e) {
+  const int num_particles = topology_->num_particles();
+  law_ = e.law();
   patches_ = colour_items(static_cast<int>(e.patches.size()), num_particles, [&](int k) {
     return std::span(e.patches[k].vertices).first(static_cast<std::size_t>(e.patches[k].num_vertices()));
   });
@@ -170,15 +206,47 @@ XpbdElements::XpbdElements(const ClothModel& model)
   });
 }
 
-void XpbdElements::project(double step, JobSystem& jobs, XpbdParticles& particles) const {
-  const ClothElements& e = *elements_;
+void XpbdElements::set_numbers(const ClothModel& model) {
+  collapse_law_ = make_collapse_law(model);
+  closed_seam_ = closed_seam(model);
+}
+
+void XpbdElements::project(const XpbdSubstep& substep, JobSystem& jobs, XpbdParticles& particles) {
+  const double h = substep.step;
+  if (elements_) project_elements(*elements_, h, jobs, particles);
+  for_colours(seams_, jobs, [&](int k) {
+    project_seam(topology_->seams.springs[k], closed_seam_, substep.seam_opening, h, particles);
+  });
+  if (substep.gas.is_active()) project_gas(substep.gas, h, particles);
+}
+
+void XpbdElements::project_elements(const ClothElements& e, double step, JobSystem& jobs,
+                                    XpbdParticles& particles) const {
   const Step damped{step, e.damping / step};
   for_colours(stencils_, jobs, [&](int r) { project_stencil(e.bending, r, damped, particles); });
   for_colours(hinges_, jobs, [&](int k) { project_hinge(e.hinges[k], damped, particles); });
-  for_colours(patches_, jobs, [&](int k) { project_patch(e.patches[k], law_, damped, particles); });
+  for_colours(patches_, jobs, [&](int k) {
+    project_strains(e.patches[k], law_, damped, particles);
+    project_collapse(e.patches[k], collapse_law_, step, particles);
+  });
   for_colours(limits_, jobs, [&](int k) {
     project_limit(topology_->springs[limited_[k]], e.spring_limit, step, particles);
   });
+}
+
+void XpbdElements::project_gas(const Gas& gas, double step, XpbdParticles& particles) {
+  const std::span<const Triangle> triangles = topology_->mesh.triangles;
+  const auto at = [&](int v) { return particles.position(v); };
+  gradient_.assign(particles.size(), Vec3::Zero());
+  add_volume_gradient(triangles, at, [&](int v, const Vec3& part) { gradient_[v] += gas.orientation * part; });
+  double compliance = 0;
+  for (int i = 0; i < particles.size(); ++i)
+    compliance += particles.particle[i].inv_mass() * gradient_[i].squaredNorm();
+  const double volume = gas.orientation * compute_signed_volume(triangles, at);
+  const Scalar response{-gas_excess(gas, volume), gas_stiffness(gas, volume)};
+  const double lambda = multiplier({.h = step}, response, compliance, 0);
+  for (int i = 0; i < particles.size(); ++i)
+    particles.move(i, -particles.particle[i].inv_mass() * lambda * gradient_[i]);
 }
 
 }  // namespace weft::engine

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "weft/integrators/xpbd_elements.h"
 #include "weft/integrators/xpbd_projection.h"
@@ -77,7 +76,7 @@ WEFT_MULTIVERSION_PACKS(project_colour, (const MeshPass& pass, int begin, int en
 
 class MeshProjection final : public ClothProjection {
  public:
-  explicit MeshProjection(const ClothModel& model) {
+  explicit MeshProjection(const ClothModel& model) : elements_(model) {
     const std::vector<Spring>& springs = model.topology->springs;
     springs_ = colour_items(static_cast<int>(springs.size()), model.num_particles(), [&](int s) {
       return std::array{springs[s].i, springs[s].j};
@@ -86,7 +85,6 @@ class MeshProjection final : public ClothProjection {
       ends_.push_back({springs[s].i, springs[s].j});
       rest_length_.push_back(static_cast<float>(springs[s].rest_length));
     }
-    if (model.elements) elements_.emplace(model);
     particles_.particle.resize(model.num_particles());
     particles_.motion.resize(model.num_particles());
   }
@@ -104,6 +102,7 @@ class MeshProjection final : public ClothProjection {
     for (int i = 0; i < particles_.size(); ++i)
       particles_.particle[i].inv_mass() = static_cast<float>(1 / model.mass[i]);
     for (const int i : pinned) particles_.particle[i].inv_mass() = 0;
+    elements_.set_numbers(model);
   }
 
   void predict(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
@@ -130,7 +129,7 @@ class MeshProjection final : public ClothProjection {
 
   void project(const XpbdSubstep& substep, JobSystem& jobs) override {
     if (has_springs_) project_colours(substep, jobs);
-    if (elements_) elements_->project(substep.step, jobs, particles_);
+    elements_.project(substep, jobs, particles_);
   }
 
   void finish(const XpbdSubstep& substep, JobSystem& jobs, ClothState& state) override {
@@ -173,7 +172,7 @@ class MeshProjection final : public ClothProjection {
   std::vector<Ends> ends_;  // in the order of springs_.item, as all below
   std::vector<float> rest_length_, stiffness_, damping_;
   bool has_springs_ = false, is_damped_ = false;
-  std::optional<XpbdElements> elements_;
+  XpbdElements elements_;
   XpbdParticles particles_;
 };
 

@@ -13,7 +13,7 @@
 ///
 /// Springs are coloured: springs of a colour share no particle and run in parallel, in SIMD lanes and
 /// threads. Order and colours depend on the mesh only, so the result is bit-identical for any number of them.
-/// A fabric's elements follow the springs, in the same way: see xpbd_elements.h.
+/// The other forces follow the springs, in the same way: see xpbd_elements.h.
 
 #include <memory>
 #include <vector>
@@ -31,6 +31,8 @@ struct XpbdSubstep {
   float drag_factor = 1;  // drag factor: share of velocity that wind leaves [1]
   Eigen::Vector3f velocity_gain = Eigen::Vector3f::Zero();  // velocity gain from gravity and wind [m/s]
   bool is_projected = true;                                 // damping along the springs only
+  double seam_opening = 0;                                  // forces/seam_springs.h [1]
+  Gas gas;
 };
 
 class ClothProjection {

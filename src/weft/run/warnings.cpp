@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "weft/integrators/integrator.h"
+
 namespace weft::engine {
 namespace {
 
@@ -9,15 +11,6 @@ std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-std::string shorter_steps(const std::string& integrator) {
-  if (integrator == "explicit")
-    return "raise solver.explicit.substeps (0 chooses them), or soften the springs";
-  if (integrator == "implicit_euler") return "raise solver.steps_per_frame, or set solver.adaptive = true";
-  if (integrator == "newton") return "raise solver.max_steps_per_frame or solver.steps_per_frame";
-  if (integrator == "xpbd") return "raise solver.xpbd.substeps or solver.steps_per_frame";
-  return "raise solver.steps_per_frame or lower the damping, which this integrator treats explicitly";
 }
 
 std::string describe_cap(const StepWarning& w) {
@@ -123,7 +116,7 @@ std::string to_string(StepFault fault) {
 }
 
 std::string describe(const World& world, const StepWarning& warning) {
-  const std::string what = describe_what(warning, shorter_steps(world.integrator().integrator));
+  const std::string what = describe_what(warning, find_integrator(world.integrator().integrator).shorter_steps);
   return warning.cloth < 0 ? what : "cloth \"" + world.name(world.cloth(warning.cloth)) + "\": " + what;
 }
 

@@ -41,8 +41,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.rotation", "", "Rotation of the cloth at the start: angles about fixed x, then y, then z."},
     {"cloth.velocity", "", "Velocity of all particles at the start."},
     {"cloth.pressure", "",
-     "What the gas inside presses more than the air outside. Requires cloth without a border, and newton or "
-     "implicit_euler. Higher: rounder and stiffer. A cushion has 100 to 1000 Pa, a toy balloon 2000."},
+     "What the gas inside presses more than the air outside. Requires cloth without a border, and newton, "
+     "implicit_euler or xpbd. Higher: rounder and stiffer. A cushion has 100 to 1000 Pa, a toy balloon 2000."},
     {"cloth.sealed", "",
      "Whether the gas keeps its amount: `pressure` is then that at the start, and falls as the volume grows. "
      "Not "

@@ -144,31 +144,28 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 }
 
 void check_integrator(TomlTable& solver, const SceneDesc& scene) {
-  if (scene.wind.air.density > 0 && !supports_aerodynamics(scene.solver.integrator))
-    solver.get("integrator")
-        .mistake("does not support wind.air; use \"newton\" or \"implicit_euler\", or only wind.drag");
+  const Support& supports = find_integrator(scene.solver.integrator).supports;
+  const auto refuse = [&](const std::string& what, bool Support::* by, const std::string& or_else = "") {
+    solver.get("integrator").mistake("does not support " + what + "; use " + list_supporting(by, "\"") + or_else);
+  };
+  if (scene.wind.air.density > 0 && !supports.aerodynamics)
+    refuse("wind.air", &Support::aerodynamics, "; or only wind.drag");
   for (const ClothSceneDesc& cloth : scene.cloths) {
-    if ((cloth.pressure != 0 || cloth.is_sealed) && !supports_pressure(scene.solver.integrator))
-      solver.get("integrator")
-          .mistake("does not support the pressure of cloth \"" + cloth.name +
-                   "\"; use \"newton\" or \"implicit_euler\"");
-    if ((!cloth.seams.empty() || cloth.has_stitches) && !supports_seams(scene.solver.integrator))
-      solver.get("integrator")
-          .mistake("does not support the seams of cloth \"" + cloth.name +
-                   "\"; use \"newton\" or \"implicit_euler\"");
-    if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) &&
-        !supports_bending_memory(scene.solver.integrator))
-      solver.get("integrator")
-          .mistake("does not support bend_hysteresis and bend_set of cloth \"" + cloth.name +
-                   "\"; use \"newton\" or \"implicit_euler\"");
+    const std::string name = " of cloth \"" + cloth.name + '"';
+    if ((cloth.pressure != 0 || cloth.is_sealed) && !supports.pressure)
+      refuse("the pressure" + name, &Support::pressure);
+    if ((!cloth.seams.empty() || cloth.has_stitches) && !supports.seams)
+      refuse("the seams" + name, &Support::seams);
+    if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) && !supports.bending_memory)
+      refuse("bend_hysteresis and bend_set" + name, &Support::bending_memory);
   }
-  if (supports_elements(scene.solver.integrator)) return;
+  if (supports.elements) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {
     if (!cloth.fabric) continue;
     solver.get("integrator")
-        .mistake("supports springs only, but cloth \"" + cloth.name +
-                 "\" is made of a fabric; use \"newton\", \"implicit_euler\" or \"xpbd\", or set "
-                 "spring_structural, spring_shear and spring_bend instead of the fabric");
+        .mistake("supports springs only, but cloth \"" + cloth.name + "\" is made of a fabric; use " +
+                 list_supporting(&Support::elements, "\"") +
+                 "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
     return;
   }
 }
@@ -194,9 +191,9 @@ void read_adaptive(TomlTable& solver, SceneDesc& scene) {
   bool is_adaptive = false;
   if (!value || !value.read(is_adaptive)) return;
   scene.adaptive = is_adaptive;
-  if (is_adaptive && !supports_step_division(scene.solver.integrator))
-    value.mistake(scene.solver.integrator +
-                  " does not support step division; only newton and implicit_euler do");
+  if (is_adaptive && !find_integrator(scene.solver.integrator).supports.step_division)
+    value.mistake(scene.solver.integrator + " does not support step division; use " +
+                  list_supporting(&Support::step_division, "\""));
 }
 
 void read_solver(TomlTable table, SceneDesc& scene) {
@@ -211,8 +208,8 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       "quality", solver.newton.quality,
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
-  if (solver.is_double && !supports_double_precision(solver.integrator))
-    table.get("precision").mistake("only newton and implicit_euler support \"double\"");
+  if (solver.is_double && !find_integrator(solver.integrator).make_in_double)
+    table.get("precision").mistake(solver.integrator + " does not support \"double\"; use " + list_in_double("\""));
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);

@@ -811,9 +811,9 @@ void World::set_contact(bool enabled) {
 void World::set_division(const StepDivision& division) {
   require(std::isfinite(division.shortest) && division.shortest > 0,
           "the shortest part of a step must be more than 0 s");
-  require(
-      !division.enabled.value_or(false) || supports_step_division(integrator_settings_.integrator),
-      integrator_settings_.integrator + " does not support step division; only newton and implicit_euler do");
+  const std::string& integrator = integrator_settings_.integrator;
+  require(!division.enabled.value_or(false) || find_integrator(integrator).supports.step_division,
+          integrator + " does not support step division; use " + list_supporting(&Support::step_division));
   division_ = division;
 }
 
@@ -821,8 +821,8 @@ bool World::divides() const {
   const auto has_gas = [](const Cloth& cloth) { return cloth.model->gas.is_active(); };
   if (integrator_settings_.is_double || (!contact_ && std::none_of(cloths_.begin(), cloths_.end(), has_gas)))
     return false;
-  const std::string& integrator = integrator_settings_.integrator;
-  return supports_step_division(integrator) && division_.enabled.value_or(integrator == "newton");
+  const IntegratorRow& integrator = find_integrator(integrator_settings_.integrator);
+  return integrator.supports.step_division && division_.enabled.value_or(integrator.divides_steps);
 }
 
 bool World::is_driven() const {

@@ -147,9 +147,9 @@ void require_valid(const Wind& wind, const std::string& integrator) {
   require(above_zero(wind.air.density) && above_zero(wind.air.drag) && wind.air.lift >= 0 &&
               wind.air.lift <= wind.air.drag,
           "the air's density and drag must be above 0, and its lift from 0 to its drag");
-  require(supports_aerodynamics(integrator),
-          integrator + " does not support aerodynamic drag and lift; use newton or " +
-              "implicit_euler, or only the wind's drag");
+  require(find_integrator(integrator).supports.aerodynamics,
+          integrator + " does not support aerodynamic drag and lift; use " +
+              list_supporting(&Support::aerodynamics) + "; or only the wind's drag");
 }
 
 void require_valid(const IntegratorSettings& s) {
@@ -163,25 +163,25 @@ void require_valid(const IntegratorSettings& s) {
 
 void require_elements_supported(const std::string& integrator, const ClothElements& elements,
                                 const std::string& cloth) {
-  require(supports_elements(integrator),
-          "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
-              " supports springs only; use newton, "
-              "implicit_euler or xpbd, or set spring_structural, spring_shear and "
-              "spring_bend instead of the fabric");
-  require(elements.thread_bends.empty() || supports_bending_memory(integrator),
+  const Support& supports = find_integrator(integrator).supports;
+  require(supports.elements, "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
+                                 " supports springs only; use " + list_supporting(&Support::elements) +
+                                 "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
+  require(elements.thread_bends.empty() || supports.bending_memory,
           "cloth \"" + cloth + "\" has a bend_hysteresis or bend_set, but " + integrator +
-              " does not support it; use newton or implicit_euler");
+              " does not support it; use " + list_supporting(&Support::bending_memory));
 }
 
 void require_seams_supported(const std::string& integrator, const Seams& seams, const std::string& cloth) {
-  require(seams.springs.empty() || supports_seams(integrator),
-          "cloth \"" + cloth + "\" has seams, but " + integrator +
-              " does not support them; use newton or implicit_euler");
+  require(seams.springs.empty() || find_integrator(integrator).supports.seams,
+          "cloth \"" + cloth + "\" has seams, but " + integrator + " does not support them; use " +
+              list_supporting(&Support::seams));
 }
 
 void require_pressure_supported(const std::string& integrator, const std::string& cloth) {
-  require(supports_pressure(integrator), "cloth \"" + cloth + "\" has a pressure, but " + integrator +
-                                             " does not support it; use newton or implicit_euler");
+  require(find_integrator(integrator).supports.pressure, "cloth \"" + cloth + "\" has a pressure, but " +
+                                                             integrator + " does not support it; use " +
+                                                             list_supporting(&Support::pressure));
 }
 
 void require_closed(const TriangleMesh& mesh, const std::string& cloth) {
