@@ -143,7 +143,7 @@ Findings fabric_cantilever(const SectionOptions& options) {
         for (const StripDirection direction :
              {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
           const Findings test =
-              test_cantilever(find_fabric(name), {.mesh = mesh, .resolution = cells}, direction);
+              test_cantilever(find_elastic_fabric(name), {.mesh = mesh, .resolution = cells}, direction);
           ratio.push_back(find_metric(test, "h_over_w"));
         }
         table.rows.push_back({name, name_of(mesh), std::to_string(cells), digits(ratio[0], 4),
@@ -196,6 +196,25 @@ Findings fabric_drape(const SectionOptions& options) {
                                      .x_scale = PlotScale::linear,
                                      .y_scale = PlotScale::linear,
                                      .line = PlotLine::through_all})});
+  return result;
+}
+
+Findings fabric_presets(const SectionOptions& options) {
+  Findings result;
+  Table table{{"fabric", "drape coefficient [%]", "folds"},
+              {},
+              "Every preset, mean and spread of five specimens of 20 rings"};
+  for (const FabricPreset& preset : fabric_presets()) {
+    if (options.quick && preset.name != "silk" && preset.name != "leather") continue;
+    options.report_progress(preset.name);
+    const Findings test =
+        test_drape(preset.fabric, {.resolution = options.quick ? 10 : 20}, options.threads);
+    table.rows.push_back({preset.name,
+                          digits(find_metric(test, "drape_coefficient"), 3) + " ± " +
+                              digits(find_metric(test, "drape_coefficient_spread"), 2),
+                          digits(find_metric(test, "drape_nodes"), 2)});
+  }
+  result.tables.push_back(std::move(table));
   return result;
 }
 
@@ -310,7 +329,7 @@ Findings fabric_strain_limit(const SectionOptions& options) {
 Findings fabric_steps(const SectionOptions& options) {
   Findings result;
   Table table{{"steps per second", "sag [m]", "period [s]"}, {}, "Denim at three step lengths"};
-  const Fabric& denim = find_fabric("denim");
+  const Fabric denim = find_elastic_fabric("denim");
   const int cells = options.quick ? 12 : 32;
   std::vector<double> sags;
   for (const int steps_per_second : {60, 120, 240}) {

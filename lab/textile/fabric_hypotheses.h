@@ -8,11 +8,14 @@ namespace weft::engine::lab {
 /// c11, c22, c12 and g of five fabrics, measured by tensile and shear tests on a grid and a random mesh.
 Findings fabric_constants(const SectionOptions& options);
 
-/// H/W of cantilevers against mesh resolution, compared with the elastica.
+/// H/W of cantilevers without hysteresis against mesh resolution, compared with the elastica.
 Findings fabric_cantilever(const SectionOptions& options);
 
 /// The drape coefficient of denim against the number of rings of the disc's mesh.
 Findings fabric_drape(const SectionOptions& options);
+
+/// Drape coefficient and folds of every preset.
+Findings fabric_presets(const SectionOptions& options);
 
 /// The drape of a soft, stiffly woven fabric against the mesh, the stiffness of its threads and their direction:
 /// membranes that lock hold it up.

@@ -86,6 +86,12 @@ void stop(ClothState& state) {
 
 }  // namespace
 
+Fabric find_elastic_fabric(std::string_view name) {
+  Fabric fabric = find_fabric(name);
+  fabric.bend_hysteresis_warp = fabric.bend_hysteresis_weft = fabric.bend_set = 0;
+  return fabric;
+}
+
 Specimen make_rectangle(const Fabric& fabric, const Grid& grid, SpecimenMesh mesh,
                         const RectangleOptions& options) {
   const bool has_springs = options.membrane == SpecimenMembrane::springs;

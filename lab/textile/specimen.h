@@ -26,6 +26,9 @@ struct SpecimenSettings {
   double warp_deg = 0;  // of drape tests: direction of warp against the mesh [degrees]
 };
 
+/// A preset without hysteresis and set of bending.
+Fabric find_elastic_fabric(std::string_view name);
+
 /// A piece of fabric without contact, with its loads.
 struct Specimen {
   std::shared_ptr<const ClothModel> model;

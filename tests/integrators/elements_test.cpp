@@ -25,7 +25,7 @@ constexpr double kStep = 0.01;
 
 TEST(Elements, FallFreelyAndStayFlat) {
   for (const BendingModel bending : kBendings) {
-    const auto model = sheet_of(find_fabric("denim"), SheetKind::random, bending);
+    const auto model = sheet_of(find_fabric("cotton_shirting"), SheetKind::random, bending);
     ClothState state = make_state(model->topology->mesh.positions);
     const auto integrator = make_implicit_euler({.tolerance = 1e-6});
     test::advance(*integrator, *model, {}, kStep, 20, state);
@@ -88,7 +88,7 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
   // In one step from strain e₀ to e the potential gains τ/(2h) C (e − e₀)²: τ/h times the elastic energy of
   // the difference. This holds for hinges and stencils, in stretching and in bending.
   constexpr double kTau = 0.03;
-  Fabric fabric = find_fabric("denim");
+  Fabric fabric = find_fabric("cotton_shirting");
   for (const BendingModel bending : kBendings) {
     const auto energy = [&](double damping, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
       fabric.damping = damping;
@@ -110,7 +110,7 @@ TEST(Elements, DampingIsTheTimeConstantTimesTheElasticStress) {
     const auto some = test::rolled(mesh, 0.2, 0), more = test::rolled(mesh, 0.3, 0);
     const double elastic = energy(0, some, more), viscous = energy(kTau, some, more) - elastic;
     EXPECT_NEAR(viscous / (elastic / 9), kTau / kStep, 0.05) << "directions turn by a few hundredths";
-    fabric = find_fabric("denim");
+    fabric = find_fabric("cotton_shirting");
   }
 }
 

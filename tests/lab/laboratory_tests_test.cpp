@@ -72,7 +72,7 @@ TEST(Studies, CantileverSinksAsTheElasticaAndGivesTheRigidityBack) {
 }
 
 TEST(Studies, TheBendingTesterGivesRigidityAndHysteresisBack) {
-  Fabric fabric = find_fabric("denim");
+  Fabric fabric = find_elastic_fabric("denim");
   fabric.bend_warp = 1.687e-5;
   fabric.bend_weft = 1.2e-5;
   fabric.bend_bias = 1.4e-5;
@@ -94,7 +94,7 @@ TEST(Studies, TheBendingTesterGivesRigidityAndHysteresisBack) {
 TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
   const SpecimenSettings settings{.mesh = SpecimenMesh::random, .resolution = 10};
   for (const StripDirection direction : {StripDirection::warp, StripDirection::weft, StripDirection::bias}) {
-    const Findings result = test_cantilever(find_fabric("denim"), settings, direction);
+    const Findings result = test_cantilever(find_elastic_fabric("denim"), settings, direction);
     EXPECT_NEAR(figure(result, "h_over_w") / 0.88473, 1, 0.04);
   }
 }
@@ -102,7 +102,7 @@ TEST(Studies, CantileverOfTenCellsOnARandomMeshIsWithinFourPercent) {
 TEST(Studies, UprightStripTipsOverNearTheLoadOfTheTheory) {
   // 12.85 (1 − ν) √(2 (1 + ν)) for an infinitely narrow strip; the stencils of a grid have ν = 0. A clamped
   // strip of two cells across is slightly stiffer: by 16, 9 and 6 % with 15, 25 and 40 cells along.
-  const Fabric& denim = find_fabric("denim");  // with isotropic rigidity
+  const Fabric denim = find_elastic_fabric("denim");  // with isotropic rigidity
   const double theory = 12.85 * std::sqrt(2);
   const auto error = [&](int cells) {
     return figure(test_buckling(denim, {.resolution = cells}), "critical_load") / theory - 1;
@@ -126,7 +126,7 @@ TEST(OneFabric, SagsAsTheCatenaryOnEveryMesh) {
 }
 
 TEST(OneFabric, RestsInTheSameShapeAtAnyNumberOfStepsPerSecond) {
-  const Fabric& denim = find_fabric("denim");
+  const Fabric denim = find_elastic_fabric("denim");
   double sags[3];
   int k = 0;
   for (const int steps_per_second : {60, 120, 240}) {
@@ -183,7 +183,7 @@ TEST(Drape, OfOneFabricIsTheSameOnEveryMesh) {
 
 TEST(Drape, OfStifferFabricIsLarger) {
   // Between those of cloth that hangs straight down and of a rigid board.
-  Fabric fabric = find_fabric("denim");
+  Fabric fabric = find_elastic_fabric("denim");
   double before = 0;
   for (const double times : {0.3, 3.0, 30.0}) {
     Fabric other = fabric;

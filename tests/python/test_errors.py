@@ -192,7 +192,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: cloth(membrane="springs", fabric=weft.Fabric(strength=9)),
      'cloth "cloth": springs do not tear; use membrane = "triangle", or strength = 0'),
     (lambda: woven(strength=9, bend_set=500),
-     'cloth "cloth": cloth with hysteresis or set of bending does not tear; leave out one of them'),
+     'cloth "cloth": cloth with hysteresis or set of bending does not tear; set bend_hysteresis_warp, '
+     "bend_hysteresis_weft and bend_set to 0, or strength"),
     (lambda: put(woven(), "fabric", weft.Fabric(strength=9)),
      'cloth "cloth": a grid that was added without strength does not tear; add it with one'),
     (lambda: put(woven(strength=9), "fabric", weft.Fabric()),

@@ -391,7 +391,8 @@ TEST(Tearing, RefusesWhatDoesNotTear) {
   Fabric creases = weak();
   creases.bend_set = 500;
   EXPECT_EQ(message_of(add({.shape = grid, .fabric = creases})),
-            "cloth \"cloth\": cloth with hysteresis or set of bending does not tear; leave out one of them");
+            "cloth \"cloth\": cloth with hysteresis or set of bending does not tear; set "
+            "bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0, or strength");
   World world;
   Fabric whole = weak();
   whole.strength = 0;

@@ -92,6 +92,8 @@ FabricPreset make_denim() {
                                         .shear = 2.180,
                                         .bend_warp = 0.172,
                                         .bend_weft = 0.172,
+                                        .hysteresis_warp = 0.139,
+                                        .hysteresis_weft = 0.139,
                                         .friction = 0.5});
   const std::string sheet =
       "KES-F sheet of a denim (Journal of Textiles 2016, 4614168, table 5, sample A; mean of warp and weft)";
@@ -101,7 +103,7 @@ FabricPreset make_denim() {
           {.density = "12 oz/yd²; 1 oz/yd² = 33.906 g/m²",
            .stretch = sheet + ": EMT 5.515 %, LT 0.712",
            .shear = sheet + ": G 2.18 gf/(cm·degree)",
-           .bending = sheet + ": B 0.172 gf·cm²/cm; bias the same",
+           .bending = sheet + ": B 0.172 gf·cm²/cm, 2HB 0.139 gf·cm/cm; bias the same",
            .damping = kDefaultDamping,
            .thickness = sheet,
            .friction = "typical: denim is rougher than shirting"},

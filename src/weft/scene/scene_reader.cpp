@@ -157,7 +157,8 @@ void check_integrator(TomlTable& solver, const SceneDesc& scene) {
     if ((!cloth.seams.empty() || cloth.has_stitches) && !supports.seams)
       refuse("the seams" + name, &Support::seams);
     if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) && !supports.bending_memory)
-      refuse("bend_hysteresis and bend_set" + name, &Support::bending_memory);
+      refuse("bend_hysteresis and bend_set" + name, &Support::bending_memory,
+             "; or set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0");
   }
   if (supports.elements) return;
   for (const ClothSceneDesc& cloth : scene.cloths) {

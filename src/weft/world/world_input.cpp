@@ -169,7 +169,8 @@ void require_elements_supported(const std::string& integrator, const ClothElemen
                                  "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
   require(elements.thread_bends.empty() || supports.bending_memory,
           "cloth \"" + cloth + "\" has a bend_hysteresis or bend_set, but " + integrator +
-              " does not support it; use " + list_supporting(&Support::bending_memory));
+              " does not support it; use " + list_supporting(&Support::bending_memory) +
+              "; or set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0");
 }
 
 void require_seams_supported(const std::string& integrator, const Seams& seams, const std::string& cloth) {
