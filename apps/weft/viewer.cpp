@@ -301,7 +301,8 @@ void Viewer::set_integrator(int side, const std::string& name) {
   sides_[side]->live()->set_integrator(name);
   const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
   const auto& cloths = edits_->now().cloths;
-  if (num_sides() > 1 || (!find_integrator(name).supports.elements && std::any_of(cloths.begin(), cloths.end(), is_fabric)))
+  if (num_sides() > 1 ||
+      (!find_integrator(name).supports.elements && std::any_of(cloths.begin(), cloths.end(), is_fabric)))
     return;
   SceneDesc next = edits_->now();
   next.solver.integrator = name;

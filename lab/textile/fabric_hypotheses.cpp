@@ -207,8 +207,7 @@ Findings fabric_presets(const SectionOptions& options) {
   for (const FabricPreset& preset : fabric_presets()) {
     if (options.quick && preset.name != "silk" && preset.name != "leather") continue;
     options.report_progress(preset.name);
-    const Findings test =
-        test_drape(preset.fabric, {.resolution = options.quick ? 10 : 20}, options.threads);
+    const Findings test = test_drape(preset.fabric, {.resolution = options.quick ? 10 : 20}, options.threads);
     table.rows.push_back({preset.name,
                           digits(find_metric(test, "drape_coefficient"), 3) + " ± " +
                               digits(find_metric(test, "drape_coefficient_spread"), 2),

@@ -48,8 +48,9 @@ void require_tearable(const ClothDesc& desc, const Fabric& fabric, const std::st
   if (desc.membrane == Membrane::springs)
     throw InputError(who + "springs do not tear; use membrane = \"triangle\", or strength = 0");
   if (has_bending_memory(fabric))
-    throw InputError(who + "cloth with hysteresis or set of bending does not tear; set "
-                           "bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0, or strength");
+    throw InputError(who +
+                     "cloth with hysteresis or set of bending does not tear; set "
+                     "bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0, or strength");
 }
 
 CellDiagonals cell_diagonals(SpringModel model) {

@@ -42,10 +42,14 @@ constexpr IntegratorRow kIntegrators[] = {
     {"implicit_euler", [](Settings s) { return make_implicit_euler(s.implicit_euler); },
      [](Settings s) { return make_implicit_euler_in_double(s.implicit_euler); }, kEverything, false,
      "raise solver.steps_per_frame, or set solver.adaptive = true"},
-    {"newton", [](Settings s) { return make_newton(s.newton); }, [](Settings) { return make_newton_in_double(); },
-     kEverything, true, "raise solver.max_steps_per_frame or solver.steps_per_frame"},
-    {"xpbd", [](Settings s) { return make_xpbd(s.xpbd); }, nullptr,
-     {.elements = true, .seams = true, .pressure = true}, false,
+    {"newton", [](Settings s) { return make_newton(s.newton); },
+     [](Settings) { return make_newton_in_double(); }, kEverything, true,
+     "raise solver.max_steps_per_frame or solver.steps_per_frame"},
+    {"xpbd",
+     [](Settings s) { return make_xpbd(s.xpbd); },
+     nullptr,
+     {.elements = true, .seams = true, .pressure = true},
+     false,
      "raise solver.xpbd.substeps or solver.steps_per_frame"},
 };
 
@@ -74,8 +78,8 @@ const IntegratorRow& find_integrator(std::string_view name) {
   for (const IntegratorRow& row : kIntegrators) {
     if (row.name == name) return row;
   }
-  throw InputError("unknown integrator \"" + std::string(name) + "\"; available: " +
-                   list_integrators([](const IntegratorRow&) { return true; }));
+  throw InputError("unknown integrator \"" + std::string(name) +
+                   "\"; available: " + list_integrators([](const IntegratorRow&) { return true; }));
 }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings) {

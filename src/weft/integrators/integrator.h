@@ -142,7 +142,7 @@ std::string list_integrators(const IsMeant& is_meant, const std::string& quote =
 }
 
 /// Those that support it.
-inline std::string list_supporting(bool Support::* what, const std::string& quote = "") {
+inline std::string list_supporting(bool Support::*what, const std::string& quote = "") {
   return list_integrators([=](const IntegratorRow& row) { return row.supports.*what; }, quote);
 }
 

@@ -95,8 +95,8 @@ PatchCorners corners_of(const MembranePatch& patch, const XpbdParticles& particl
 }
 
 /// The mean strain; of a pair then the difference, and the triangles' limits.
-void project_strains(const MembranePatch& patch, const PatchLaw& law, const Step& step,
-                     XpbdParticles& particles) {
+void project_patch(const MembranePatch& patch, const PatchLaw& law, const Step& step,
+                   XpbdParticles& particles) {
   const bool is_pair = patch.num_triangles == 2;
   PatchCorners x = corners_of(patch, particles);
   project_strains(patch, patch_strain_derivative(patch, x).mean, patch.area(),
@@ -121,7 +121,8 @@ void project_strains(const MembranePatch& patch, const PatchLaw& law, const Step
   }
 }
 
-void project_collapse(const MembranePatch& patch, const StrainLimit& law, double h, XpbdParticles& particles) {
+void project_collapse(const MembranePatch& patch, const StrainLimit& law, double h,
+                      XpbdParticles& particles) {
   for (int t = 0; t < patch.num_triangles; ++t) {
     const auto& [a, b, c] = patch.corners[t];
     const std::array<int, 3> vertices = {patch.vertices[a], patch.vertices[b], patch.vertices[c]};
@@ -130,7 +131,8 @@ void project_collapse(const MembranePatch& patch, const StrainLimit& law, double
     const double area = patch.rest[t].area;
     for (const auto& [response, gradient] : collapse_axes(patch.rest[t], law, x)) {
       if (response.tension == 0) continue;
-      project_scalar(vertices, gradient, {area * response.tension, area * response.stiffness}, {.h = h}, particles);
+      project_scalar(vertices, gradient, {area * response.tension, area * response.stiffness}, {.h = h},
+                     particles);
     }
   }
 }
@@ -153,7 +155,8 @@ void project_limit(const Spring& spring, const StrainLimit& limit, double h, Xpb
                  {response.tension, response.stiffness / spring.rest_length}, {.h = h}, particles);
 }
 
-void project_seam(const SeamSpring& spring, double closed, double opening, double h, XpbdParticles& particles) {
+void project_seam(const SeamSpring& spring, double closed, double opening, double h,
+                  XpbdParticles& particles) {
   const Vec3 gap = seam_gap(spring, [&](int particle) { return particles.position(particle); });
   const SeamPull pull = seam_pull(spring, closed, opening, gap);
   if (pull.along == 0) return;
@@ -226,7 +229,7 @@ void XpbdElements::project_elements(const ClothElements& e, double step, JobSyst
   for_colours(stencils_, jobs, [&](int r) { project_stencil(e.bending, r, damped, particles); });
   for_colours(hinges_, jobs, [&](int k) { project_hinge(e.hinges[k], damped, particles); });
   for_colours(patches_, jobs, [&](int k) {
-    project_strains(e.patches[k], law_, damped, particles);
+    project_patch(e.patches[k], law_, damped, particles);
     project_collapse(e.patches[k], collapse_law_, step, particles);
   });
   for_colours(limits_, jobs, [&](int k) {
@@ -238,7 +241,8 @@ void XpbdElements::project_gas(const Gas& gas, double step, XpbdParticles& parti
   const std::span<const Triangle> triangles = topology_->mesh.triangles;
   const auto at = [&](int v) { return particles.position(v); };
   gradient_.assign(particles.size(), Vec3::Zero());
-  add_volume_gradient(triangles, at, [&](int v, const Vec3& part) { gradient_[v] += gas.orientation * part; });
+  add_volume_gradient(triangles, at,
+                      [&](int v, const Vec3& part) { gradient_[v] += gas.orientation * part; });
   double compliance = 0;
   for (int i = 0; i < particles.size(); ++i)
     compliance += particles.particle[i].inv_mass() * gradient_[i].squaredNorm();

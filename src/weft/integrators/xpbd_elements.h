@@ -39,7 +39,8 @@ class XpbdElements {
 
  private:
   void colour_elements(const ClothElements& elements);
-  void project_elements(const ClothElements& elements, double step, JobSystem& jobs, XpbdParticles& particles) const;
+  void project_elements(const ClothElements& elements, double step, JobSystem& jobs,
+                        XpbdParticles& particles) const;
   void project_gas(const Gas& gas, double step, XpbdParticles& particles);
 
   std::shared_ptr<const ClothTopology> topology_;

@@ -145,7 +145,8 @@ void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
     const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-    if (!find_integrator(name).supports.elements && std::any_of(wanted_.cloths.begin(), wanted_.cloths.end(), is_fabric)) {
+    if (!find_integrator(name).supports.elements &&
+        std::any_of(wanted_.cloths.begin(), wanted_.cloths.end(), is_fabric)) {
       status_.warnings = {name + " supports springs only, and this scene has a fabric: keeping " +
                           status_.integrator};
       return;

@@ -116,7 +116,8 @@ std::string to_string(StepFault fault) {
 }
 
 std::string describe(const World& world, const StepWarning& warning) {
-  const std::string what = describe_what(warning, find_integrator(world.integrator().integrator).shorter_steps);
+  const std::string what =
+      describe_what(warning, find_integrator(world.integrator().integrator).shorter_steps);
   return warning.cloth < 0 ? what : "cloth \"" + world.name(world.cloth(warning.cloth)) + "\": " + what;
 }
 

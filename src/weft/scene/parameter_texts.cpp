@@ -42,7 +42,8 @@ constexpr ParameterText kTexts[] = {
     {"cloth.velocity", "", "Velocity of all particles at the start."},
     {"cloth.pressure", "",
      "What the gas inside presses more than the air outside. Requires cloth without a border, and newton, "
-     "implicit_euler or xpbd. Higher: rounder and stiffer. A cushion has 100 to 1000 Pa, a toy balloon 2000."},
+     "implicit_euler or xpbd. Higher: rounder and stiffer. A cushion has 100 to 1000 Pa, a toy balloon "
+     "2000."},
     {"cloth.sealed", "",
      "Whether the gas keeps its amount: `pressure` is then that at the start, and falls as the volume grows. "
      "Not "
@@ -149,7 +150,8 @@ constexpr ParameterText kTexts[] = {
      "Greatest strain in any direction; 0: no limit, 0.01: 1 %. Higher: more rubbery, and less work for the "
      "solver."},
     {"cloth.fabric.strength", "fabric",
-     "Tension at which the fabric tears. Typical: 3000 (chiffon) to 40000 (denim), less for an effect; 0: never. "
+     "Tension at which the fabric tears. Typical: 3000 (chiffon) to 40000 (denim), less for an effect; 0: "
+     "never. "
      "Higher: tears later."},
     {"cloth.fabric.stretch_warp", "fabric",
      "Measured curve along warp, instead of c11: points of strain [1] and tension [N/m], both rising."},

@@ -145,8 +145,9 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 
 void check_integrator(TomlTable& solver, const SceneDesc& scene) {
   const Support& supports = find_integrator(scene.solver.integrator).supports;
-  const auto refuse = [&](const std::string& what, bool Support::* by, const std::string& or_else = "") {
-    solver.get("integrator").mistake("does not support " + what + "; use " + list_supporting(by, "\"") + or_else);
+  const auto refuse = [&](const std::string& what, bool Support::*by, const std::string& or_else = "") {
+    solver.get("integrator")
+        .mistake("does not support " + what + "; use " + list_supporting(by, "\"") + or_else);
   };
   if (scene.wind.air.density > 0 && !supports.aerodynamics)
     refuse("wind.air", &Support::aerodynamics, "; or only wind.drag");
@@ -210,7 +211,8 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
   if (solver.is_double && !find_integrator(solver.integrator).make_in_double)
-    table.get("precision").mistake(solver.integrator + " does not support \"double\"; use " + list_in_double("\""));
+    table.get("precision")
+        .mistake(solver.integrator + " does not support \"double\"; use " + list_in_double("\""));
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);

@@ -164,9 +164,10 @@ void require_valid(const IntegratorSettings& s) {
 void require_elements_supported(const std::string& integrator, const ClothElements& elements,
                                 const std::string& cloth) {
   const Support& supports = find_integrator(integrator).supports;
-  require(supports.elements, "cloth \"" + cloth + "\" is made of a fabric, but " + integrator +
-                                 " supports springs only; use " + list_supporting(&Support::elements) +
-                                 "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
+  require(supports.elements,
+          "cloth \"" + cloth + "\" is made of a fabric, but " + integrator + " supports springs only; use " +
+              list_supporting(&Support::elements) +
+              "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
   require(elements.thread_bends.empty() || supports.bending_memory,
           "cloth \"" + cloth + "\" has a bend_hysteresis or bend_set, but " + integrator +
               " does not support it; use " + list_supporting(&Support::bending_memory) +
