@@ -10,6 +10,7 @@
 #include "view_report.h"
 #include "weft/error.h"
 #include "weft/scene/tunables.h"
+#include "weft/scene/unsupported.h"
 
 namespace weft::engine::app {
 namespace {
@@ -299,11 +300,7 @@ void Viewer::toggle_loop() {
 
 void Viewer::set_integrator(int side, const std::string& name) {
   sides_[side]->live()->set_integrator(name);
-  const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-  const auto& cloths = edits_->now().cloths;
-  if (num_sides() > 1 ||
-      (!find_integrator(name).supports.elements && std::any_of(cloths.begin(), cloths.end(), is_fabric)))
-    return;
+  if (num_sides() > 1 || !find_unsupported(edits_->now(), name).empty()) return;
   SceneDesc next = edits_->now();
   next.solver.integrator = name;
   edits_->edit(std::move(next), "integrator");

@@ -199,7 +199,7 @@ Findings fabric_drape(const SectionOptions& options) {
   return result;
 }
 
-Findings fabric_presets(const SectionOptions& options) {
+Findings fabric_drapes(const SectionOptions& options) {
   Findings result;
   Table table{{"fabric", "drape coefficient [%]", "folds"},
               {},

@@ -15,7 +15,7 @@ Findings fabric_cantilever(const SectionOptions& options);
 Findings fabric_drape(const SectionOptions& options);
 
 /// Drape coefficient and folds of every preset.
-Findings fabric_presets(const SectionOptions& options);
+Findings fabric_drapes(const SectionOptions& options);
 
 /// The drape of a soft, stiffly woven fabric against the mesh, the stiffness of its threads and their direction:
 /// membranes that lock hold it up.

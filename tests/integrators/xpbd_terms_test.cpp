@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/forces/every_term.h"
+#include "weft/forces/terms.h"
 #include "weft/integrators/integrator.h"
 
 namespace weft::engine {
@@ -26,7 +27,7 @@ std::shared_ptr<const ClothModel> without_damping_and_memory(const ClothModel& m
 }
 
 TEST(XpbdTerms, HaveTheForcesOfTheListInShortSteps) {
-  constexpr double kStep = 2e-5;
+  constexpr double kStep = 5e-6;
   const auto jobs = make_serial_jobs();
   int num_telling = 0;
   for (const auto& [name, whole, start] : test::make_crumpled_cloths()) {

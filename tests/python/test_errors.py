@@ -275,6 +275,9 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: bag().set_pressure(np.inf), "pressure: expected a finite number, found inf"),
     (lambda: bag().set_pressure(-101325, sealed=True),
      'cloth "cloth": sealed gas requires a volume, and a pressure above -101325 Pa'),
+    (lambda: bag(integrator="xpbd"),
+     'cloth "cloth" has a bend_hysteresis or bend_set, but xpbd does not support it; use implicit_euler or newton; or '
+     "set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0"),
     (lambda: empty(integrator="paper").add_cloth(SQUARE, fabric=weft.Springs(), stitches=[(0, 2)]),
      'cloth "cloth" has seams, but paper does not support them; use implicit_euler, newton or xpbd'),
     (lambda: bag(weft.Springs(), integrator="paper").set_pressure(5),

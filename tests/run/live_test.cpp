@@ -121,6 +121,20 @@ TEST(Live, EveryIntegratorTakesOverFromEveryOther) {
   EXPECT_THROW(live.set_integrator("verlet"), InputError);
 }
 
+TEST(Live, AnIntegratorThatDoesNotSupportTheSceneIsRefusedAndPlayGoesOn) {
+  for (const auto& [name, why] : {std::pair("paper", "paper supports springs only"),
+                                  std::pair("xpbd", "xpbd does not support bend_hysteresis")}) {
+    LiveSimulation live(shipped("drape_sphere", {"cloth[0].fabric=denim", "cloth[0].grid.cells=[8, 8]"}),
+                        {.playing = false});
+    live.set_integrator(name);
+    const LiveFrame refused = wait_for(live, [](const LiveFrame& f) { return !f.status.warnings.empty(); });
+    EXPECT_EQ(refused.status.warnings[0].find(std::string("keeping newton: ") + why), 0u)
+        << refused.status.warnings[0];
+    live.step(3);
+    EXPECT_EQ(wait_for_steps(live, 3).status.failure, "");
+  }
+}
+
 TEST(Live, SpringModelsChangeWhereTheClothIs) {
   LiveSimulation live(small_scene(), {.playing = false});
   live.step(30);

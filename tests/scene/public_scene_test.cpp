@@ -61,11 +61,11 @@ TEST(PublicScene, LoadsEveryShippedSceneByItsName) {
 TEST(PublicScene, SetChangesOneValue) {
   Scene scene = Scene::parse(kText);
   scene.set("scene.duration=3");
-  scene.set("cloth[0].fabric=denim");
+  scene.set("cloth[0].fabric=leather");
   scene.set("solver.integrator=xpbd");
   EXPECT_EQ(scene.num_frames(), 90);
   const engine::SceneDesc& desc = SceneAccess::desc(scene);
-  EXPECT_EQ(desc.cloths[0].fabric->name, "denim");
+  EXPECT_EQ(desc.cloths[0].fabric->name, "leather");
   EXPECT_EQ(desc.solver.integrator, "xpbd");
 }
 

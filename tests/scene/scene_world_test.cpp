@@ -164,7 +164,7 @@ TEST(SceneWorld, StitchesTheLinesOfAFile) {
   EXPECT_EQ(message_of([&] { build("mesh = \"plain.obj\"\nstitches = true\n"); }),
             "cloth \"cloth\": stitches are the lines of its file, l of an OBJ file, but it has none");
   EXPECT_NE(message_of([&] {
-              build("mesh = \"panels.obj\"\nstitches = true\n[solver]\nintegrator = \"xpbd\"\n");
+              build("mesh = \"panels.obj\"\nstitches = true\n[solver]\nintegrator = \"paper\"\n");
             }).find("does not support the seams"),
             std::string::npos);
   std::filesystem::remove_all(folder);

@@ -78,10 +78,14 @@ struct TensileTest {
     num_clamped = held.size();
   }
 
-  StepReport pull(double speed) {
+  StepReport try_pull(double speed) {
     for (std::size_t k = num_fixed; k < num_clamped; ++k) held[k].x += speed * kStep;
     world.move_pins(strip, held);
-    const StepReport report = world.step(kStep);
+    return world.step(kStep);
+  }
+
+  StepReport pull(double speed) {
+    const StepReport report = try_pull(speed);
     EXPECT_TRUE(report.ok);
     return report;
   }
@@ -214,6 +218,44 @@ TEST(Tearing, SnapshotsAndSavedWorldsHoldIt) {
   TensileTest test(2);
   tear(test);
   expect_same_continuation(test.world, 20, kStep);
+}
+
+/// The first step that would tear in one of its parts but the last, and fails in the next.
+TEST(Tearing, AStepThatFailsLeavesTheClothAsItWas) {
+  TensileTest test(2);
+  engine::World& inside = WorldAccess::engine(test.world);
+  bool has_failed = false;
+  for (int n = 0; n < 200 && !has_failed; ++n) {
+    const Snapshot before = test.world.snapshot();
+    const std::uint64_t hash = test.world.state_hash();
+    const int num_particles = test.world.num_particles(test.strip);
+    const std::vector<Vec3> held = test.held;
+    inside.set_observer([&](double) {
+      const int now = inside.model(test.strip).num_particles();
+      if (now > num_particles) inside.set_forces(test.strip, std::vector<engine::Vec3>(now, {1e38, 0, 0}));
+    });
+    const StepReport report = test.try_pull(4 * kSpeed);
+    inside.set_observer({});
+    if (!report.ok) {
+      has_failed = true;
+      EXPECT_EQ(report.torn, 0);
+      EXPECT_EQ(test.world.num_particles(test.strip), num_particles);
+      EXPECT_EQ(test.world.state_hash(), hash);
+    }
+    if (report.ok && report.torn == 0) continue;
+    const auto tear_from_there = [&] {
+      test.held = held;
+      EXPECT_GT(test.pull(4 * kSpeed).torn, 0);
+      return test.world.state_hash();
+    };
+    const std::uint64_t after_failure = report.ok ? 0 : tear_from_there();
+    test.world.restore(before);
+    const std::uint64_t after_restore = tear_from_there();
+    if (!report.ok) {
+      EXPECT_EQ(after_failure, after_restore);
+    }
+  }
+  EXPECT_TRUE(has_failed);
 }
 
 TEST(Tearing, ASnapshotOfTheWholeClothMakesItWhole) {

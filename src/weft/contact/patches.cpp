@@ -23,28 +23,41 @@ Float4 normal_to(const Float4& a, const Float4& b) {
   return {n.x() / length, n.y() / length, n.z() / length, 0};
 }
 
-/// Shortest path lengths from `from` along the edges of some triangles.
+/// Shortest path lengths along the edges of some triangles.
 class Ways {
  public:
   Ways(const Surface& surface, const std::vector<Vec3>& x, std::span<const int> triangles) {
+    for (const int t : triangles)
+      vertices_.insert(vertices_.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     for (const int t : triangles) {
+      Triangle& own = corners_.emplace_back();
       for (int k = 0; k < 3; ++k) {
-        const int i = number_of(surface.triangles[t][k]), j = number_of(surface.triangles[t][(k + 1) % 3]);
+        const int v = surface.triangles[t][k];
+        own[k] =
+            static_cast<int>(std::lower_bound(vertices_.begin(), vertices_.end(), v) - vertices_.begin());
+      }
+      for (int k = 0; k < 3; ++k) {
+        const int i = own[k], j = own[(k + 1) % 3];
         const double length = (x[vertices_[i]] - x[vertices_[j]]).norm();
         sides_.push_back({i, j, length});
         sides_.push_back({j, i, length});
       }
     }
+    lengths_.resize(vertices_.size());
+    std::sort(sides_.begin(), sides_.end());
+    sides_.erase(std::unique(sides_.begin(), sides_.end()), sides_.end());
   }
 
-  int number_of(int vertex) {
-    const auto number = std::find(vertices_.begin(), vertices_.end(), vertex) - vertices_.begin();
-    if (number == static_cast<std::ptrdiff_t>(vertices_.size())) vertices_.push_back(vertex);
-    return static_cast<int>(number);
-  }
+  /// Numbers of the corners of the n-th triangle.
+  const Triangle& corners(std::size_t n) const { return corners_[n]; }
 
-  std::vector<double> from(int number) const {
-    std::vector<double> length(vertices_.size(), std::numeric_limits<double>::infinity());
+  /// Lengths of the paths from a number to each number.
+  const std::vector<double>& from(int number) {
+    std::vector<double>& length = lengths_[number];
+    if (!length.empty()) return length;
+    length.assign(vertices_.size(), std::numeric_limits<double>::infinity());
     length[number] = 0;
     for (bool is_changing = true; is_changing;) {
       is_changing = false;
@@ -62,11 +75,20 @@ class Ways {
   struct Side {
     int from, to;
     double length;
+    auto operator<=>(const Side&) const = default;
   };
 
-  std::vector<int> vertices_;
+  std::vector<int> vertices_;  // ascending; a number is an index
+  std::vector<Triangle> corners_;
   std::vector<Side> sides_;
+  std::vector<std::vector<double>> lengths_;  // of from(), once it was called
 };
+
+/// Lower bound of the distance of two triangles: that of their boxes.
+double box_distance(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  constexpr double kShare = 1 - 1e-12;
+  return kShare * a.exteriorDistance(b);
+}
 
 /// The least distance of two features, one of each triangle, that have no vertex in common.
 double feature_distance(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t) {
@@ -313,11 +335,15 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
   }
   const double around = facing > kMinFacing ? reach_around(surface, rest, region, own, normal) : 0;
   Ways ways(surface, rest, region);
+  std::vector<Eigen::AlignedBox3d> boxes(region.size());
+  for (std::size_t t = 0; t < region.size(); ++t) {
+    for (const int v : surface.triangles[region[t]]) boxes[t].extend(rest[v]);
+  }
   double least = std::numeric_limits<double>::infinity(), detour = 1;
   for (std::size_t s = 0; s < own; ++s) {
     const Triangle& a = surface.triangles[region[s]];
-    std::array<std::vector<double>, 3> from;
-    for (int k = 0; k < 3; ++k) from[k] = ways.from(ways.number_of(a[k]));
+    std::array<const std::vector<double>*, 3> from{};
+    for (int k = 0; k < 3; ++k) from[k] = &ways.from(ways.corners(s)[k]);
     const double side_a = longest_side(rest, a);
     for (std::size_t t = 0; t < region.size(); ++t) {
       const Triangle& b = surface.triangles[region[t]];
@@ -325,12 +351,16 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
       const double side_b = longest_side(rest, b);
       double way = std::numeric_limits<double>::infinity();
       for (int k = 0; k < 3; ++k) {
-        for (int l = 0; l < 3; ++l) way = std::min(way, from[k][ways.number_of(b[l])]);
+        for (int l = 0; l < 3; ++l) way = std::min(way, (*from[k])[ways.corners(t)[l]]);
       }
       way += side_a + side_b;
       // For far triangles the corners suffice.
-      const double between = (rest[a[0]] - rest[b[0]]).norm() - side_a - side_b;
-      const double distance = between > 2 * side_a ? between : feature_distance(rest, a, b);
+      double distance = (rest[a[0]] - rest[b[0]]).norm() - side_a - side_b;
+      if (distance <= 2 * side_a) {
+        const double bound = box_distance(boxes[s], boxes[t]);
+        if (bound >= least && way <= detour * std::max(bound, around)) continue;  // neither would change
+        distance = feature_distance(rest, a, b);
+      }
       least = std::min(least, distance);
       detour = std::max(detour, way / std::max(distance, around));
     }

@@ -189,7 +189,6 @@ XpbdElements::XpbdElements(const ClothModel& model) : topology_(model.topology),
 
 void XpbdElements::colour_elements(const ClothElements& e) {
   const int num_particles = topology_->num_particles();
-  law_ = e.law();
   patches_ = colour_items(static_cast<int>(e.patches.size()), num_particles, [&](int k) {
     return std::span(e.patches[k].vertices).first(static_cast<std::size_t>(e.patches[k].num_vertices()));
   });
@@ -226,10 +225,11 @@ void XpbdElements::project(const XpbdSubstep& substep, JobSystem& jobs, XpbdPart
 void XpbdElements::project_elements(const ClothElements& e, double step, JobSystem& jobs,
                                     XpbdParticles& particles) const {
   const Step damped{step, e.damping / step};
+  const PatchLaw law = e.law();
   for_colours(stencils_, jobs, [&](int r) { project_stencil(e.bending, r, damped, particles); });
   for_colours(hinges_, jobs, [&](int k) { project_hinge(e.hinges[k], damped, particles); });
   for_colours(patches_, jobs, [&](int k) {
-    project_patch(e.patches[k], law_, damped, particles);
+    project_patch(e.patches[k], law, damped, particles);
     project_collapse(e.patches[k], collapse_law_, step, particles);
   });
   for_colours(limits_, jobs, [&](int k) {

@@ -45,7 +45,6 @@ class XpbdElements {
 
   std::shared_ptr<const ClothTopology> topology_;
   std::shared_ptr<const ClothElements> elements_;  // null: none
-  PatchLaw law_;
   StrainLimit collapse_law_;
   double closed_seam_ = 0;    // r₀ [m]
   std::vector<int> limited_;  // springs that have the limit

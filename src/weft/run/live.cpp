@@ -9,6 +9,7 @@
 #include "weft/run/report.h"
 #include "weft/run/warnings.h"
 #include "weft/scene/scene_changes.h"
+#include "weft/scene/unsupported.h"
 #include "weft/world/measures.h"
 
 namespace weft::engine {
@@ -144,11 +145,8 @@ void LiveSimulation::reset() {
 void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
-    const auto is_fabric = [](const ClothSceneDesc& cloth) { return cloth.fabric.has_value(); };
-    if (!find_integrator(name).supports.elements &&
-        std::any_of(wanted_.cloths.begin(), wanted_.cloths.end(), is_fabric)) {
-      status_.warnings = {name + " supports springs only, and this scene has a fabric: keeping " +
-                          status_.integrator};
+    if (const auto unsupported = find_unsupported(wanted_, name); !unsupported.empty()) {
+      status_.warnings = {"keeping " + status_.integrator + ": " + name + ' ' + unsupported.front()};
       return;
     }
     leave_past();

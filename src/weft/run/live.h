@@ -48,8 +48,8 @@ class LiveSimulation {
   void step(int count = 1);  // pauses, then makes `count` steps without pacing
   void step_frame();         // likewise, to the end of the frame of the scene
   void reset();              // restarts with all changes; releases the grab
-  /// Throws InputError for an unknown name. An integrator that supports springs only is refused, with a
-  /// warning, if a cloth has a fabric.
+  /// Throws InputError for an unknown name. An integrator that does not support the scene is refused, with a
+  /// warning.
   void set_integrator(const std::string& name);
   void set_model(SpringModel model);  // of cloths that are grids; positions are kept
   /// Takes what another scene changes (scene_changes.h); the rest waits for reset(), see

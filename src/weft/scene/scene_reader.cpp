@@ -7,8 +7,8 @@
 #include <iterator>
 #include <system_error>
 
-#include "weft/fabric/bending_rows.h"
 #include "weft/scene/scene_sections.h"
+#include "weft/scene/unsupported.h"
 
 namespace weft::engine {
 namespace {
@@ -144,32 +144,8 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 }
 
 void check_integrator(TomlTable& solver, const SceneDesc& scene) {
-  const Support& supports = find_integrator(scene.solver.integrator).supports;
-  const auto refuse = [&](const std::string& what, bool Support::*by, const std::string& or_else = "") {
-    solver.get("integrator")
-        .mistake("does not support " + what + "; use " + list_supporting(by, "\"") + or_else);
-  };
-  if (scene.wind.air.density > 0 && !supports.aerodynamics)
-    refuse("wind.air", &Support::aerodynamics, "; or only wind.drag");
-  for (const ClothSceneDesc& cloth : scene.cloths) {
-    const std::string name = " of cloth \"" + cloth.name + '"';
-    if ((cloth.pressure != 0 || cloth.is_sealed) && !supports.pressure)
-      refuse("the pressure" + name, &Support::pressure);
-    if ((!cloth.seams.empty() || cloth.has_stitches) && !supports.seams)
-      refuse("the seams" + name, &Support::seams);
-    if (cloth.fabric && has_bending_memory(cloth.fabric->numbers) && !supports.bending_memory)
-      refuse("bend_hysteresis and bend_set" + name, &Support::bending_memory,
-             "; or set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0");
-  }
-  if (supports.elements) return;
-  for (const ClothSceneDesc& cloth : scene.cloths) {
-    if (!cloth.fabric) continue;
-    solver.get("integrator")
-        .mistake("supports springs only, but cloth \"" + cloth.name + "\" is made of a fabric; use " +
-                 list_supporting(&Support::elements, "\"") +
-                 "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
-    return;
-  }
+  for (const std::string& sentence : find_unsupported(scene, scene.solver.integrator))
+    solver.get("integrator").mistake(sentence);
 }
 
 /// A number applies to the integrator in use; "auto" leaves the choice to it.
