@@ -20,7 +20,7 @@ done
 
 # Real fabric with the default integrator.
 "$weft" render fabrics/drape --camera 0,16,1.05 --size 1280x480 --out "$images/fabrics.jpg"
-"$weft" render fabrics/crease --frames 85,210 --columns 2 --camera 10,24 --look-at 0,-0.005,0 --distance 0.6 --size 640x400 \
+"$weft" render fabrics/crease --frames 85,210 --columns 2 --camera 10,20 --look-at 0.01,-0.005,0.015 --distance 0.68 --size 640x400 \
   --out "$images/crease.jpg"
 "$weft" render garment_hung --frames 0,30,90 --columns 3 --size 480x360 --out "$images/garment_hung.jpg"
 
