@@ -202,6 +202,9 @@ void Viewer::answer(Answer answer) {
 // ---- Edits ----------------------------------------------------------------------------------------------
 
 void Viewer::edit(SceneDesc next, const std::string& what) {
+  const std::string& integrator = next.solver.integrator;
+  if (const auto unsupported = find_unsupported(next, integrator); !unsupported.empty())
+    return say(integrator + ' ' + unsupported.front().sentence);
   edits_->edit(std::move(next), what);
   apply_edits();
 }
@@ -313,7 +316,10 @@ void Viewer::cycle_integrator(bool backwards) {
   const auto& names = integrator_names();
   const auto now = std::find(names.begin(), names.end(), sides_[s]->status()->integrator) - names.begin();
   const auto count = static_cast<std::ptrdiff_t>(names.size());
-  set_integrator(s, std::string(names[(now + (backwards ? count - 1 : 1)) % count]));
+  for (std::ptrdiff_t k = 1; k < count; ++k) {
+    const std::string name(names[(now + (backwards ? count - k : k)) % count]);
+    if (find_unsupported(edits_->now(), name).empty()) return set_integrator(s, name);
+  }
 }
 
 void Viewer::set_model(SpringModel model) {

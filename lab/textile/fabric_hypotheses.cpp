@@ -167,14 +167,14 @@ Findings fabric_drape(const SectionOptions& options) {
   const std::vector<int> rings = options.quick ? std::vector{10, 15} : std::vector{15, 20, 30, 45};
   Table table{{"rings", "regular", "folds", "irregular", "folds"},
               {},
-              "Drape coefficient of denim, mean and spread of five specimens [%]"};
+              "Drape coefficient of denim without hysteresis, mean and spread of five specimens [%]"};
   PlotPanel panel{"drape coefficient of denim", {{"regular rings", {}}, {"irregular rings", {}}}};
   for (const int n : rings) {
     std::vector<std::string> row = {std::to_string(n)};
     for (const SpecimenMesh mesh : {SpecimenMesh::grid, SpecimenMesh::random}) {
       options.report_progress("denim, " + std::to_string(n) + " rings");
       const Findings test =
-          test_drape(find_fabric("denim"), {.mesh = mesh, .resolution = n}, options.threads);
+          test_drape(find_elastic_fabric("denim"), {.mesh = mesh, .resolution = n}, options.threads);
       const double coefficient = find_metric(test, "drape_coefficient");
       row.push_back(digits(coefficient, 3) + " ± " +
                     digits(find_metric(test, "drape_coefficient_spread"), 2));
@@ -212,6 +212,7 @@ Findings fabric_drapes(const SectionOptions& options) {
                           digits(find_metric(test, "drape_coefficient"), 3) + " ± " +
                               digits(find_metric(test, "drape_coefficient_spread"), 2),
                           digits(find_metric(test, "drape_nodes"), 2)});
+    result.warnings.insert(result.warnings.end(), test.warnings.begin(), test.warnings.end());
   }
   result.tables.push_back(std::move(table));
   return result;

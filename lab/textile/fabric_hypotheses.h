@@ -11,7 +11,7 @@ Findings fabric_constants(const SectionOptions& options);
 /// H/W of cantilevers without hysteresis against mesh resolution, compared with the elastica.
 Findings fabric_cantilever(const SectionOptions& options);
 
-/// The drape coefficient of denim against the number of rings of the disc's mesh.
+/// The drape coefficient of denim without hysteresis against the number of rings of the disc's mesh.
 Findings fabric_drape(const SectionOptions& options);
 
 /// Drape coefficient and folds of every preset.

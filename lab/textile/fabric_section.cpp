@@ -15,7 +15,7 @@ constexpr FabricHypothesis kHypotheses[] = {
     {"Laboratory tests measure the given stiffness", fabric_constants},
     {"Strips bend like the elastica", fabric_cantilever},
     {"The drape coefficient converges with the mesh", fabric_drape},
-    {"The presets drape from soft to stiff", fabric_drapes},
+    {"The presets in the drape test", fabric_drapes},
     {"Stiff membranes do not lock", fabric_locking},
     {"One fabric behaves the same on five meshes", fabric_meshes},
     {"One fabric behaves the same at every step length", fabric_steps},

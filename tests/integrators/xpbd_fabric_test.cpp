@@ -58,7 +58,7 @@ TEST(XpbdFabric, SwingsAsWithImplicitEulerAtTheSameSteps) {
 }
 
 TEST(XpbdFabric, FallsFreelyAndStaysFlat) {
-  for (const auto& model : all_kinds(find_fabric("denim"))) {
+  for (const auto& model : all_kinds(find_fabric("cotton_shirting"))) {
     ClothState state = make_state(model->topology->mesh.positions);
     const auto xpbd = make_xpbd({});
     run(*xpbd, *model, {}, 20, state);
@@ -82,7 +82,7 @@ TEST(XpbdFabric, ShakenKeepsItsMomentum) {
 
 TEST(XpbdFabric, HasTheSameBitsForAnyNumberOfThreads) {
   const Grid grid{.size_x = 1, .size_z = 1, .cells_x = 60, .cells_z = 60};  // several chunks a colour
-  Fabric fabric = find_fabric("denim");
+  Fabric fabric = find_fabric("cotton_shirting");
   fabric.damping = 0.01;
   for (const auto& model : {test::on_mesh(grid, fabric), with_hinges(grid, fabric)}) {
     const Environment environment = test::hung_by(*model, {0, 60});

@@ -109,7 +109,8 @@ def keys(*times: float) -> list[weft.KeyFrame]:
 
 
 PRESETS = ", ".join(name for name, _ in weft.fabric_presets())
-INTEGRATORS = " or ".join((", ".join(weft.integrator_names()[:-1]), weft.integrator_names()[-1]))
+NAMES = sorted(weft.integrator_names(), key="newton".__ne__)  # the default first
+INTEGRATORS = f"{', '.join(NAMES[:-1])} or {NAMES[-1]}"
 CALLS: list[tuple[Callable[[], object], str]] = [
     # Colliders.
     (lambda: collider(weft.Sphere(center=(NAN, NAN, NAN)), rotation=(0, 0, 30)),
@@ -276,12 +277,12 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: bag().set_pressure(-101325, sealed=True),
      'cloth "cloth": sealed gas requires a volume, and a pressure above -101325 Pa'),
     (lambda: bag(integrator="xpbd"),
-     'cloth "cloth" has a bend_hysteresis or bend_set, but xpbd does not support it; use implicit_euler or newton; or '
+     'cloth "cloth" has a bend_hysteresis or bend_set, but xpbd does not support it; use newton or implicit_euler, or '
      "set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0"),
     (lambda: empty(integrator="paper").add_cloth(SQUARE, fabric=weft.Springs(), stitches=[(0, 2)]),
-     'cloth "cloth" has seams, but paper does not support them; use implicit_euler, newton or xpbd'),
+     'cloth "cloth" has seams, but paper does not support them; use newton, implicit_euler or xpbd'),
     (lambda: bag(weft.Springs(), integrator="paper").set_pressure(5),
-     'cloth "cloth" has a pressure, but paper does not support it; use implicit_euler, newton or xpbd'),
+     'cloth "cloth" has a pressure, but paper does not support it; use newton, implicit_euler or xpbd'),
     (lambda: put(cloth(), "velocities", (0, 0, -1e39)), 'cloth "cloth": velocities must be finite, and at most 1e38'),
     (lambda: put(cloth(), "positions", (0, 1e39, 0)), 'cloth "cloth": positions must be finite, and at most 1e38'),
     (lambda: cloth_of(hanging(2)).set_targets([0], (1e39, 0, 0)),
@@ -313,7 +314,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     # Settings.
     (lambda: empty(integrator="x"), f'unknown integrator "x"; available: {INTEGRATORS}'),
     (lambda: put(empty(), "integrator", weft.IntegratorSettings(integrator="xpbd", is_double=True)),
-     'integrator "xpbd" does not support double precision; use implicit_euler or newton'),
+     'integrator "xpbd" does not support double precision; use newton or implicit_euler'),
     (lambda: solve(explicit_euler=weft.ExplicitSettings(substeps=-1)), "explicit: substeps must be 0 or more"),
     (lambda: solve(implicit_euler=weft.ImplicitEulerSettings(tolerance=NAN)),
      "implicit_euler: tolerance must be above 0 m/s"),
@@ -322,15 +323,15 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: solve(newton=weft.NewtonSettings(iterations=-1)), "newton: iterations must be 0 or more"),
     (lambda: solve(xpbd=weft.XpbdSettings(substeps=0)), "xpbd: substeps must be at least 1"),
     (lambda: put(hanging(2), "integrator", "paper"),
-     'cloth "sheet" is made of a fabric, but paper supports springs only; use implicit_euler, newton or xpbd; or set '
+     'cloth "sheet" is made of a fabric, but paper supports springs only; use newton, implicit_euler or xpbd, or set '
      "spring_structural, spring_shear and spring_bend instead of the fabric"),
     (lambda: empty(integrator="explicit").add_cloth(weft.grid(cells=(2, 2))),
-     'cloth "cloth" is made of a fabric, but explicit supports springs only; use implicit_euler, newton or xpbd; or '
+     'cloth "cloth" is made of a fabric, but explicit supports springs only; use newton, implicit_euler or xpbd, or '
      "set spring_structural, spring_shear and spring_bend instead of the fabric"),
     (lambda: put(empty(), "division", weft.StepDivision(shortest=0)),
      "the shortest part of a step must be more than 0 s"),
     (lambda: put(empty(integrator="xpbd"), "division", weft.StepDivision(enabled=True)),
-     "xpbd does not support step division; use implicit_euler or newton"),
+     "xpbd does not support step division; use newton or implicit_euler"),
     (lambda: put(empty(), "threads", 0), "threads: expected at least 1, found 0"),
     (lambda: put(empty(), "wind", weft.Wind(velocity=(NAN, 0, 0))),
      "the wind's velocity must be finite, and its drag 0 or more"),
@@ -340,7 +341,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: put(empty(), "wind", weft.Wind(air=weft.Air(density=1), gusts=weft.Gusts(length=0))),
      "gusts require a strength of 0 or more, and a length and a time above 0"),
     (lambda: put(empty(integrator="xpbd"), "wind", weft.Wind(air=weft.Air(density=1))),
-     "xpbd does not support aerodynamic drag and lift; use implicit_euler or newton; or only the wind's drag"),
+     "xpbd does not support aerodynamic drag and lift; use newton or implicit_euler, or only the wind's drag"),
     (lambda: put(empty(), "wind", weft.Wind(keys=[weft.WindKey(time=1), weft.WindKey(time=1)])),
      "the wind's keys must be finite, at increasing times"),
     (lambda: two_planes()[0].set_friction(*two_planes()[1:], 1), "this ColliderId belongs to another world"),

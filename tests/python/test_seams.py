@@ -33,7 +33,7 @@ def test_lines_of_a_file_are_stitches(tmp_path: Path) -> None:
     assert open_by.max() < 0.002
 
 
-@pytest.mark.parametrize("integrator", ["newton", "implicit_euler"])
+@pytest.mark.parametrize("integrator", ["newton", "implicit_euler", "xpbd"])
 def test_panels_are_sewn(integrator: str) -> None:
     world = weft.World(integrator=integrator)
     world.gravity = (0, 0, 0)

@@ -122,10 +122,15 @@ TEST(Live, EveryIntegratorTakesOverFromEveryOther) {
 }
 
 TEST(Live, AnIntegratorThatDoesNotSupportTheSceneIsRefusedAndPlayGoesOn) {
-  for (const auto& [name, why] : {std::pair("paper", "paper supports springs only"),
-                                  std::pair("xpbd", "xpbd does not support bend_hysteresis")}) {
-    LiveSimulation live(shipped("drape_sphere", {"cloth[0].fabric=denim", "cloth[0].grid.cells=[8, 8]"}),
-                        {.playing = false});
+  struct Case {
+    const char *change, *name, *why;
+  };
+  for (const auto& [change, name, why] :
+       std::initializer_list<Case>{{"cloth[0].fabric=silk", "paper", "paper supports springs only"},
+                                   {"cloth[0].fabric=denim", "xpbd", "xpbd does not support bend_hysteresis"},
+                                   {"solver.adaptive=true", "xpbd", "xpbd does not support step division"},
+                                   {"solver.precision=double", "xpbd", "xpbd does not support \"double\""}}) {
+    LiveSimulation live(shipped("drape_sphere", {change, "cloth[0].grid.cells=[8, 8]"}), {.playing = false});
     live.set_integrator(name);
     const LiveFrame refused = wait_for(live, [](const LiveFrame& f) { return !f.status.warnings.empty(); });
     EXPECT_EQ(refused.status.warnings[0].find(std::string("keeping newton: ") + why), 0u)

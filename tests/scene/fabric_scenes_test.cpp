@@ -125,7 +125,8 @@ TEST(FabricScenes, AreRefusedByIntegratorsOfSpringsAlone) {
       build_world(scene, make_serial_jobs());
       FAIL() << name;
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("use implicit_euler, newton or xpbd"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("use newton, implicit_euler or xpbd"), std::string::npos)
+          << error.what();
     }
   }
   SceneWorld scene = built("fabric = \"denim\"\n");

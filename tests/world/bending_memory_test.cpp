@@ -178,7 +178,7 @@ TEST(BendingMemory, IsRefusedByXpbd) {
   world.set_integrator({.integrator = "xpbd"});
   const ClothId cloth = world.add_cloth(strip_of(slow(0, 0), false));
   const std::string sentence =
-      "has a bend_hysteresis or bend_set, but xpbd does not support it; use implicit_euler or newton";
+      "has a bend_hysteresis or bend_set, but xpbd does not support it; use newton or implicit_euler";
   EXPECT_NE(message_of([&] { world.add_cloth(strip_of(slow(0, 60), true)); }).find(sentence),
             std::string::npos);
   EXPECT_NE(message_of([&] { world.set_fabric(cloth, slow(1e-3, 0)); }).find(sentence), std::string::npos);

@@ -146,6 +146,24 @@ TEST(Pressure, XpbdInflatesAlikeWithSubstepsEnough) {
   }
 }
 
+TEST(Pressure, OfXpbdChangesDuringARunAndGoesOnAfterASnapshot) {
+  World world = without_gravity();
+  world.set_integrator({.integrator = "xpbd"});
+  const ClothId ball =
+      world.add_cloth({.shape = geodesic(0.2, 2), .fabric = film(2000), .warp = Vec3{1, 0, 0}});
+  world.add_pin(ball, {.particles = {0}});
+  const Vec3 pinned = world.positions(ball)[0];
+  double before = world.volume(ball);
+  for (const double pressure : {20.0, 60.0}) {
+    world.set_pressure(ball, pressure);
+    settle(world, 10);
+    EXPECT_GT(world.volume(ball), 1.001 * before);
+    before = world.volume(ball);
+  }
+  EXPECT_LT(length(world.positions(ball)[0] - pinned), 1e-6);
+  expect_same_continuation(world, 10, kStep);
+}
+
 TEST(Pressure, DoesNotMoveClothAsAWhole) {
   World world = without_gravity();
   TriangleMesh pear = geodesic(0.2, 2);
@@ -241,7 +259,7 @@ TEST(Pressure, MistakesAreRefused) {
   const ClothId sprung = of_springs.add_cloth({.shape = geodesic(0.2, 1), .fabric = Springs{}});
   of_springs.set_pressure(sprung, 100);
   const std::string refusal =
-      "cloth \"cloth\" has a pressure, but paper does not support it; use implicit_euler, newton or xpbd";
+      "cloth \"cloth\" has a pressure, but paper does not support it; use newton, implicit_euler or xpbd";
   EXPECT_EQ(message_of([&] { of_springs.set_integrator({.integrator = "paper"}); }), refusal);
   of_springs.set_pressure(sprung, 0);
   of_springs.set_integrator({.integrator = "paper"});

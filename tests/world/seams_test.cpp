@@ -111,7 +111,7 @@ TEST(Stitches, SewAPatchOnASheet) {
 }
 
 constexpr const char* kRefusal =
-    "cloth \"cloth\" has seams, but paper does not support them; use implicit_euler, newton or xpbd";
+    "cloth \"cloth\" has seams, but paper does not support them; use newton, implicit_euler or xpbd";
 
 TEST(Stitches, RefuseMistakes) {
   const Halves halves(0.02);

@@ -84,10 +84,10 @@ class Ways {
   std::vector<std::vector<double>> lengths_;  // of from(), once it was called
 };
 
-/// Lower bound of the distance of two triangles: that of their boxes.
+/// Lower bound of the computed distance of two triangles: that of their boxes, less its rounding.
 double box_distance(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
-  constexpr double kShare = 1 - 1e-12;
-  return kShare * a.exteriorDistance(b);
+  constexpr double kRoundingOfDistance = 1e-12;  // of the size of both
+  return a.exteriorDistance(b) - kRoundingOfDistance * a.merged(b).diagonal().norm();
 }
 
 /// The least distance of two features, one of each triangle, that have no vertex in common.
@@ -358,7 +358,7 @@ Patches::Window Patches::measure_rest(const Surface& surface, const std::vector<
       double distance = (rest[a[0]] - rest[b[0]]).norm() - side_a - side_b;
       if (distance <= 2 * side_a) {
         const double bound = box_distance(boxes[s], boxes[t]);
-        if (bound >= least && way <= detour * std::max(bound, around)) continue;  // neither would change
+        if (bound >= least && way / std::max(bound, around) <= detour) continue;  // neither would change
         distance = feature_distance(rest, a, b);
       }
       least = std::min(least, distance);

@@ -7,7 +7,7 @@
 ///   desbrun         Eq. 12 with h·H·v: implicit Euler with a constant approximate Jacobian, solved exactly
 ///   implicit_euler  implicit Euler with the true Jacobian, Newton's method to a tolerance: slow and right
 ///   newton          BDF2, one Newton step, multigrid-preconditioned conjugate gradients: fast and right
-///   xpbd            many small substeps, each one Gauss–Seidel pass over the springs, as in most engines
+///   xpbd            many small substeps, each one Gauss–Seidel pass over springs and elements, as in most engines
 
 #include <memory>
 #include <optional>
@@ -128,12 +128,14 @@ std::span<const IntegratorRow> integrator_rows();
 /// Throws InputError for an unknown name.
 const IntegratorRow& find_integrator(std::string_view name);
 
-/// The integrators for which `is_meant(row)`, for messages: `a, b or c`, each between two quotes.
+/// The integrators for which `is_meant(row)`, for messages: `a, b or c`, the default first, each between two quotes.
 template <class IsMeant>
 std::string list_integrators(const IsMeant& is_meant, const std::string& quote = "") {
   std::vector<std::string> names;
   for (const IntegratorRow& row : integrator_rows()) {
-    if (is_meant(row)) names.push_back(quote + std::string(row.name) + quote);
+    if (!is_meant(row)) continue;
+    const bool is_default = row.name == IntegratorSettings().integrator;
+    names.insert(is_default ? names.begin() : names.end(), quote + std::string(row.name) + quote);
   }
   std::string list;
   for (std::size_t k = 0; k < names.size(); ++k)

@@ -44,7 +44,7 @@ class XpbdIntegrator final : public ClothIntegrator {
     bool operator==(const Layout&) const = default;
   };
 
-  /// Whether the springs of each kind are all equal, and there are no other forces.
+  /// Whether the springs of each kind are all equal, and there are no other forces. Grids have neither seams nor gas.
   static bool is_grid_of_equals(const ClothModel& model) {
     return model.has_equal_springs() && !model.elements && !model.material.structural_z &&
            model.material.damping_time == 0;

@@ -1,5 +1,6 @@
 #include "weft/integrators/xpbd_elements.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -164,7 +165,7 @@ void project_seam(const SeamSpring& spring, double closed, double opening, doubl
   project_scalar(spring.particles,
                  std::array<Vec3, 3>{weights[0] * pull.direction, weights[1] * pull.direction,
                                      weights[2] * pull.direction},
-                 {-pull.force.dot(pull.direction), pull.along}, {.h = h}, particles);
+                 {pull.force.norm(), pull.along}, {.h = h}, particles);
 }
 
 /// body(item) for all items, one colour after the other.
@@ -246,7 +247,9 @@ void XpbdElements::project_gas(const Gas& gas, double step, XpbdParticles& parti
   double compliance = 0;
   for (int i = 0; i < particles.size(); ++i)
     compliance += particles.particle[i].inv_mass() * gradient_[i].squaredNorm();
-  const double volume = gas.orientation * compute_signed_volume(triangles, at);
+  // Sealed gas that is squeezed flat or turned inside out pushes as at a thousandth of its volume.
+  const double volume =
+      std::max(gas.orientation * compute_signed_volume(triangles, at), 1e-3 * gas.sealed_volume);
   const Scalar response{-gas_excess(gas, volume), gas_stiffness(gas, volume)};
   const double lambda = multiplier({.h = step}, response, compliance, 0);
   for (int i = 0; i < particles.size(); ++i)

@@ -146,7 +146,7 @@ void LiveSimulation::set_integrator(const std::string& name) {
   make_integrator({.integrator = name});  // throws on the caller's side
   post([this, name] {
     if (const auto unsupported = find_unsupported(wanted_, name); !unsupported.empty()) {
-      status_.warnings = {"keeping " + status_.integrator + ": " + name + ' ' + unsupported.front()};
+      status_.warnings = {"keeping " + status_.integrator + ": " + name + ' ' + unsupported.front().sentence};
       return;
     }
     leave_past();

@@ -211,7 +211,9 @@ void finish_fabric(TomlTable& cloth, ClothSceneDesc& desc) {
   if (desc.fabric->membrane == Membrane::springs && f.strength > 0)
     cloth.get("membrane").expected("\"triangle\": springs do not tear");
   if (f.strength > 0 && has_bending_memory(f))
-    cloth.get("fabric").mistake("strength is not for cloth with bend_hysteresis or bend_set");
+    cloth.get("fabric").mistake(
+        "cloth with hysteresis or set of bending does not tear; set "
+        "bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0, or strength");
 }
 
 std::vector<Seam> read_seams(TomlTable& cloth) {

@@ -144,8 +144,11 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 }
 
 void check_integrator(TomlTable& solver, const SceneDesc& scene) {
-  for (const std::string& sentence : find_unsupported(scene, scene.solver.integrator))
-    solver.get("integrator").mistake(sentence);
+  const std::string& integrator = scene.solver.integrator;
+  for (const auto& [key, sentence] : find_unsupported(scene, integrator)) {
+    const bool is_own = std::string_view(key) == "integrator";
+    solver.get(key).mistake(is_own ? sentence : integrator + ' ' + sentence);
+  }
 }
 
 /// A number applies to the integrator in use; "auto" leaves the choice to it.
@@ -169,15 +172,11 @@ void read_adaptive(TomlTable& solver, SceneDesc& scene) {
   bool is_adaptive = false;
   if (!value || !value.read(is_adaptive)) return;
   scene.adaptive = is_adaptive;
-  if (is_adaptive && !find_integrator(scene.solver.integrator).supports.step_division)
-    value.mistake(scene.solver.integrator + " does not support step division; use " +
-                  list_supporting(&Support::step_division, "\""));
 }
 
 void read_solver(TomlTable table, SceneDesc& scene) {
   IntegratorSettings& solver = scene.solver;
   read_integrator(table, solver.integrator);
-  check_integrator(table, scene);
   table.read("steps_per_frame", scene.steps_per_frame, IntegerRule{1, 100000});
   read_adaptive(table, scene);
   table.read("max_steps_per_frame", scene.max_steps_per_frame, IntegerRule{1, 4096});
@@ -186,9 +185,7 @@ void read_solver(TomlTable table, SceneDesc& scene) {
       "quality", solver.newton.quality,
       {{"fast", NewtonQuality::fast}, {"default", NewtonQuality::normal}, {"high", NewtonQuality::high}});
   table.read_choice<bool>("precision", solver.is_double, {{"single", false}, {"double", true}});
-  if (solver.is_double && !find_integrator(solver.integrator).make_in_double)
-    table.get("precision")
-        .mistake(solver.integrator + " does not support \"double\"; use " + list_in_double("\""));
+  check_integrator(table, scene);
   table.read("tolerance", solver.implicit_euler.tolerance, above_zero("m/s"));
   table.read("contact", scene.contact);
   table.read("untangle", scene.untangle);

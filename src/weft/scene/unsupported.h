@@ -9,8 +9,12 @@
 
 namespace weft::engine {
 
-/// A sentence for each, without its subject, the integrator: `does not support …; use …`. Empty: it supports all. Throws
-/// InputError for an unknown name.
-std::vector<std::string> find_unsupported(const SceneDesc& scene, std::string_view integrator);
+struct Unsupported {
+  const char* key;       // of [solver], to be changed
+  std::string sentence;  // without its subject, the integrator: `does not support …; use …`
+};
+
+/// Empty: it supports all. Throws InputError for an unknown name.
+std::vector<Unsupported> find_unsupported(const SceneDesc& scene, std::string_view integrator);
 
 }  // namespace weft::engine

@@ -149,7 +149,7 @@ void require_valid(const Wind& wind, const std::string& integrator) {
           "the air's density and drag must be above 0, and its lift from 0 to its drag");
   require(find_integrator(integrator).supports.aerodynamics,
           integrator + " does not support aerodynamic drag and lift; use " +
-              list_supporting(&Support::aerodynamics) + "; or only the wind's drag");
+              list_supporting(&Support::aerodynamics) + ", or only the wind's drag");
 }
 
 void require_valid(const IntegratorSettings& s) {
@@ -167,11 +167,11 @@ void require_elements_supported(const std::string& integrator, const ClothElemen
   require(supports.elements,
           "cloth \"" + cloth + "\" is made of a fabric, but " + integrator + " supports springs only; use " +
               list_supporting(&Support::elements) +
-              "; or set spring_structural, spring_shear and spring_bend instead of the fabric");
+              ", or set spring_structural, spring_shear and spring_bend instead of the fabric");
   require(elements.thread_bends.empty() || supports.bending_memory,
           "cloth \"" + cloth + "\" has a bend_hysteresis or bend_set, but " + integrator +
               " does not support it; use " + list_supporting(&Support::bending_memory) +
-              "; or set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0");
+              ", or set bend_hysteresis_warp, bend_hysteresis_weft and bend_set to 0");
 }
 
 void require_seams_supported(const std::string& integrator, const Seams& seams, const std::string& cloth) {
