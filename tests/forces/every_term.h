@@ -1,6 +1,7 @@
 #pragma once
 /// Cloths that between them have every row of forces/terms.h, in crumpled motion.
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -78,6 +79,24 @@ inline std::vector<CrumpledCloth> make_crumpled_cloths() {
   for (const Gas& gas : {seal_gas(500, 0.5), Gas{.pressure = 800}})
     cloths.push_back(crumple("balloon with seams", with_gas(*balloon, gas), 0.01));
   return cloths;
+}
+
+/// The same cloth without damping.
+inline std::shared_ptr<const ClothModel> without_damping(const ClothModel& model) {
+  ClothMaterial material = model.material;
+  material.damping = material.damping_time = 0;
+  std::shared_ptr<ClothElements> elements;
+  if (model.elements) {
+    elements = std::make_shared<ClothElements>(*model.elements);
+    elements->damping = 0;
+  }
+  return with_gas(*build_cloth_model(model.topology, material, elements), model.gas);
+}
+
+inline double largest(const std::vector<Vec3>& values) {
+  double result = 0;
+  for (const Vec3& v : values) result = std::max(result, v.norm());
+  return result;
 }
 
 }  // namespace weft::engine::test

@@ -13,11 +13,8 @@
 namespace weft::engine {
 namespace {
 
-double largest(const std::vector<Vec3>& values) {
-  double result = 0;
-  for (const Vec3& v : values) result = std::max(result, v.norm());
-  return result;
-}
+using test::largest;
+using test::without_damping;
 
 /// The largest forces on a particle by the terms; not of terms without any force [N].
 struct Forces {
@@ -38,19 +35,6 @@ Forces find_forces(const ClothModel& model, const ClothState& state, const Wind&
   include(make_elastic_terms(model, state), x);
   include(make_air_terms(model, state, wind, 0, {still, still, 1}), to_doubles(state.v));
   return forces;
-}
-
-/// The kernels' damping differs: it takes the whole change of strains and curvatures, the list's that to first order, along
-/// the curvature.
-std::shared_ptr<const ClothModel> without_damping(const ClothModel& model) {
-  ClothMaterial material = model.material;
-  material.damping = material.damping_time = 0;
-  std::shared_ptr<ClothElements> elements;
-  if (model.elements) {
-    elements = std::make_shared<ClothElements>(*model.elements);
-    elements->damping = 0;
-  }
-  return with_gas(*build_cloth_model(model.topology, material, elements), model.gas);
 }
 
 /// In a step with wind and a moving pin, at x + h v.
@@ -99,6 +83,8 @@ TEST(NewtonTerms, HaveTheEnergiesAndForcesOfTheListInDoubles) {
   int num_telling = 0;
   for (const auto& [name, model, state] : test::make_crumpled_cloths()) {
     if (model->elements && !model->elements->hinges.empty()) continue;  // not in newton
+    // The kernels' damping differs: it takes the whole change of strains and curvatures, the list's that to first
+    // order, along the curvature.
     const auto undamped = without_damping(*model);
     const Comparison both = compare(*undamped, state, wind);
     const Forces forces = find_forces(*undamped, state, wind);

@@ -16,23 +16,15 @@
 namespace weft::engine {
 namespace {
 
-/// Without damping, and without memory of bending, which `xpbd` does not support.
-std::shared_ptr<const ClothModel> without_damping_and_memory(const ClothModel& model) {
-  ClothMaterial material = model.material;
-  material.damping = material.damping_time = 0;
-  std::shared_ptr<ClothElements> elements;
-  if (model.elements) {
-    elements = std::make_shared<ClothElements>(*model.elements);
-    elements->damping = 0;
-    elements->thread_bends = {};
-  }
-  return with_gas(*build_cloth_model(model.topology, material, elements), model.gas);
-}
+using test::largest;
 
-double largest(const std::vector<Vec3>& values) {
-  double result = 0;
-  for (const Vec3& v : values) result = std::max(result, v.norm());
-  return result;
+/// Without damping, and without memory of bending, which `xpbd` does not support.
+std::shared_ptr<const ClothModel> for_xpbd(const ClothModel& model) {
+  const auto undamped = test::without_damping(model);
+  if (!undamped->elements) return undamped;
+  auto elements = std::make_shared<ClothElements>(*undamped->elements);
+  elements->thread_bends = {};
+  return with_gas(*build_cloth_model(undamped->topology, undamped->material, elements), undamped->gas);
 }
 
 TEST(XpbdTerms, HaveTheForcesOfTheListInShortSteps) {
@@ -40,7 +32,7 @@ TEST(XpbdTerms, HaveTheForcesOfTheListInShortSteps) {
   const auto jobs = make_serial_jobs();
   std::set<std::string> tested;  // rows that cannot be missing
   for (const auto& [name, whole, start] : test::make_crumpled_cloths()) {
-    const auto model = without_damping_and_memory(*whole);
+    const auto model = for_xpbd(*whole);
     const int n = model->num_particles();
     ClothState state = start;
     state.bending = {};
