@@ -142,7 +142,7 @@ void Viewer::open(const std::string& file) {
       SceneDesc next = edits_->now();
       for (ClothSceneDesc& cloth : next.cloths) take_fabric(*opened.fabric, cloth);
       settle_tunables(next);
-      edit(std::move(next), "fabric file");
+      if (!edit(std::move(next), "fabric file")) return;
       settle_edits();
       say("fabric " + opened.fabric->name);
     } catch (const InputError& error) {
@@ -201,12 +201,15 @@ void Viewer::answer(Answer answer) {
 
 // ---- Edits ----------------------------------------------------------------------------------------------
 
-void Viewer::edit(SceneDesc next, const std::string& what) {
+bool Viewer::edit(SceneDesc next, const std::string& what) {
   const std::string& integrator = next.solver.integrator;
-  if (const auto unsupported = find_unsupported(next, integrator); !unsupported.empty())
-    return say(integrator + ' ' + unsupported.front().sentence);
+  if (const auto unsupported = find_unsupported(next, integrator); !unsupported.empty()) {
+    say(integrator + ' ' + unsupported.front().sentence);
+    return false;
+  }
   edits_->edit(std::move(next), what);
   apply_edits();
+  return true;
 }
 
 void Viewer::settle_edits() {

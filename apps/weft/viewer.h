@@ -47,7 +47,8 @@ class Viewer {
 
   // Edits of the scene that is simulated.
   const std::optional<SceneEdits>& edits() const { return edits_; }  // empty: a run, or the gallery
-  void edit(SceneDesc next, const std::string& what);                // see SceneEdits
+  /// See SceneEdits. Returns whether the scene was taken: what its integrator does not support is said instead.
+  bool edit(SceneDesc next, const std::string& what);
   void settle_edits();
   void undo();
   void redo();

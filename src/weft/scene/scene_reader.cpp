@@ -145,10 +145,8 @@ void read_integrator(TomlTable& solver, std::string& integrator) {
 
 void check_integrator(TomlTable& solver, const SceneDesc& scene) {
   const std::string& integrator = scene.solver.integrator;
-  for (const auto& [key, sentence] : find_unsupported(scene, integrator)) {
-    const bool is_own = std::string_view(key) == "integrator";
-    solver.get(key).mistake(is_own ? sentence : integrator + ' ' + sentence);
-  }
+  for (const auto& [key, sentence] : find_unsupported(scene, integrator))
+    solver.get(key).mistake(key == "integrator" ? sentence : integrator + ' ' + sentence);
 }
 
 /// A number applies to the integrator in use; "auto" leaves the choice to it.

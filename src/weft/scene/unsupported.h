@@ -10,7 +10,7 @@
 namespace weft::engine {
 
 struct Unsupported {
-  const char* key;       // of [solver], to be changed
+  std::string key;       // of [solver], to be changed
   std::string sentence;  // without its subject, the integrator: `does not support …; use …`
 };
 
