@@ -353,16 +353,23 @@ void bench_energy(bool quick) {
 }  // namespace
 
 bool bench_contact(const ContactBenchOptions& options) {
-  bench_memory(options.quick);  // first, because memory that other benchmarks have freed does not count
-  const bool is_clean = bench_scenes(options);
-  bench_contact_cost(options.quick);
+  const auto is_chosen = [&](std::string_view section) {
+    return options.sections.empty() || std::ranges::find(options.sections, section) != options.sections.end();
+  };
   const ContactExperiment setup{.cells = options.quick ? 16 : 32};
-  bench_layers(options.quick);
-  bench_rest(setup, options.quick ? 4 : 20);
-  bench_laws(setup);
-  bench_friction_audit(setup, options.quick);
-  bench_momentum(setup);
-  bench_energy(options.quick);
+  bool is_clean = true;
+  // First, because memory that other benchmarks have freed does not count.
+  if (is_chosen("memory")) bench_memory(options.quick);
+  if (is_chosen("scenes")) is_clean = bench_scenes(options);
+  if (is_chosen("overhead")) bench_contact_cost(options.quick);
+  if (is_chosen("layers")) bench_layers(options.quick);
+  if (is_chosen("rest")) bench_rest(setup, options.quick ? 4 : 20);
+  if (is_chosen("friction")) {
+    bench_laws(setup);
+    bench_friction_audit(setup, options.quick);
+  }
+  if (is_chosen("momentum")) bench_momentum(setup);
+  if (is_chosen("energy")) bench_energy(options.quick);
   return is_clean;
 }
 

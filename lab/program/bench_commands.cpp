@@ -118,7 +118,11 @@ void add_contact(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<ContactBenchOptions>();
   CLI::App* command = bench.add_subcommand(
       "contact", "Accuracy and cost of contact: all scenes, checked at every frame, rest, friction, energy");
-  command->add_option("--scenes", options->scenes, "Which (default: all of contact/)")->delimiter(',');
+  command->add_option("--sections", options->sections, "Which (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(kContactSections.begin(), kContactSections.end())));
+  command->add_option("--scenes", options->scenes, "Of the section scenes (default: all of contact/)")
+      ->delimiter(',');
   command->add_option("--threads", options->threads, "Numbers of threads")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024))

@@ -28,8 +28,9 @@ constexpr double kMeeting = 1e-5;
 
 /// The solve includes pairs that are farther apart than their gap by up to this share of it: cloth with a
 /// collider, two cloths, and cloth that pushed each other in the last step. A larger share between cloths
-/// weakens friction near its limit.
-constexpr double kNearBy = 0.6, kNearByCloth = 0.07, kNearByPressed = 0.15;
+/// weakens friction near its limit. A smaller one with colliders misses more contacts of cloth that a moving
+/// body carries along, and the step is then solved again.
+constexpr double kNearBy = 3, kNearByCloth = 0.07, kNearByPressed = 0.15;
 
 /// Features this near have no direction between them [m].
 constexpr double kTouching = 1e-9;

@@ -13,7 +13,8 @@ constexpr double kMaxOverLasting = 1.5;  // … and over the force of the last s
 constexpr double kMinSlideRatio = 0.7, kMaxSlideRatio = 1.5;  // bounds of the next slide over the last
 constexpr double kBarely = 0.01;                              // of the gap: opening that counts as touching
 constexpr double kStiffen = 4;  // factor for a contact that is deeper than its gap, per linearisation
-constexpr double kFrictionChange = 0.02;  // tolerance, as a share of the friction limit
+constexpr double kFrictionChange = 0.02;  // tolerance of single contacts, as a share of the friction limit …
+constexpr double kTotalFrictionChange = 0.05;  // … and of the sum over all
 
 }  // namespace
 
@@ -143,14 +144,18 @@ void ContactTerms::guess(std::span<const Positions> y) {
   }
 }
 
+/// Limit of the normal force that friction is based on [N].
+double ContactTerms::most_push(const Term& t) {
+  return std::max(kMaxOverGuess * t.stiffened * t.guess, kMaxOverLasting * t.contact->lasting_force);
+}
+
 /// µ N over the slide expected after the solve. At first that is the inertial slide less the part that
 /// friction stops, but at least the slide at the start velocity: of the contacts that carry a sheet those
 /// with a larger load must not lock. Later it is the slide so far, corrected for the friction error by
 /// inertia only: without the correction, releasing stuck contacts would take many linearisations.
 double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
   const Contact& c = *t.contact;
-  const double most_push = std::max(kMaxOverGuess * t.stiffened * t.guess, kMaxOverLasting * c.lasting_force);
-  const double push = num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, most_push);
+  const double push = num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, most_push(t));
   const double most = c.friction * push;
   double expected = slide;
   if (num_linearised_ == 0)
@@ -161,19 +166,27 @@ double ContactTerms::friction_stiffness(const Term& t, double depth, double slid
   return most / std::max(expected, sticking_);
 }
 
+/// On colliders a contact that presses harder than its limit has the friction of the limit, and no step
+/// changes that. Between cloths its force counts: that friction is still to be found.
 ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
   gather(x);
-  double shortfall = 0, limits = 0, changes = 0;
+  double shortfall = 0, limits = 0, changes = 0, sum = 0;
   for (const Term& t : terms_) {
     const Contact& c = *t.contact;
     const double depth = depth_of(t);
     if (depth > 0 && t.can_move) shortfall = std::max(shortfall, depth / c.gap);
     if (!t.is_active && depth == 0) continue;
-    const double slide = slide_of(t).norm(), limit = c.friction * c.stiffness * depth;
+    const double push = c.stiffness * depth;
+    const double slide = slide_of(t).norm(),
+                 limit = c.friction * (c.is_mutual() ? push : std::min(push, most_push(t)));
+    const double change = limit * std::min(1.0, slide / sticking_) - t.friction * slide;
     limits += limit;
-    changes += std::abs(limit * std::min(1.0, slide / sticking_) - t.friction * slide);
+    changes += std::abs(change);
+    sum += change;
   }
-  return {shortfall / kMaxShortfall, limits > 0 ? changes / (kFrictionChange * limits) : 0};
+  const double per_limit = limits > 0 ? 1 / limits : 0;
+  return {shortfall / kMaxShortfall, per_limit * changes / kFrictionChange,
+          per_limit * std::abs(sum) / kTotalFrictionChange};
 }
 
 void ContactTerms::finish(std::span<const Positions> x, std::vector<char>& is_pushed) {

@@ -62,10 +62,11 @@ class ContactTerms {
   /// Estimates each contact's force and slide, from the inertial prediction y of the particles (members).
   void guess(std::span<const Positions> y);
 
-  /// Residual of a solve at these positions, relative to its tolerance [1].
+  /// Residual of a solve at these positions, relative to its tolerances [1].
   struct Unrest {
-    double shortfall = 0;  // the largest depth
-    double friction = 0;   // the largest change of friction
+    double shortfall = 0;       // the largest depth
+    double friction = 0;        // sum of the changes of friction that another linearise() would make
+    double total_friction = 0;  // change of the sum of all friction
   };
   Unrest find_unrest(std::span<const Positions> x);
 
@@ -133,6 +134,7 @@ class ContactTerms {
   Vec3 slide_of(const Term& term) const;
   static void stiffen(Term& t);
   static bool will_push(const Term& term, double beyond);
+  static double most_push(const Term& term);
   double friction_stiffness(const Term& term, double depth, double slide) const;
 
   double sticking_ = 0;  // largest slide in a step that counts as sticking [m]

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "weft/integrators/contact_groups.h"
 #include "weft/integrators/contact_terms.h"
@@ -31,6 +32,9 @@ constexpr double kMissedShare = 0.2;   // of the energy: a larger model error re
 constexpr double kFallingShare = 0.5;  // of the remaining energy: likewise for a larger last decrease
 constexpr int kMinStepsInContact = 2;  // the first one has no contacts and contact forces
 constexpr int kMaxStepsInContact = 6;
+constexpr int kMinStepsToStall = 3;        // the first ones have friction from estimated forces
+constexpr double kStalled = 0.8;           // of the unrest: a step that leaves more of it does not help …
+constexpr double kStalledDecrease = 0.02;  // … if it also lowers the energy by less than this share
 constexpr int kInertialIterationFactor =
     2;                                    // factor on iterations from x + h v, which must add all of gravity
 constexpr double kNoise = 1e-9;           // of the decrease: below, float iterations change only rounding
@@ -151,6 +155,7 @@ class NewtonGroup {
   IntegratorReport minimise(const NewtonSettings& settings, const SolverBudget& budget) {
     IntegratorReport report{.linear_iterations = 0, .residual = 0, .guard_events = 0};
     int more = 1;  // factor on iterations, where the guard requests another Newton step
+    std::optional<ContactTerms::Unrest> last;
     for (int asked = budget.newton_steps; report.iterations < asked; ++report.iterations) {
       const double before = linearise(report.iterations == 0);
       if (contacts_.is_active()) asked = std::max(asked, kMinStepsInContact);
@@ -171,8 +176,13 @@ class NewtonGroup {
       const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * size + noise_;
       const bool is_last = report.iterations + 1 == asked;
       if (!contacts_.empty()) {
-        if (is_last &&
-            (is_beyond ? asked < kMaxStepsBeyondLimit : !is_settled() && asked < kMaxStepsInContact))
+        const ContactTerms::Unrest unrest = contacts_.find_unrest(positions());
+        const bool is_settled = unrest.shortfall <= 1 && unrest.friction <= 1;
+        const bool has_stalled = last && share == 1 && report.iterations + 1 >= kMinStepsToStall &&
+                                 before - after < kStalledDecrease * size && is_stalled(*last, unrest);
+        last = unrest;
+        if (is_last && (is_beyond ? asked < kMaxStepsBeyondLimit
+                                  : !is_settled && !has_stalled && asked < kMaxStepsInContact))
           ++asked;
         continue;
       }
@@ -189,10 +199,12 @@ class NewtonGroup {
     return report;
   }
 
-  /// Whether all pushing contacts are included, hold, and slide by Coulomb's law.
-  bool is_settled() {
-    const ContactTerms::Unrest unrest = contacts_.find_unrest(positions());
-    return unrest.shortfall <= 1 && unrest.friction <= 1;
+  /// Whether more steps would not help: the sum of friction is found, and single contacts only fluctuate with
+  /// what unfinished linear solves leave.
+  static bool is_stalled(const ContactTerms::Unrest& last, const ContactTerms::Unrest& now) {
+    const bool holds = now.shortfall <= 1 || now.shortfall > kStalled * last.shortfall;
+    const bool slides = now.friction <= 1 || now.friction > kStalled * last.friction;
+    return holds && slides && now.total_friction <= 1;
   }
 
   bool is_beyond_limit() const {
