@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <string_view>
 
 #include "lab/benchmarks/machine.h"
 #include "lab/contact/contact_cost.h"

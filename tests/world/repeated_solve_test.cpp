@@ -80,8 +80,7 @@ TEST(RepeatedSolve, IsRareWhileASheetDrapesOverAMesh) {
   World world;
   const auto ball = std::make_shared<const TriangleMesh>(make_sphere_mesh(Vec3::Zero(), 0.15, 48));
   world.add_collider({.name = "ball", .shape = MeshShape{.mesh = ball}, .friction = 0.5});
-  const auto topology = build_grid_topology({.size_x = 0.5, .size_z = 0.5, .cells_x = 40, .cells_z = 40},
-                                            SpringModel::alternating);
+  const auto topology = build_grid_topology(test::square(40, 0.5), SpringModel::alternating);
   std::vector<Vec3> places = topology->mesh.positions;
   for (Vec3& p : places) p += Vec3(-0.25, 0.16, -0.25);
   world.add_cloth({.name = "sheet",

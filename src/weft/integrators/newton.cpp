@@ -176,13 +176,14 @@ class NewtonGroup {
       const bool is_beyond = is_beyond_limit() && before - after > kLimitFalling * size + noise_;
       const bool is_last = report.iterations + 1 == asked;
       if (!contacts_.empty()) {
+        if (!is_last) continue;
         const ContactTerms::Unrest unrest = contacts_.find_unrest(positions());
         const bool is_settled = unrest.shortfall <= 1 && unrest.friction <= 1;
         const bool has_stalled = last && share == 1 && report.iterations + 1 >= kMinStepsToStall &&
                                  before - after < kStalledDecrease * size && is_stalled(*last, unrest);
         last = unrest;
-        if (is_last && (is_beyond ? asked < kMaxStepsBeyondLimit
-                                  : !is_settled && !has_stalled && asked < kMaxStepsInContact))
+        if (is_beyond ? asked < kMaxStepsBeyondLimit
+                      : !is_settled && !has_stalled && asked < kMaxStepsInContact)
           ++asked;
         continue;
       }
