@@ -258,13 +258,16 @@ RestingSheet rest_on(const ContactExperiment& setup, Support support, double sec
   run(world, setup, seconds / 2, watch_rise);
   const Vec3 before = middle_of(world, sheet);
   double impulse = 0;  // of all contacts, upwards [N·s]
+  std::vector<double> kinetic;
   run(world, setup, seconds / 2, [&] {
     watch_rise();
-    rest.kinetic =
-        std::max(rest.kinetic, compute_kinetic_energy(world.model(sheet), world.state(sheet)) / mass);
+    kinetic.push_back(compute_kinetic_energy(world.model(sheet), world.state(sheet)) / mass);
     rest.drift = std::max(rest.drift, (middle_of(world, sheet) - before).norm());
     for (const ContactPoint& p : world.contact_points()) impulse += p.force.y() / setup.steps_per_second;
   });
+  std::sort(kinetic.begin(), kinetic.end());
+  rest.kinetic = kinetic.back();
+  rest.speed = std::sqrt(2 * kinetic[kinetic.size() / 2]);
   rest.force = impulse / (mass * kGravity * seconds / 2);
   return rest;
 }

@@ -61,6 +61,7 @@ Capstan pull_over_drum(const ContactExperiment& setup, double friction, Drum dru
 /// A sheet at rest on a support.
 struct RestingSheet {
   double kinetic = 0;  // maximum in the second half of the time [J/kg]
+  double speed = 0;    // median of the root mean square in the second half [m/s]
   double drift = 0;    // of the middle in the second half [m]
   double rise = 0;     // maximum rise of the middle in a step, over the whole time [m]
   double force = 0;    // of all contacts over the weight, mean of the second half [1]

@@ -25,6 +25,11 @@ TEST(ContactExperiments, ADrumPullsByTheCapstanEquation) {
     const Capstan capstan = pull_over_drum({.cells = 20}, friction);
     EXPECT_NEAR(capstan.ratio, capstan.expected, 0.05 * capstan.expected) << friction;
   }
+  for (const double friction : {0.3, 0.5}) {
+    const Capstan coarse = pull_over_drum({.cells = 8}, friction);
+    EXPECT_NEAR(coarse.ratio, coarse.expected, 0.06 * coarse.expected)
+        << friction << ", of edges as long as r/3";
+  }
   const Capstan other = pull_over_drum({.integrator = "implicit_euler", .cells = 20}, 0.3);
   EXPECT_NEAR(other.ratio, other.expected, 0.05 * other.expected) << "another integrator";
 }
@@ -38,7 +43,7 @@ TEST(ContactExperiments, ClothPullsTautClothByTheCapstanEquation) {
 
 TEST(ContactExperiments, ABallTakesTheSheetAlongAsFarAsFrictionCan) {
   // For every mesh. An incomplete solve gives 0.78 to 1.56 of the analytic value.
-  for (const int cells : {24, 32, 48}) {
+  for (const int cells : {8, 16, 24, 32, 48}) {
     for (const double friction : {0.02, 0.03}) {
       const Spin spin = spin_ball({.cells = cells}, friction);
       EXPECT_NEAR(spin.turned_sheet, spin.expected, 0.06 * spin.expected) << cells << " cells, " << friction;
@@ -105,11 +110,14 @@ TEST(ContactExperiments, SheetsThatFlyIntoEachOtherKeepTheirCommonMomentum) {
   }
 }
 
-TEST(ContactExperiments, ASheetComesToRestOnABall) {
-  const RestingSheet rest = rest_on({.cells = 28}, Support::ball, 10);
-  EXPECT_LT(rest.kinetic, 5e-5) << "10 mm/s; with triangles' nearest points in the solve it was 40 mm/s";
-  EXPECT_LT(rest.drift, 1e-3);
-  EXPECT_NEAR(rest.force, 1, 0.03);
+TEST(ContactExperiments, ASheetComesToRestOnABallWithAnyCells) {
+  for (const int cells : {8, 16, 28}) {
+    const RestingSheet rest = rest_on({.cells = cells}, Support::ball, 10);
+    EXPECT_LT(rest.speed, 1e-3) << cells << "; with edges' middles in the solve it was 60 mm/s on 16 cells";
+    EXPECT_LT(rest.kinetic, 5e-5) << cells << "; now and then a fold snaps";
+    EXPECT_LT(rest.drift, 1e-3) << cells;
+    EXPECT_NEAR(rest.force, 1, 1e-3) << cells;
+  }
 }
 
 TEST(ContactExperiments, ASheetComesToRestOnAFloorAndIsBorneByIt) {

@@ -41,7 +41,7 @@ double mean_x(const World& world, ClothId cloth) {
 }
 
 /// Displacement of the ball of 0.15 m that pushes the sheet [m].
-double way(double time) { return 2 * time; }
+double way(double time) { return 3 * time; }
 
 TEST(ByHand, ACollidersPosePerFrameIsTheSameAsKeyFrames) {
   std::vector<KeyFrame> keys;

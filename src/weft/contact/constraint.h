@@ -12,7 +12,7 @@ namespace weft::engine {
 /// n · Σ w_i x_i >= target, where x_i are vertices of cloths and mesh colliders. Weights of one feature are
 /// positive, of the other negative (see geometry/distance.h); a primitive shape adds no negative weights.
 struct Constraint {
-  int num_vertices = 1;  // 1 to 4; against a primitive shape 2 are the ends of an edge
+  int num_vertices = 1;  // 1 to 4; against a primitive shape 1 or 3
   std::array<int, 4> vertex = {0, 0, 0, 0};
   std::array<double, 4> weight = {1, 0, 0, 0};  // [1]
   Vec3 normal = Vec3::UnitY();                  // unit length
@@ -21,8 +21,9 @@ struct Constraint {
   Vec3 surface_velocity = Vec3::Zero();         // of a primitive shape's surface there [m/s]
   int shape = -1;                               // primitive shape index, -1: a pair of features
   bool is_fixed = false;                        // the plane of a primitive shape is not updated
-  bool is_caught = false;  // of a caught particle (caught_particles.h); `shape`: a collider
-  bool is_alone = false;   // its one vertex has no other constraint (mark_alone)
+  bool is_between = false;  // another collider faces the cloth there: the particle is not lifted off this one
+  bool is_caught = false;   // of a caught particle (caught_particles.h); `shape`: a collider
+  bool is_alone = false;    // its one vertex has no other constraint (mark_alone)
 
   double inverse_mass = 0;               // Σ w_i²/m_i [1/kg]
   bool is_active = false;                // the position projection pushed it

@@ -258,6 +258,7 @@ void ContactSystem::find_candidates(const Vec3& acceleration, JobSystem& jobs) {
   std::swap(bodies_.motion.end, ballistic_);
   generate_pair_constraints(Purpose::solve, jobs);
   if (constraints_.empty()) return;
+  lower_between(Purpose::solve, 1.0);
   catch_cloth();
   // Cloth that is stopped far from its predicted end is hit by the cloth behind it: search pairs at the more
   // likely positions.
@@ -294,6 +295,12 @@ void ContactSystem::generate_shape_constraints(Purpose purpose, double share_of_
       bodies_.has_plain_shapes() &&
       shape_constraints_.generate(
           {bodies_, caught_, purpose, proximity_.longest_edge() + stretch, share_of_travel}, constraints_);
+}
+
+void ContactSystem::lower_between(Purpose purpose, double share_of_travel) {
+  const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
+  shape_constraints_.lower_between({bodies_, caught_, purpose, proximity_.longest_edge(), share_of_travel},
+                                   constraints_);
 }
 
 /// Finds newly caught cloth, and replaces its constraints.
@@ -358,6 +365,7 @@ void ContactSystem::find_violations(JobSystem& jobs) {
   if (is_clear_ || matches_prediction()) return;
   generate_pair_constraints(after(), jobs);
   generate_shape_constraints(after(), 0.0);
+  lower_between(after(), 0.0);
   if (!is_predicted_) catch_cloth();
   is_clear_ = lists_are_empty && !is_near_shape_ && caught_.empty();
   if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
@@ -373,6 +381,7 @@ bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSyste
   constraints_.clear();
   generate_pair_constraints(Purpose::solve, jobs);
   generate_shape_constraints(Purpose::solve, 0.0);
+  lower_between(Purpose::solve, 0.0);
   std::erase_if(constraints_, is_known);
   constraints_.insert(constraints_.begin(), solved_.constraints().begin(), solved_.constraints().end());
   expected_.assign(bodies_.motion.end.begin(), bodies_.motion.end.begin() + bodies_.num_cloth_vertices());
@@ -380,10 +389,10 @@ bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSyste
   return true;
 }
 
-/// Whether features passed through each other, or cloth through a shape's surface. On round shapes the solve
-/// replaces triangles by edges: those do not count.
+/// Whether features passed through each other, or cloth through a shape's surface. On round shapes the solve has no
+/// triangles: those do not count.
 bool ContactSystem::has_passed(const Constraint& c) const {
-  if (c.shape >= 0 && c.num_vertices == 3 && is_round(bodies_, c.shape)) return false;
+  if (c.shape >= 0 && c.num_vertices == 3 && bodies_.is_round(c.shape, c.vertex[0])) return false;
   const double most =
       c.shape >= 0 ? bodies_.motion.half_thickness[c.vertex[0]] : bodies_.gap_of(c, Purpose::after_solve);
   return bodies_.depth_at_end(c) > most;
@@ -410,6 +419,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
     constraints_.clear();
     generate_pair_constraints(after(), jobs);
     generate_shape_constraints(after(), 0.0);
+    lower_between(after(), 0.0);
     if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
     projection_.take(bodies_, constraints_);
     projection_.settle(bodies_, after(), constraints_);

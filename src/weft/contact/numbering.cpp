@@ -24,6 +24,25 @@ std::vector<RestEdges> measure_edges(const Numbering& numbering, const Surface& 
   return edges;
 }
 
+/// Squared radius of the triangle's minimal enclosing circle [m²].
+double enclosing_radius_sq(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  const double longest = std::max({ab, bc, ca});
+  if (2 * longest >= ab + bc + ca) return longest / 4;  // right-angled or obtuse
+  return ab * bc * ca / (4 * (b - a).cross(c - a).squaredNorm());
+}
+
+std::vector<double> measure_circles(const Numbering& numbering, const Surface& surface,
+                                    const std::vector<Vec3>& rest) {
+  std::vector<double> largest(numbering.num_cloth_vertices(), 0.0);
+  for (const Triangle& t : surface.triangles) {
+    if (!numbering.is_of_cloth(t[0])) break;
+    const double radius_sq = enclosing_radius_sq(rest[t[0]], rest[t[1]], rest[t[2]]);
+    for (const int v : t) largest[v] = std::max(largest[v], radius_sq);
+  }
+  return largest;
+}
+
 ColliderMesh add_body(int collider, const TriangleMesh& mesh, Surface& surface) {
   ColliderMesh body{.collider = collider,
                     .first_vertex = surface.num_vertices,
@@ -122,8 +141,7 @@ Numbering number_bodies(std::span<const ContactCloth> cloths, const std::vector<
   }
   surface.build_one_rings();
   numbering.rest_edges = measure_edges(numbering, surface, rest);
-  for (const RestEdges& edges : numbering.rest_edges)
-    numbering.longest_rest_edge = std::max(numbering.longest_rest_edge, edges.longest);
+  numbering.rest_circle_sq = measure_circles(numbering, surface, rest);
   return numbering;
 }
 

@@ -54,8 +54,9 @@ struct Numbering {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;       // (bodies)
   std::vector<int> first_vertex;                                 // of each cloth, and the end of the last one
   std::vector<ColliderMesh> bodies;
-  std::vector<RestEdges> rest_edges;  // (cloths)
-  double longest_rest_edge = 0;       // of all cloths [m]
+  std::vector<RestEdges> rest_edges;   // (cloths)
+  std::vector<double> rest_circle_sq;  // (cloth vertices) squared radius of the largest of the minimal
+                                       // enclosing circles of the triangles there, at rest [m²]
 
   int num_cloths() const { return static_cast<int>(topologies.size()); }
   int num_cloth_vertices() const { return first_vertex.back(); }

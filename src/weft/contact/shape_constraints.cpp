@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "weft/geometry/distance.h"
 #include "weft/geometry/shape_distance.h"
@@ -10,31 +11,21 @@
 namespace weft::engine {
 namespace {
 
-/// An edge or a triangle gets its own constraint, besides those of its corners, where it comes nearer to a
-/// shape than they do by this distance [m] …
+/// A triangle gets its own constraint, besides those of its corners, where it comes nearer to a shape than they
+/// do by this distance [m] …
 constexpr double kNearerThanCorners = 1e-6;
-/// … and for the solve by this share of half the thickness: it keeps edges and triangles out of the shape.
+/// … and for the solve by this share of half the thickness: it keeps triangles out of the shape.
 constexpr double kMuchNearer = 0.6;
 
-/// A shape counts as round if its radius is at least this many times the longest edge at rest.
-constexpr double kRound = 2.4;
-
-/// The point of a particle, edge midpoint or triangle that is nearest to a primitive shape.
+/// The point of a particle or triangle that is nearest to a primitive shape.
 struct Nearest {
   double distance;
   Vec3 normal, foot;  // outwards; on the surface
   std::array<double, 4> weight;
 };
 
-/// Radius of spheres and capsules; other shapes are sharp.
-double radius_of(const ColliderShape& shape) {
-  if (const Sphere* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
-  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
-  return 0;
-}
-
-Nearest nearest_of(const SignedDistance& d, const Vec3& p, const std::array<double, 4>& weight) {
-  return {d.distance, d.normal, p - d.distance * d.normal, weight};
+Nearest nearest_of(const SignedDistance& d, const Vec3& p) {
+  return {d.distance, d.normal, p - d.distance * d.normal, {1, 0, 0, 0}};
 }
 
 Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -44,13 +35,11 @@ Nearest nearest_of(const TriangleSignedDistance& d, const Vec3& a, const Vec3& b
 
 Nearest find_nearest(const ColliderShape& shape, const Constraint& c, const std::vector<Vec3>& x) {
   const Vec3 &a = x[c.vertex[0]], &b = x[c.vertex[1]], &e = x[c.vertex[2]];
-  if (c.num_vertices == 1) return nearest_of(signed_distance(shape, a), a, {1, 0, 0, 0});
-  if (c.num_vertices == 3) return nearest_of(signed_distance(shape, a, b, e), a, b, e);
-  const Vec3 middle = 0.5 * (a + b);
-  return nearest_of(signed_distance(shape, middle), middle, {0.5, 0.5, 0, 0});
+  if (c.num_vertices == 1) return nearest_of(signed_distance(shape, a), a);
+  return nearest_of(signed_distance(shape, a, b, e), a, b, e);
 }
 
-/// How much of an edge's or a triangle's depth in a primitive shape is that of pinned particles, which nothing can push
+/// How much of a triangle's depth in a primitive shape is that of pinned particles, which nothing can push
 /// out [m]. The free ones beside them would have to make up for it, many times as far.
 double pinned_depth(const StepBodies& bodies, Purpose purpose, const Constraint& c) {
   double depth = 0;
@@ -105,6 +94,20 @@ void add_constraint(const ShapeConstraints::Input& in, int shape, int num_vertic
   if (c.inverse_mass > 0 && !in.caught.replaces(c)) constraints.push_back(c);
 }
 
+/// Adds a triangle's constraint where it is nearer to the shape than its corners, of which one is `nearest`.
+void add_triangle(const ShapeConstraints::Input& in, int shape, const Triangle& t, double nearest,
+                  std::vector<Constraint>& constraints) {
+  const std::vector<Vec3>& x = in.bodies.motion.end;
+  const double nearer =
+      std::max(kNearerThanCorners,
+               in.purpose == Purpose::solve ? kMuchNearer * in.bodies.motion.half_thickness[t[0]] : 0.0);
+  const double farthest = std::min(reach_of(in, t[0]), nearest - nearer);
+  const TriangleSignedDistance d =
+      signed_distance(in.bodies.shapes[shape].after, x[t[0]], x[t[1]], x[t[2]], farthest);
+  if (d.distance < farthest)
+    add_constraint(in, shape, 3, t, nearest_of(d, x[t[0]], x[t[1]], x[t[2]]), constraints);
+}
+
 }  // namespace
 
 void update_plane(const StepBodies& bodies, Purpose purpose, Constraint& c) {
@@ -113,10 +116,6 @@ void update_plane(const StepBodies& bodies, Purpose purpose, Constraint& c) {
 
 double distance_at_start(const StepBodies& bodies, const Constraint& c) {
   return find_nearest(bodies.shapes[c.shape].before, c, bodies.motion.start).distance;
-}
-
-bool is_round(const StepBodies& bodies, int shape) {
-  return radius_of(bodies.shapes[shape].after) > kRound * bodies.numbering.longest_rest_edge;
 }
 
 void ShapeConstraints::begin_step(const StepBodies& bodies, double travel) {
@@ -140,9 +139,7 @@ bool ShapeConstraints::generate(const Input& in, std::vector<Constraint>& constr
   return is_near;
 }
 
-/// Particles in reach; and triangles that are nearer than their corners. For the solve on round shapes edge
-/// midpoints replace triangles: a triangle's nearest point moves across it as it tilts, and a solve that keeps
-/// an earlier point for a step jitters.
+/// Particles in reach; and triangles that are nearer than their corners.
 void ShapeConstraints::generate_for(const Input& in, int shape, std::vector<Constraint>& constraints) {
   const StepBodies& bodies = in.bodies;
   const std::vector<Vec3>& x = bodies.motion.end;
@@ -152,50 +149,66 @@ void ShapeConstraints::generate_for(const Input& in, int shape, std::vector<Cons
     const SignedDistance d = signed_distance(at_end, x[v]);
     clearance_.set(shape, v, d.distance, (x[v] - bodies.motion.start[v]).norm());
     distance_[v] = d.distance;
-    if (d.distance < reach_of(in, v) && bodies.inverse_mass[v] > 0)
-      add_constraint(in, shape, 1, {v, v, v}, nearest_of(d, x[v], {1, 0, 0, 0}), constraints);
+    const double reach = reach_of(in, v) + bodies.lift_of(shape, v, in.purpose);
+    if (d.distance < reach && bodies.inverse_mass[v] > 0)
+      add_constraint(in, shape, 1, {v, v, v}, nearest_of(d, x[v]), constraints);
   }
-  if (std::holds_alternative<Plane>(at_end)) return;
-  if (in.purpose == Purpose::solve && is_round(bodies, shape))
-    generate_for_edges(in, shape, constraints);
-  else
-    generate_for_triangles(in, shape, constraints);
+  if (!std::holds_alternative<Plane>(at_end)) generate_for_triangles(in, shape, constraints);
 }
 
-void ShapeConstraints::generate_for_edges(const Input& in, int shape,
-                                          std::vector<Constraint>& constraints) const {
-  const StepBodies& bodies = in.bodies;
-  const std::vector<Vec3>& x = bodies.motion.end;
-  const double edge_reach = in.longest_edge / 2;
-  for (const auto& [a, b] : bodies.surface->edges) {
-    if (!bodies.numbering.is_of_cloth(a)) break;
-    const double nearest = std::min(distance_[a], distance_[b]), reach = reach_of(in, a);
-    if (nearest > reach + edge_reach) continue;
-    const Vec3 middle = 0.5 * (x[a] + x[b]);
-    const SignedDistance d = signed_distance(bodies.shapes[shape].after, middle);
-    if (d.distance < std::min(reach, nearest - kMuchNearer * bodies.motion.half_thickness[a]))
-      add_constraint(in, shape, 2, {a, b, b}, nearest_of(d, middle, {0.5, 0.5, 0, 0}), constraints);
-  }
-}
-
+/// In a solve not on round shapes: the nearest point of a triangle moves across it as it tilts, and a solve that keeps
+/// an earlier point for a step jitters.
 void ShapeConstraints::generate_for_triangles(const Input& in, int shape,
                                               std::vector<Constraint>& constraints) const {
   const StepBodies& bodies = in.bodies;
-  const std::vector<Vec3>& x = bodies.motion.end;
   const double triangle_reach = in.longest_edge / std::sqrt(3.0);
   for (const Triangle& t : bodies.surface->triangles) {
     if (!bodies.numbering.is_of_cloth(t[0])) break;
+    if (in.purpose == Purpose::solve && bodies.is_round(shape, t[0])) continue;
     const double nearest = std::min({distance_[t[0]], distance_[t[1]], distance_[t[2]]});
-    const double reach = reach_of(in, t[0]);
-    if (nearest > reach + triangle_reach) continue;
-    const double nearer =
-        std::max(kNearerThanCorners,
-                 in.purpose == Purpose::solve ? kMuchNearer * bodies.motion.half_thickness[t[0]] : 0.0);
-    const double farthest = std::min(reach, nearest - nearer);
-    const TriangleSignedDistance d =
-        signed_distance(bodies.shapes[shape].after, x[t[0]], x[t[1]], x[t[2]], farthest);
-    if (d.distance < farthest)
-      add_constraint(in, shape, 3, t, nearest_of(d, x[t[0]], x[t[1]], x[t[2]]), constraints);
+    if (nearest <= reach_of(in, t[0]) + triangle_reach) add_triangle(in, shape, t, nearest, constraints);
+  }
+}
+
+void ShapeConstraints::lower_between(const Input& in, std::vector<Constraint>& constraints) const {
+  const StepBodies& bodies = in.bodies;
+  if (bodies.shapes.size() < 2) return;
+  std::vector<std::pair<int, int>> lifted;  // vertices, and numbers of constraints
+  for (std::size_t n = 0; n < constraints.size(); ++n) {
+    const Constraint& c = constraints[n];
+    if (c.shape >= 0 && !c.is_caught && c.num_vertices == 1 && !c.is_between &&
+        bodies.lift_of(c.shape, c.vertex[0], in.purpose) > 0)
+      lifted.emplace_back(c.vertex[0], static_cast<int>(n));
+  }
+  if (lifted.empty()) return;
+  std::sort(lifted.begin(), lifted.end());
+  std::vector<std::pair<int, int>> beside;  // shapes, and triangles at lowered particles
+  const auto lower_facing = [&](int vertex, const Vec3& normal) {
+    auto at = std::lower_bound(lifted.begin(), lifted.end(), std::pair(vertex, 0));
+    for (; at != lifted.end() && at->first == vertex; ++at) {
+      Constraint& c = constraints[at->second];
+      if (c.is_between || c.normal.dot(normal) >= 0) continue;
+      c.is_between = true;
+      c.target -= bodies.lift_of(c.shape, vertex, in.purpose);
+      for (const int t : bodies.surface->triangles_at(vertex)) beside.emplace_back(c.shape, t);
+    }
+  };
+  for (const Constraint& c : constraints) {
+    if (c.is_caught || (c.shape < 0 && !bodies.numbering.is_on_body(c))) continue;
+    for (int k = 0; k < c.num_vertices; ++k) {
+      if (bodies.numbering.is_of_cloth(c.vertex[k]) && c.weight[k] != 0)
+        lower_facing(c.vertex[k], c.weight[k] < 0 ? Vec3(-c.normal) : c.normal);
+    }
+  }
+  if (in.purpose != Purpose::solve) return;  // triangles have constraints already
+  std::sort(beside.begin(), beside.end());
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  for (const auto& [shape, t] : beside) {
+    const Triangle& corners = bodies.surface->triangles[t];
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const int v : corners)
+      nearest = std::min(nearest, signed_distance(bodies.shapes[shape].after, bodies.motion.end[v]).distance);
+    add_triangle(in, shape, corners, nearest, constraints);
   }
 }
 

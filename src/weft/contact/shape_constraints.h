@@ -1,5 +1,5 @@
 #pragma once
-/// Narrow phase of primitive shapes: spheres, planes, capsules and boxes, against particles, edges and triangles.
+/// Narrow phase of primitive shapes: spheres, planes, capsules and boxes, against particles and triangles.
 
 #include <vector>
 
@@ -9,15 +9,12 @@
 
 namespace weft::engine {
 
-/// Updates a constraint's plane: the tangent plane of its shape at the point nearest to the particle, edge or
-/// triangle at the end of the step.
+/// Updates a constraint's plane: the tangent plane of its shape at the point nearest to the particle or triangle at
+/// the end of the step.
 void update_plane(const StepBodies& bodies, Purpose purpose, Constraint& c);
 
 /// Distance of a constraint's feature from its shape at the start of the step [m].
 double distance_at_start(const StepBodies& bodies, const Constraint& c);
-
-/// Whether a shape's radius is so large, beside the cells of cloth, that cloth lies on it like on a plane.
-bool is_round(const StepBodies& bodies, int shape);
 
 class ShapeConstraints {
  public:
@@ -36,12 +33,15 @@ class ShapeConstraints {
   /// Appends constraints, shape after shape. Returns whether any vertex is near a shape.
   bool generate(const Input& in, std::vector<Constraint>& constraints);
 
+  /// Of particles between two colliders takes back the lift (StepBodies::lift_of), so that cloth fits wherever its
+  /// thickness does; triangles there get constraints in a solve, too. `constraints` are complete.
+  void lower_between(const Input& in, std::vector<Constraint>& constraints) const;
+
   /// Of cloth from the shapes, as measured so far.
   const ShapeClearance& clearance() const { return clearance_; }
 
  private:
   void generate_for(const Input& in, int shape, std::vector<Constraint>& constraints);
-  void generate_for_edges(const Input& in, int shape, std::vector<Constraint>& constraints) const;
   void generate_for_triangles(const Input& in, int shape, std::vector<Constraint>& constraints) const;
 
   ShapeClearance clearance_;

@@ -49,6 +49,16 @@ struct StepBodies {
   /// Friction coefficient: the static one if the two did not slide at the start of the step [1].
   double friction_of(const PairSettings& settings, const Constraint& c) const;
 
+  /// Whether a shape is a ball or a capsule with a radius well above the cloth's cells: particles alone keep the cloth
+  /// out of it in a solve.
+  bool is_round(int shape, int vertex) const;
+
+  /// How much more than half the thickness a particle therefore keeps from a shape, so that the triangles between
+  /// particles do not sag in; 0 if the shape is not round [m].
+  double lift_of(int shape, int vertex, Purpose purpose) const;
+  /// An upper bound for all particles and shapes [m].
+  double most_lift() const;
+
   /// Required distance from a primitive shape [m].
   double clearance_of(const Constraint& c, Purpose purpose) const;
 

@@ -152,8 +152,9 @@ Survey::Region Survey::surveyed_region(const StepBodies& bodies, double fall) co
 bool Survey::are_shapes_far(const StepBodies& bodies, double fall) const {
   if (!bodies.has_plain_shapes()) return true;
   const Region region = surveyed_region(bodies, fall);
+  const double reach = region.reach + bodies.most_lift();
   return std::all_of(bodies.shapes.begin(), bodies.shapes.end(), [&](const MovingShape& shape) {
-    return shape.is_mesh() || least_distance(shape, region.min, region.max) > region.reach;
+    return shape.is_mesh() || least_distance(shape, region.min, region.max) > reach;
   });
 }
 
