@@ -32,7 +32,8 @@ RigidMotion jaw_motion(double side, double slide) {
                       {.time = kOpen * kFrame}});
 }
 
-/// Two jaws, of a kind: "sphere", "capsule", "box", "mesh", or "limbs" of one mesh.
+/// Two jaws, of a kind: "sphere", "capsule", "box", "mesh", "both" (a sphere and a mesh), or "limbs"
+/// of one mesh.
 void add_jaws(const std::string& kind, double slide, World& world) {
   if (kind == "limbs") {
     const TriangleMesh ball = build_geodesic_mesh(kRadius, 3);
@@ -64,7 +65,7 @@ void add_jaws(const std::string& kind, double slide, World& world) {
     ColliderShape shape = Sphere{center, kRadius};
     if (kind == "capsule") shape = Capsule{center - Vec3(0.1, 0, 0), center + Vec3(0.1, 0, 0), kRadius};
     if (kind == "box") shape = OrientedBox{center, {0.08, 0.08, kRadius}};
-    if (kind == "mesh")
+    if (kind == "mesh" || (kind == "both" && side > 0))
       shape = MeshShape{.mesh = shared(build_geodesic_mesh(kRadius, 3)), .translation = center};
     world.add_collider({"", shape, 0.4, jaw_motion(side, side > 0 ? slide : 0)});
   }
@@ -113,7 +114,8 @@ TEST_P(CaughtCloth, IsNotTornAndIsFreeWhenBodiesPart) {
   EXPECT_LT(parts, 2 * (kOpen + 30));
 }
 
-INSTANTIATE_TEST_SUITE_P(Jaws, CaughtCloth, testing::Values("sphere", "capsule", "box", "mesh", "limbs"));
+INSTANTIATE_TEST_SUITE_P(Jaws, CaughtCloth,
+                         testing::Values("sphere", "capsule", "box", "mesh", "both", "limbs"));
 
 TEST(CaughtCloth, IsNotTornByJawsThatSlideAlongEachOther) {
   for (const char* kind : {"sphere", "capsule", "mesh"}) {
