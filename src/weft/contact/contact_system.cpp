@@ -269,6 +269,7 @@ void ContactSystem::find_candidates(const Vec3& acceleration, JobSystem& jobs) {
   std::erase_if(constraints_, [](const Constraint& c) { return c.shape < 0; });
   proximity_.update(bodies_.motion, jobs);
   generate_pair_constraints(Purpose::solve, jobs);
+  lower_between(Purpose::solve, 1.0);
 }
 
 /// Updates the lists for the motion, which the last survey covered.
@@ -298,8 +299,11 @@ void ContactSystem::generate_shape_constraints(Purpose purpose, double share_of_
 }
 
 void ContactSystem::lower_between(Purpose purpose, double share_of_travel) {
+  if (!is_near_shape_) return;
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
+  const bool is_solved = purpose == Purpose::after_solve;
   shape_constraints_.lower_between({bodies_, caught_, purpose, proximity_.longest_edge(), share_of_travel},
+                                   is_solved ? solved_.constraints() : std::span<const Constraint>(),
                                    constraints_);
 }
 
@@ -381,9 +385,9 @@ bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSyste
   constraints_.clear();
   generate_pair_constraints(Purpose::solve, jobs);
   generate_shape_constraints(Purpose::solve, 0.0);
-  lower_between(Purpose::solve, 0.0);
   std::erase_if(constraints_, is_known);
   constraints_.insert(constraints_.begin(), solved_.constraints().begin(), solved_.constraints().end());
+  lower_between(Purpose::solve, 0.0);
   expected_.assign(bodies_.motion.end.begin(), bodies_.motion.end.begin() + bodies_.num_cloth_vertices());
   find_contacts(contacts);
   return true;
@@ -393,9 +397,10 @@ bool ContactSystem::add_missed_contacts(std::vector<Contact>& contacts, JobSyste
 /// triangles: those do not count.
 bool ContactSystem::has_passed(const Constraint& c) const {
   if (c.shape >= 0 && c.num_vertices == 3 && bodies_.is_round(c.shape, c.vertex[0])) return false;
-  const double most =
-      c.shape >= 0 ? bodies_.motion.half_thickness[c.vertex[0]] : bodies_.gap_of(c, Purpose::after_solve);
-  return bodies_.depth_at_end(c) > most;
+  const double gap = bodies_.gap_of(c, Purpose::after_solve);
+  if (c.shape < 0) return bodies_.depth_at_end(c) > gap;
+  const double lift = bodies_.clearance_of(c, Purpose::after_solve) - gap;
+  return bodies_.depth_at_end(c) > bodies_.motion.half_thickness[c.vertex[0]] + lift;
 }
 
 void ContactSystem::project_contacts(JobSystem& jobs) {

@@ -32,13 +32,18 @@ double enclosing_radius_sq(const Vec3& a, const Vec3& b, const Vec3& c) {
   return ab * bc * ca / (4 * (b - a).cross(c - a).squaredNorm());
 }
 
-std::vector<double> measure_circles(const Numbering& numbering, const Surface& surface,
-                                    const std::vector<Vec3>& rest) {
+std::vector<double> measure_circles(const Numbering& numbering) {
   std::vector<double> largest(numbering.num_cloth_vertices(), 0.0);
-  for (const Triangle& t : surface.triangles) {
-    if (!numbering.is_of_cloth(t[0])) break;
-    const double radius_sq = enclosing_radius_sq(rest[t[0]], rest[t[1]], rest[t[2]]);
-    for (const int v : t) largest[v] = std::max(largest[v], radius_sq);
+  for (int c = 0; c < numbering.num_cloths(); ++c) {
+    const auto& mesh = numbering.topologies[c]->mesh;
+    for (int t = 0; t < mesh.num_triangles(); ++t) {
+      const auto [a, b, d] = mesh.corners(t);
+      const double radius_sq = enclosing_radius_sq(a, b, d);
+      for (const int v : mesh.triangles[t]) {
+        double& at = largest[numbering.first_vertex[c] + v];
+        at = std::max(at, radius_sq);
+      }
+    }
   }
   return largest;
 }
@@ -141,7 +146,7 @@ Numbering number_bodies(std::span<const ContactCloth> cloths, const std::vector<
   }
   surface.build_one_rings();
   numbering.rest_edges = measure_edges(numbering, surface, rest);
-  numbering.rest_circle_sq = measure_circles(numbering, surface, rest);
+  numbering.rest_circle_sq = measure_circles(numbering);
   return numbering;
 }
 

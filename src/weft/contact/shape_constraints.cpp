@@ -170,7 +170,8 @@ void ShapeConstraints::generate_for_triangles(const Input& in, int shape,
   }
 }
 
-void ShapeConstraints::lower_between(const Input& in, std::vector<Constraint>& constraints) const {
+void ShapeConstraints::lower_between(const Input& in, std::span<const Constraint> before,
+                                     std::vector<Constraint>& constraints) const {
   const StepBodies& bodies = in.bodies;
   if (bodies.shapes.size() < 2) return;
   std::vector<std::pair<int, int>> lifted;  // vertices, and numbers of constraints
@@ -183,28 +184,39 @@ void ShapeConstraints::lower_between(const Input& in, std::vector<Constraint>& c
   if (lifted.empty()) return;
   std::sort(lifted.begin(), lifted.end());
   std::vector<std::pair<int, int>> beside;  // shapes, and triangles at lowered particles
-  const auto lower_facing = [&](int vertex, const Vec3& normal) {
+  const auto lower_at = [&](int vertex, const auto& is_chosen) {
     auto at = std::lower_bound(lifted.begin(), lifted.end(), std::pair(vertex, 0));
     for (; at != lifted.end() && at->first == vertex; ++at) {
       Constraint& c = constraints[at->second];
-      if (c.is_between || c.normal.dot(normal) >= 0) continue;
+      if (c.is_between || !is_chosen(c)) continue;
       c.is_between = true;
       c.target -= bodies.lift_of(c.shape, vertex, in.purpose);
       for (const int t : bodies.surface->triangles_at(vertex)) beside.emplace_back(c.shape, t);
     }
   };
+  for (const Constraint& c : before) {
+    if (c.is_between) lower_at(c.vertex[0], [&](const Constraint& now) { return now.shape == c.shape; });
+  }
   for (const Constraint& c : constraints) {
     if (c.is_caught || (c.shape < 0 && !bodies.numbering.is_on_body(c))) continue;
     for (int k = 0; k < c.num_vertices; ++k) {
-      if (bodies.numbering.is_of_cloth(c.vertex[k]) && c.weight[k] != 0)
-        lower_facing(c.vertex[k], c.weight[k] < 0 ? Vec3(-c.normal) : c.normal);
+      if (!bodies.numbering.is_of_cloth(c.vertex[k]) || c.weight[k] == 0) continue;
+      const double side = c.weight[k] < 0 ? -1 : 1;
+      lower_at(c.vertex[k], [&](const Constraint& now) { return side * now.normal.dot(c.normal) < 0; });
     }
   }
   if (in.purpose != Purpose::solve) return;  // triangles have constraints already
   std::sort(beside.begin(), beside.end());
   beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  const std::size_t num_before = constraints.size();
   for (const auto& [shape, t] : beside) {
     const Triangle& corners = bodies.surface->triangles[t];
+    const auto is_known = [&, of = shape](const Constraint& c) {
+      return c.shape == of && c.num_vertices == 3 &&
+             std::equal(corners.begin(), corners.end(), c.vertex.begin());
+    };
+    const auto end = constraints.begin() + static_cast<std::ptrdiff_t>(num_before);
+    if (std::any_of(constraints.begin(), end, is_known)) continue;
     double nearest = std::numeric_limits<double>::infinity();
     for (const int v : corners)
       nearest = std::min(nearest, signed_distance(bodies.shapes[shape].after, bodies.motion.end[v]).distance);

@@ -1,6 +1,7 @@
 #pragma once
 /// Narrow phase of primitive shapes: spheres, planes, capsules and boxes, against particles and triangles.
 
+#include <span>
 #include <vector>
 
 #include "weft/contact/caught_particles.h"
@@ -22,8 +23,9 @@ class ShapeConstraints {
     const StepBodies& bodies;
     const CaughtParticles& caught;  // have no constraints with what holds them
     Purpose purpose;
-    double longest_edge;     // upper bound for cloth edges [m]
-    double share_of_travel;  // of a particle's motion: so much farther it may be than twice its gap [1]
+    double longest_edge;  // upper bound for cloth edges [m]
+    double
+        share_of_travel;  // of a particle's motion: so much farther it may be than twice its gap and its lift [1]
   };
 
   /// Begins a step, in which vertices start within `travel` of where they started the one before (see
@@ -34,8 +36,10 @@ class ShapeConstraints {
   bool generate(const Input& in, std::vector<Constraint>& constraints);
 
   /// Of particles between two colliders takes back the lift (StepBodies::lift_of), so that cloth fits wherever its
-  /// thickness does; triangles there get constraints in a solve, too. `constraints` are complete.
-  void lower_between(const Input& in, std::vector<Constraint>& constraints) const;
+  /// thickness does; triangles there get constraints in a solve, too. Particles that were between colliders in
+  /// the constraints `before` stay so. `constraints` are complete; those lowered already stay as they are.
+  void lower_between(const Input& in, std::span<const Constraint> before,
+                     std::vector<Constraint>& constraints) const;
 
   /// Of cloth from the shapes, as measured so far.
   const ShapeClearance& clearance() const { return clearance_; }

@@ -54,7 +54,7 @@ struct StepBodies {
   bool is_round(int shape, int vertex) const;
 
   /// How much more than half the thickness a particle therefore keeps from a shape, so that the triangles between
-  /// particles do not sag in; 0 if the shape is not round [m].
+  /// particles do not sag in; 0 if the shape is not round, or without a solve [m].
   double lift_of(int shape, int vertex, Purpose purpose) const;
   /// An upper bound for all particles and shapes [m].
   double most_lift() const;
