@@ -122,9 +122,8 @@ Hypothesis cloth_comes_to_rest(const SectionOptions& options) {
   hypothesis.text = {fmt::format(
       "A sheet of 0.8 m dropped from 1 cm, `newton` at 60 steps per second. In the second half of "
       "{:.0f} s: median of the root mean square velocity, maximum kinetic energy per mass, drift of the "
-      "middle, "
-      "and mean of the contact forces over the weight. In the whole time: maximum rise of the middle in a "
-      "step.",
+      "middle, and mean of the contact forces over the weight. In the whole time: maximum rise of the middle "
+      "in a step.",
       seconds)};
   hypothesis.found.tables = {{{"on", "velocity, mm/s", "kinetic energy, J/kg", "drift, mm",
                                "rise in a step, mm", "force over weight"},

@@ -292,19 +292,26 @@ void ContactSystem::generate_pair_constraints(Purpose purpose, JobSystem& jobs) 
 void ContactSystem::generate_shape_constraints(Purpose purpose, double share_of_travel, double stretch) {
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   add_caught_constraints(bodies_, caught_, constraints_);
-  is_near_shape_ =
-      bodies_.has_plain_shapes() &&
-      shape_constraints_.generate(
-          {bodies_, caught_, purpose, proximity_.longest_edge() + stretch, share_of_travel}, constraints_);
+  is_near_shape_ = bodies_.has_plain_shapes() &&
+                   shape_constraints_.generate({bodies_, caught_, purpose, share_of_travel},
+                                               proximity_.longest_edge() + stretch, constraints_);
 }
 
 void ContactSystem::lower_between(Purpose purpose, double share_of_travel) {
   if (!is_near_shape_) return;
   const WorkScope scope(step_.clock, &WorkTimes::narrow_phase);
   const bool is_solved = purpose == Purpose::after_solve;
-  shape_constraints_.lower_between({bodies_, caught_, purpose, proximity_.longest_edge(), share_of_travel},
+  shape_constraints_.lower_between({bodies_, caught_, purpose, share_of_travel},
                                    is_solved ? solved_.constraints() : std::span<const Constraint>(),
                                    constraints_);
+}
+
+/// The constraints at the end positions.
+void ContactSystem::generate_constraints_after(JobSystem& jobs) {
+  constraints_.clear();
+  generate_pair_constraints(after(), jobs);
+  generate_shape_constraints(after(), 0.0);
+  lower_between(after(), 0.0);
 }
 
 /// Finds newly caught cloth, and replaces its constraints.
@@ -367,9 +374,7 @@ void ContactSystem::find_violations(JobSystem& jobs) {
   const bool lists_are_empty = proximity_.vertex_triangle().empty() && proximity_.edge_edge().empty();
   is_clear_ = lists_are_empty && !bodies_.has_plain_shapes() && caught_.empty();
   if (is_clear_ || matches_prediction()) return;
-  generate_pair_constraints(after(), jobs);
-  generate_shape_constraints(after(), 0.0);
-  lower_between(after(), 0.0);
+  generate_constraints_after(jobs);
   if (!is_predicted_) catch_cloth();
   is_clear_ = lists_are_empty && !is_near_shape_ && caught_.empty();
   if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
@@ -421,10 +426,7 @@ void ContactSystem::project_contacts(JobSystem& jobs) {
   // Vertices that were moved far may now touch features beyond the search radius.
   for (int search = 0; search < kSearches && projection_.has_left_reach(bodies_); ++search) {
     proximity_.update(bodies_.motion, jobs);
-    constraints_.clear();
-    generate_pair_constraints(after(), jobs);
-    generate_shape_constraints(after(), 0.0);
-    lower_between(after(), 0.0);
+    generate_constraints_after(jobs);
     if (is_predicted_) solved_.leave_out_separated(bodies_, constraints_);
     projection_.take(bodies_, constraints_);
     projection_.settle(bodies_, after(), constraints_);

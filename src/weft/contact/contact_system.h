@@ -131,6 +131,7 @@ class ContactSystem {
   void generate_pair_constraints(Purpose purpose, JobSystem& jobs);
   void generate_shape_constraints(Purpose purpose, double share_of_travel, double stretch = 0);
   void lower_between(Purpose purpose, double share_of_travel);
+  void generate_constraints_after(JobSystem& jobs);
   void catch_cloth();
   void add_force(const Constraint& c, const Vec3& force);
   bool has_passed(const Constraint& c) const;

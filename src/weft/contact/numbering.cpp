@@ -34,15 +34,13 @@ double enclosing_radius_sq(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 std::vector<double> measure_circles(const Numbering& numbering) {
   std::vector<double> largest(numbering.num_cloth_vertices(), 0.0);
-  for (int c = 0; c < numbering.num_cloths(); ++c) {
-    const auto& mesh = numbering.topologies[c]->mesh;
+  for (int cloth = 0; cloth < numbering.num_cloths(); ++cloth) {
+    const RestMesh& mesh = numbering.topologies[cloth]->mesh;
+    double* const largest_at = largest.data() + numbering.first_vertex[cloth];
     for (int t = 0; t < mesh.num_triangles(); ++t) {
-      const auto [a, b, d] = mesh.corners(t);
-      const double radius_sq = enclosing_radius_sq(a, b, d);
-      for (const int v : mesh.triangles[t]) {
-        double& at = largest[numbering.first_vertex[c] + v];
-        at = std::max(at, radius_sq);
-      }
+      const auto [a, b, c] = mesh.corners(t);
+      const double radius_sq = enclosing_radius_sq(a, b, c);
+      for (const int v : mesh.triangles[t]) largest_at[v] = std::max(largest_at[v], radius_sq);
     }
   }
   return largest;

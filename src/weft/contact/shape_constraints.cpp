@@ -122,25 +122,26 @@ void ShapeConstraints::begin_step(const StepBodies& bodies, double travel) {
   clearance_.begin_step(bodies.shapes, bodies.num_cloth_vertices(), travel);
 }
 
-bool ShapeConstraints::generate(const Input& in, std::vector<Constraint>& constraints) {
+bool ShapeConstraints::generate(const Input& in, double longest_edge, std::vector<Constraint>& constraints) {
   const StepBodies& bodies = in.bodies;
   if (!bodies.has_plain_shapes()) return false;
   constexpr double kRoom = 1e-4;  // more than the CCD fail-safe needs [m]
   const double way = farthest_way(bodies.motion, bodies.num_cloth_vertices()),
-               reach = 2 * bodies.thickest + in.longest_edge + kRoom;
+               reach = 2 * bodies.thickest + longest_edge + kRoom;
   bool is_near = false;
   for (int s = 0; s < static_cast<int>(bodies.shapes.size()); ++s) {
     if (bodies.shapes[s].is_mesh()) continue;
     clearance_.find_near(s, (1 + in.share_of_travel) * way, reach, near_);
     if (near_.empty()) continue;
     is_near = true;
-    generate_for(in, s, constraints);
+    generate_for(in, s, longest_edge, constraints);
   }
   return is_near;
 }
 
 /// Particles in reach; and triangles that are nearer than their corners.
-void ShapeConstraints::generate_for(const Input& in, int shape, std::vector<Constraint>& constraints) {
+void ShapeConstraints::generate_for(const Input& in, int shape, double longest_edge,
+                                    std::vector<Constraint>& constraints) {
   const StepBodies& bodies = in.bodies;
   const std::vector<Vec3>& x = bodies.motion.end;
   const ColliderShape& at_end = bodies.shapes[shape].after;
@@ -153,15 +154,15 @@ void ShapeConstraints::generate_for(const Input& in, int shape, std::vector<Cons
     if (d.distance < reach && bodies.inverse_mass[v] > 0)
       add_constraint(in, shape, 1, {v, v, v}, nearest_of(d, x[v]), constraints);
   }
-  if (!std::holds_alternative<Plane>(at_end)) generate_for_triangles(in, shape, constraints);
+  if (!std::holds_alternative<Plane>(at_end)) generate_for_triangles(in, shape, longest_edge, constraints);
 }
 
 /// In a solve not on round shapes: the nearest point of a triangle moves across it as it tilts, and a solve that keeps
 /// an earlier point for a step jitters.
-void ShapeConstraints::generate_for_triangles(const Input& in, int shape,
+void ShapeConstraints::generate_for_triangles(const Input& in, int shape, double longest_edge,
                                               std::vector<Constraint>& constraints) const {
   const StepBodies& bodies = in.bodies;
-  const double triangle_reach = in.longest_edge / std::sqrt(3.0);
+  const double triangle_reach = longest_edge / std::sqrt(3.0);
   for (const Triangle& t : bodies.surface->triangles) {
     if (!bodies.numbering.is_of_cloth(t[0])) break;
     if (in.purpose == Purpose::solve && bodies.is_round(shape, t[0])) continue;
@@ -208,15 +209,15 @@ void ShapeConstraints::lower_between(const Input& in, std::span<const Constraint
   if (in.purpose != Purpose::solve) return;  // triangles have constraints already
   std::sort(beside.begin(), beside.end());
   beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-  const std::size_t num_before = constraints.size();
+  std::vector<std::pair<int, Triangle>> known;
+  for (const Constraint& c : constraints) {
+    if (c.shape >= 0 && c.num_vertices == 3)
+      known.push_back({c.shape, {c.vertex[0], c.vertex[1], c.vertex[2]}});
+  }
+  std::sort(known.begin(), known.end());
   for (const auto& [shape, t] : beside) {
     const Triangle& corners = bodies.surface->triangles[t];
-    const auto is_known = [&, of = shape](const Constraint& c) {
-      return c.shape == of && c.num_vertices == 3 &&
-             std::equal(corners.begin(), corners.end(), c.vertex.begin());
-    };
-    const auto end = constraints.begin() + static_cast<std::ptrdiff_t>(num_before);
-    if (std::any_of(constraints.begin(), end, is_known)) continue;
+    if (std::binary_search(known.begin(), known.end(), std::pair(shape, corners))) continue;
     double nearest = std::numeric_limits<double>::infinity();
     for (const int v : corners)
       nearest = std::min(nearest, signed_distance(bodies.shapes[shape].after, bodies.motion.end[v]).distance);

@@ -23,17 +23,16 @@ class ShapeConstraints {
     const StepBodies& bodies;
     const CaughtParticles& caught;  // have no constraints with what holds them
     Purpose purpose;
-    double longest_edge;  // upper bound for cloth edges [m]
-    double
-        share_of_travel;  // of a particle's motion: so much farther it may be than twice its gap and its lift [1]
+    double share_of_travel;  // of a particle's motion that adds to its reach, twice the gap and the lift [1]
   };
 
   /// Begins a step, in which vertices start within `travel` of where they started the one before (see
   /// ShapeClearance::begin_step).
   void begin_step(const StepBodies& bodies, double travel);
 
-  /// Appends constraints, shape after shape. Returns whether any vertex is near a shape.
-  bool generate(const Input& in, std::vector<Constraint>& constraints);
+  /// Appends constraints, shape after shape. `longest_edge`: upper bound for cloth edges [m]. Returns whether any
+  /// vertex is near a shape.
+  bool generate(const Input& in, double longest_edge, std::vector<Constraint>& constraints);
 
   /// Of particles between two colliders takes back the lift (StepBodies::lift_of), so that cloth fits wherever its
   /// thickness does; triangles there get constraints in a solve, too. Particles that were between colliders in
@@ -45,8 +44,9 @@ class ShapeConstraints {
   const ShapeClearance& clearance() const { return clearance_; }
 
  private:
-  void generate_for(const Input& in, int shape, std::vector<Constraint>& constraints);
-  void generate_for_triangles(const Input& in, int shape, std::vector<Constraint>& constraints) const;
+  void generate_for(const Input& in, int shape, double longest_edge, std::vector<Constraint>& constraints);
+  void generate_for_triangles(const Input& in, int shape, double longest_edge,
+                              std::vector<Constraint>& constraints) const;
 
   ShapeClearance clearance_;
 
