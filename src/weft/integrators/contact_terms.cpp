@@ -46,16 +46,25 @@ void ContactTerms::begin(std::span<Contact> contacts, std::span<const int> which
   sticking_ = kStickSpeed * step;
   driven_ = driven;
   num_linearised_ = 0;
-  terms_.clear();
+  rows_.clear();
+  estimates_.clear();
   active_.clear();
-  held_.clear();
   points_.clear();
   for (const int n : which) {
-    contacts[n].has_pushed = false;
-    contacts[n].force.setZero();
-    terms_.push_back({.contact = &contacts[n]});
+    Contact& c = contacts[n];
+    c.has_pushed = false;
+    c.force.setZero();
+    rows_.push_back({.weight = c.weight,
+                     .normal = c.normal,
+                     .stick_point = c.stick_point,
+                     .offset = c.offset,
+                     .stiffness = c.stiffness,
+                     .num_particles = static_cast<std::int16_t>(c.num_particles),
+                     .is_mutual = c.is_mutual()});
+    estimates_.push_back(
+        {.contact = &c, .coefficient = c.friction, .gap = c.gap, .lasting_force = c.lasting_force});
   }
-  if (!terms_.empty()) find_points(members, step);
+  if (!rows_.empty()) find_points(members, step);
 }
 
 /// One for every particle of a contact.
@@ -65,17 +74,18 @@ void ContactTerms::find_points(std::span<const Member> members, double step) {
   const Member& last = members.back();
   const std::size_t size = last.first_particle + last.model->num_particles();
   if (number_.size() < size) number_.resize(size, -1);
-  for (Term& t : terms_) {
-    const Contact& c = *t.contact;
-    for (int k = 0; k < c.num_particles; ++k) {
-      int& number = number_[c.particle[k]];
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    Row& row = rows_[n];
+    for (int k = 0; k < row.num_particles; ++k) {
+      const int particle = estimates_[n].contact->particle[k];
+      int& number = number_[particle];
       if (number < 0) {
         number = static_cast<int>(points_.size());
-        numbered_.push_back(c.particle[k]);
-        points_.push_back(make_point(members, c.particle[k], step));
+        numbered_.push_back(particle);
+        points_.push_back(make_point(members, particle, step));
       }
-      t.point[k] = number;
-      t.can_move |= c.weight[k] != 0 && points_[number].mass_per_step > 0;
+      row.point[k] = number;
+      row.can_move |= row.weight[k] != 0 && points_[number].mass_per_step > 0;
     }
   }
   x_.resize(points_.size());
@@ -101,19 +111,9 @@ void ContactTerms::gather(std::span<const Positions> x) {
   }
 }
 
-Vec3 ContactTerms::point_of(const Term& t) const {
-  const Contact& c = *t.contact;
-  Vec3 sum = c.weight[0] * x_[t.point[0]];
-  for (int k = 1; k < c.num_particles; ++k) sum += c.weight[k] * x_[t.point[k]];
-  return sum;
-}
-
-double ContactTerms::depth_of(const Term& t) const { return t.contact->depth_at(point_of(t)); }
-Vec3 ContactTerms::slide_of(const Term& t) const { return t.contact->slide_at(point_of(t)); }
-
 bool ContactTerms::any_active(std::span<const Positions> x) {
   gather(x);
-  return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return depth_of(t) > 0; });
+  return std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) { return row.depth(row.sum(x_)) > 0; });
 }
 
 /// Force estimate from the inertial prediction, the larger of two. One is the force that stops the particles,
@@ -122,46 +122,46 @@ bool ContactTerms::any_active(std::span<const Positions> x) {
 void ContactTerms::guess(std::span<const Positions> y) {
   gather(y);
   borne_.assign(points_.size(), 0.0);
-  for (const Term& t : terms_) {
-    const Contact& c = *t.contact;
-    if (depth_of(t) == 0) continue;
-    for (int k = 0; k < c.num_particles; ++k) borne_[t.point[k]] += c.weight[k] * c.weight[k];
+  for (const Row& row : rows_) {
+    if (row.depth(row.sum(x_)) == 0) continue;
+    for (int k = 0; k < row.num_particles; ++k) borne_[row.point[k]] += row.weight[k] * row.weight[k];
   }
-  for (Term& t : terms_) {
-    const Contact& c = *t.contact;
-    for (int k = 0; k < c.num_particles; ++k) {
-      const int p = t.point[k];
-      const double share = c.weight[k] * c.weight[k] / (borne_[p] > 0 ? borne_[p] : 1);
-      t.inertia += share * points_[p].mass_per_step;
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const Row& row = rows_[n];
+    Estimate& e = estimates_[n];
+    for (int k = 0; k < row.num_particles; ++k) {
+      const int p = row.point[k];
+      const double share = row.weight[k] * row.weight[k] / (borne_[p] > 0 ? borne_[p] : 1);
+      e.inertia += share * points_[p].mass_per_step;
     }
-    t.guess = c.stiffness * std::max(t.inertia / (t.inertia + c.stiffness) * depth_of(t), c.depth_before);
-    const Vec3 slide = slide_of(t);
+    const Vec3 point = row.sum(x_), slide = row.slide(point);
+    e.force = row.stiffness *
+              std::max(e.inertia / (e.inertia + row.stiffness) * row.depth(point), e.contact->depth_before);
     // Mutual contacts: both sides are driven equally.
-    Vec3 driven = c.is_mutual() ? Vec3(Vec3::Zero()) : driven_;
-    driven -= driven.dot(c.normal) * c.normal;
-    t.slide = (slide - driven).norm();
-    if (t.inertia > 0) t.slide = std::max(t.slide, slide.norm() - c.friction * t.guess / t.inertia);
+    Vec3 driven = row.is_mutual ? Vec3(Vec3::Zero()) : driven_;
+    driven -= driven.dot(row.normal) * row.normal;
+    e.slide = (slide - driven).norm();
+    if (e.inertia > 0) e.slide = std::max(e.slide, slide.norm() - e.coefficient * e.force / e.inertia);
   }
 }
 
 /// Limit of the normal force that friction is based on [N].
-double ContactTerms::most_push(const Term& t) {
-  return std::max(kMaxOverGuess * t.stiffened * t.guess, kMaxOverLasting * t.contact->lasting_force);
+double ContactTerms::most_push(const Estimate& e) {
+  return std::max(kMaxOverGuess * e.stiffened * e.force, kMaxOverLasting * e.lasting_force);
 }
 
 /// µ N over the slide expected after the solve. At first that is the inertial slide less the part that
 /// friction stops, but at least the slide at the start velocity: of the contacts that carry a sheet those
 /// with a larger load must not lock. Later it is the slide so far, corrected for the friction error by
 /// inertia only: without the correction, releasing stuck contacts would take many linearisations.
-double ContactTerms::friction_stiffness(const Term& t, double depth, double slide) const {
-  const Contact& c = *t.contact;
-  const double push = num_linearised_ < kGuesses ? t.guess : std::min(c.stiffness * depth, most_push(t));
-  const double most = c.friction * push;
+double ContactTerms::friction_stiffness(const Row& row, const Estimate& e, double depth, double slide) const {
+  const double push = num_linearised_ < kGuesses ? e.force : std::min(row.stiffness * depth, most_push(e));
+  const double most = e.coefficient * push;
   double expected = slide;
   if (num_linearised_ == 0)
-    expected = t.slide;
-  else if (t.friction > 0 && t.inertia > 0)
-    expected = std::clamp(slide + (t.friction * slide - most) / t.inertia, kMinSlideRatio * slide,
+    expected = e.slide;
+  else if (row.friction > 0 && e.inertia > 0)
+    expected = std::clamp(slide + (row.friction * slide - most) / e.inertia, kMinSlideRatio * slide,
                           kMaxSlideRatio * slide);
   return most / std::max(expected, sticking_);
 }
@@ -171,15 +171,16 @@ double ContactTerms::friction_stiffness(const Term& t, double depth, double slid
 ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
   gather(x);
   double shortfall = 0, limits = 0, changes = 0, sum = 0;
-  for (const Term& t : terms_) {
-    const Contact& c = *t.contact;
-    const double depth = depth_of(t);
-    if (depth > 0 && t.can_move) shortfall = std::max(shortfall, depth / c.gap);
-    if (!t.is_active && depth == 0) continue;
-    const double push = c.stiffness * depth;
-    const double slide = slide_of(t).norm(),
-                 limit = c.friction * (c.is_mutual() ? push : std::min(push, most_push(t)));
-    const double change = limit * std::min(1.0, slide / sticking_) - t.friction * slide;
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const Row& row = rows_[n];
+    const Vec3 point = row.sum(x_);
+    const double depth = row.depth(point);
+    if (!row.is_active && depth == 0) continue;
+    const Estimate& e = estimates_[n];
+    if (depth > 0 && row.can_move) shortfall = std::max(shortfall, depth / e.gap);
+    const double push = row.stiffness * depth, slide = row.slide(point).norm(),
+                 limit = e.coefficient * (row.is_mutual ? push : std::min(push, most_push(e)));
+    const double change = limit * std::min(1.0, slide / sticking_) - row.friction * slide;
     limits += limit;
     changes += std::abs(change);
     sum += change;
@@ -191,57 +192,58 @@ ContactTerms::Unrest ContactTerms::find_unrest(std::span<const Positions> x) {
 
 void ContactTerms::finish(std::span<const Positions> x, std::vector<char>& is_pushed) {
   const bool is_solved = find_unrest(x).shortfall <= 1;
-  for (Term& t : terms_) {
-    Contact& c = *t.contact;
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const Row& row = rows_[n];
+    Contact& c = *estimates_[n].contact;
+    c.has_pushed = row.has_pushed;
     c.is_solved = is_solved;
-    c.push = c.stiffness * depth_of(t);
+    c.push = row.stiffness * row.depth(row.sum(x_));
     if (c.push == 0) continue;
-    for (int k = 0; k < c.num_particles; ++k) is_pushed[points_[t.point[k]].member] = 1;
+    for (int k = 0; k < row.num_particles; ++k) is_pushed[points_[row.point[k]].member] = 1;
   }
 }
 
 /// Whether an open contact will soon push: inertia presses cloth that lies on a collider, and barely touches
 /// it, onto that collider.
-bool ContactTerms::will_push(const Term& t, double beyond) {
-  const Contact& c = *t.contact;
-  return t.guess > 0 && !c.is_mutual() && beyond > -kBarely * c.gap;
+bool ContactTerms::will_push(const Row& row, const Estimate& e, double beyond) {
+  return e.force > 0 && !row.is_mutual && beyond > -kBarely * e.gap;
 }
 
 /// A contact's stiffness suits the inertia of its particles. Cloth that tension presses on a body needs more:
 /// deeper than its gap, the surfaces would pass through each other.
-void ContactTerms::stiffen(Term& t) {
-  const double factor = std::clamp(kMostStiff / (t.contact->stiffened * t.stiffened), 1.0, kStiffen);
-  t.stiffened *= factor;
-  t.contact->stiffness *= factor;
+void ContactTerms::stiffen(Row& row, Estimate& e) {
+  const double factor = std::clamp(kMostStiff / (e.contact->stiffened * e.stiffened), 1.0, kStiffen);
+  e.stiffened *= factor;
+  row.stiffness *= factor;
 }
 
 double ContactTerms::linearise(std::span<const Positions> x, std::span<Vec3Array* const> force) {
   gather(x);
   double energy = 0;
   active_.clear();
-  held_.clear();
   std::fill(f_.begin(), f_.end(), Vec3::Zero());
-  for (std::size_t n = 0; n < terms_.size(); ++n) {
-    Term& t = terms_[n];
-    Contact& c = *t.contact;
-    const double beyond = c.beyond(point_of(t)), depth = std::max(0.0, beyond);
-    t.is_active = (depth > 0 || (num_linearised_ == 0 && will_push(t, beyond))) && t.can_move;
-    if (!t.is_active) t.friction = 0;
-    if (!t.is_active) continue;
-    if (num_linearised_ > 0 && c.gap > 0 && depth > c.gap) stiffen(t);
-    c.has_pushed |= depth > 0;
-    held_.push_back(static_cast<int>(n));
-    const Vec3 slide = slide_of(t);
-    t.friction = friction_stiffness(t, depth, slide.norm());
-    const Vec3 push = c.stiffness * beyond * c.normal - t.friction * slide;
-    for (int k = 0; k < c.num_particles; ++k) f_[t.point[k]] += c.weight[k] * push;
-    active_.push_back({.num_particles = c.num_particles,
-                       .point = t.point,
-                       .weight = c.weight,
-                       .normal = c.normal,
-                       .beyond_friction = c.stiffness - t.friction,
-                       .friction = t.friction});
-    energy += 0.5 * c.stiffness * depth * depth + 0.5 * t.friction * slide.squaredNorm();
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    Row& row = rows_[n];
+    Estimate& e = estimates_[n];
+    const Vec3 point = row.sum(x_);
+    const double beyond = row.beyond(point), depth = std::max(0.0, beyond);
+    row.is_active = (depth > 0 || (num_linearised_ == 0 && will_push(row, e, beyond))) && row.can_move;
+    if (!row.is_active) row.friction = 0;
+    if (!row.is_active) continue;
+    if (num_linearised_ > 0 && e.gap > 0 && depth > e.gap) stiffen(row, e);
+    row.has_pushed |= depth > 0;
+    const Vec3 slide = row.slide(point);
+    row.friction = friction_stiffness(row, e, depth, slide.norm());
+    const Vec3 push = row.stiffness * beyond * row.normal - row.friction * slide;
+    for (int k = 0; k < row.num_particles; ++k) f_[row.point[k]] += row.weight[k] * push;
+    active_.push_back({.point = row.point,
+                       .weight = row.weight,
+                       .normal = row.normal,
+                       .stiffness = row.stiffness,
+                       .friction = row.friction,
+                       .num_particles = row.num_particles,
+                       .is_mutual = row.is_mutual});
+    energy += 0.5 * row.stiffness * depth * depth + 0.5 * row.friction * slide.squaredNorm();
   }
   ++num_linearised_;
   if (active_.empty()) return energy;
@@ -255,10 +257,11 @@ double ContactTerms::linearise(std::span<const Positions> x, std::span<Vec3Array
 double ContactTerms::energy(std::span<const Positions> x) {
   gather(x);
   double energy = 0;
-  for (const Term& t : terms_) {
-    const double depth = depth_of(t);
-    energy += 0.5 * t.contact->stiffness * depth * depth;
-    if (t.is_active) energy += 0.5 * t.friction * slide_of(t).squaredNorm();
+  for (const Row& row : rows_) {
+    const Vec3 point = row.sum(x_);
+    const double depth = row.depth(point);
+    energy += 0.5 * row.stiffness * depth * depth;
+    if (row.is_active) energy += 0.5 * row.friction * row.slide(point).squaredNorm();
   }
   return energy;
 }
@@ -272,13 +275,15 @@ void ContactTerms::compute_forces(std::span<const Positions> x, std::span<const 
     f_[p] = others[points_[p].member]->get(points_[p].at);
     is_pinned.push_back(points_[p].mass_per_step == 0);
   }
-  for (Term& t : terms_) {
-    Contact& c = *t.contact;
-    if (t.can_move) c.force = c.stiffness * depth_of(t) * c.normal;
-    if (t.is_active) c.force -= t.friction * slide_of(t);
-    for (int k = 0; k < c.num_particles; ++k) f_[t.point[k]] += c.weight[k] * c.force;
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const Row& row = rows_[n];
+    Contact& c = *estimates_[n].contact;
+    const Vec3 point = row.sum(x_);
+    if (row.can_move) c.force = row.stiffness * row.depth(point) * row.normal;
+    if (row.is_active) c.force -= row.friction * row.slide(point);
+    for (int k = 0; k < row.num_particles; ++k) f_[row.point[k]] += row.weight[k] * c.force;
     contacts.push_back(&c);
-    at.push_back(t.point);
+    at.push_back(row.point);
   }
   give_rest_to_contacts(at, f_, is_pinned, contacts);
 }
@@ -293,7 +298,7 @@ double ContactTerms::add_product(std::span<CgBlock* const> blocks) {
   for (const Spring& s : active_) {
     Vec3 sum = s.weight[0] * x_[s.point[0]];
     for (int k = 1; k < s.num_particles; ++k) sum += s.weight[k] * x_[s.point[k]];
-    const Vec3 product = s.beyond_friction * s.normal.dot(sum) * s.normal + s.friction * sum;
+    const Vec3 product = (s.stiffness - s.friction) * s.normal.dot(sum) * s.normal + s.friction * sum;
     for (int k = 0; k < s.num_particles; ++k) f_[s.point[k]] += s.weight[k] * product;
     dot += sum.dot(product);
   }
@@ -305,30 +310,27 @@ double ContactTerms::add_product(std::span<CgBlock* const> blocks) {
 }
 
 void ContactTerms::add_to_preconditioners(std::span<const Preconditioners> preconditioners) const {
-  for (const int n : held_) {
-    const Term& t = terms_[n];
-    const Contact& c = *t.contact;
-    for (int k = 0; k < c.num_particles; ++k) {
-      const double share = c.weight[k] * c.weight[k];
+  for (const Spring& s : active_) {
+    for (int k = 0; k < s.num_particles; ++k) {
+      const double share = s.weight[k] * s.weight[k];
       if (share == 0) continue;
-      const Point& point = points_[t.point[k]];
+      const Point& point = points_[s.point[k]];
       const auto& [stiff, along, preconditioner] = preconditioners[point.member];
-      (*stiff)[point.at] += static_cast<float>(share * std::max(c.stiffness, t.friction));
-      (*along)[point.at] += static_cast<float>(share * t.friction);
-      preconditioner->add_normal(point.at, c.normal, stiff->size());
+      (*stiff)[point.at] += static_cast<float>(share * std::max(s.stiffness, s.friction));
+      (*along)[point.at] += static_cast<float>(share * s.friction);
+      preconditioner->add_normal(point.at, s.normal, stiff->size());
     }
   }
 }
 
 void ContactTerms::touch(FreeBodies& bodies) const {
-  for (const int n : held_) {
-    const Term& t = terms_[n];
+  for (const Spring& s : active_) {
     std::array<FreeBodies::Place, 4> places;
-    for (int k = 0; k < t.contact->num_particles; ++k) {
-      const Point& point = points_[t.point[k]];
+    for (int k = 0; k < s.num_particles; ++k) {
+      const Point& point = points_[s.point[k]];
       places[k] = {point.member, point.particle};
     }
-    bodies.touch({places.data(), static_cast<std::size_t>(t.contact->num_particles)}, t.contact->is_mutual());
+    bodies.touch({places.data(), static_cast<std::size_t>(s.num_particles)}, s.is_mutual);
   }
 }
 

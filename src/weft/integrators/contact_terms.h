@@ -1,7 +1,9 @@
 #pragma once
 /// Private to integrators/: contacts in the potential of `newton`.
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -57,7 +59,7 @@ class ContactTerms {
   void begin(std::span<Contact> contacts, std::span<const int> which, std::span<const Member> members,
              double step, const Vec3& driven);
 
-  bool empty() const { return terms_.empty(); }
+  bool empty() const { return rows_.empty(); }
 
   /// Estimates each contact's force and slide, from the inertial prediction y of the particles (members).
   void guess(std::span<const Positions> y);
@@ -105,37 +107,60 @@ class ContactTerms {
     double mass_per_step = 0;              // m/h², 0 for pinned particles [N/m]
   };
 
-  struct Term {
-    Contact* contact = nullptr;
+  /// A contact in the form that all passes read: two cache lines.
+  struct Row {
     std::array<int, 4> point;
-    bool can_move = false;
-    bool is_active = false;
-    double inertia = 0;    // m/h² of the stencil, shared where several contacts bear [N/m]
-    double guess = 0;      // estimate of its force [N]
-    double slide = 0;      // estimate of its slide [m]
-    double friction = 0;   // κ [N/m]
-    double stiffened = 1;  // factor on the contact's stiffness, of this step [1]
+    std::array<double, 4> weight;
+    Vec3 normal, stick_point;
+    double offset = 0, stiffness = 0;  // as in Contact
+    double friction = 0;               // κ [N/m]
+    std::int16_t num_particles = 0;
+    bool is_mutual = false, can_move = false, is_active = false, has_pushed = false;
+
+    /// Σ w x.
+    Vec3 sum(const std::vector<Vec3>& x) const {
+      Vec3 sum = weight[0] * x[point[0]];
+      for (int k = 1; k < num_particles; ++k) sum += weight[k] * x[point[k]];
+      return sum;
+    }
+    double beyond(const Vec3& at) const { return offset - normal.dot(at); }
+    double depth(const Vec3& at) const { return std::max(0.0, beyond(at)); }
+    Vec3 slide(const Vec3& at) const {
+      const Vec3 moved = at - stick_point;
+      return moved - moved.dot(normal) * normal;
+    }
+  };
+  static_assert(sizeof(Row) == 128);
+
+  /// What estimates of a contact's force need, in the rows' order.
+  struct Estimate {
+    Contact* contact = nullptr;
+    double coefficient = 0;    // Coulomb's [1]
+    double gap = 0;            // [m]
+    double lasting_force = 0;  // [N]
+    double inertia = 0;        // m/h² of the stencil, shared where several contacts bear [N/m]
+    double force = 0;          // [N]
+    double slide = 0;          // [m]
+    double stiffened = 1;      // factor on the contact's stiffness, of this step [1]
   };
 
   /// The Hessian of an active contact.
   struct Spring {
-    int num_particles;
     std::array<int, 4> point;
     std::array<double, 4> weight;
     Vec3 normal;
-    double beyond_friction, friction;  // κ_n − κ, κ [N/m]
+    double stiffness, friction;  // [N/m]
+    int num_particles;
+    bool is_mutual;
   };
 
   void find_points(std::span<const Member> members, double step);
   static Point make_point(std::span<const Member> members, int number, double step);
   void gather(std::span<const Positions> x);
-  Vec3 point_of(const Term& term) const;
-  double depth_of(const Term& term) const;
-  Vec3 slide_of(const Term& term) const;
-  static void stiffen(Term& t);
-  static bool will_push(const Term& term, double beyond);
-  static double most_push(const Term& term);
-  double friction_stiffness(const Term& term, double depth, double slide) const;
+  static void stiffen(Row& row, Estimate& estimate);
+  static bool will_push(const Row& row, const Estimate& estimate, double beyond);
+  static double most_push(const Estimate& estimate);
+  double friction_stiffness(const Row& row, const Estimate& estimate, double depth, double slide) const;
 
   double sticking_ = 0;  // largest slide in a step that counts as sticking [m]
   Vec3 driven_ = Vec3::Zero();
@@ -145,9 +170,9 @@ class ContactTerms {
   std::vector<int> numbered_;  // particles with such an index
   std::vector<double> borne_;  // (points) Σ w² over the pushing contacts
   std::vector<Vec3> x_, f_;    // (points) positions or directions; forces or products
-  std::vector<Term> terms_;
-  std::vector<Spring> active_;  // contacts that pushed at the last linearise()
-  std::vector<int> held_;       // their terms
+  std::vector<Row> rows_;
+  std::vector<Estimate> estimates_;  // (rows)
+  std::vector<Spring> active_;       // contacts that pushed at the last linearise()
 };
 
 }  // namespace weft::engine
