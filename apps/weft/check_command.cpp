@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <optional>
 
 #include "apps/common/command_line.h"
 #include "apps/common/progress.h"
@@ -15,7 +16,7 @@ namespace weft::engine::app {
 namespace {
 
 /// Reads the scene and builds its world, which also checks meshes, pins, sizes and the initial state. Returns
-/// whether there is no warning.
+/// whether there is no warning. Throws InputError for a start that a run refuses.
 bool check(const std::string& name, const Overrides& overrides) {
   const std::filesystem::path file = find_scene(name);
   const SceneDesc scene = read_scene(file, overrides);
@@ -31,13 +32,12 @@ bool check(const std::string& name, const Overrides& overrides) {
     warnings.insert(warnings.end(), found.begin(), found.end());
   };
   add(sizes.warnings);
-  if (scene.contact) {
-    const std::vector<std::string> crossed = check_start(built.world);
-    add(crossed);
-    if (!crossed.empty() && !scene.untangle)
-      warnings.push_back("solver.untangle = true repairs intersections at the start");
-  }
+  const std::vector<std::string> crossed =
+      scene.contact ? check_start(built.world) : std::vector<std::string>();
+  const std::optional<std::string> refusal = refuse_start(scene, crossed);
+  if (!refusal) add(crossed);
   for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", file.string(), warning);
+  if (refusal) throw InputError(file.string() + ": " + *refusal);
   if (warnings.empty()) fmt::print("{}: OK\n", file.string());
   return warnings.empty();
 }

@@ -33,6 +33,7 @@ enum class WarningCode {
   passages,         // features passed through each other between frames; `value` is their number [1]
   infeasible,       // prescribed motions left no room for pairs of features; `value` is their number [1]
   open_seam,        // a seam is open after its time; `value` is how far, at `particle` [m]
+  penetration,      // cloth at `particle` is inside `collider` at the end; `value` is the depth [m]
 };
 
 struct StepWarning {
@@ -41,14 +42,21 @@ struct StepWarning {
   int particle = -1;                     // -1: no specific particle
   double value = 0;                      // see the code
   StepFault fault = StepFault::stretch;  // of cap_reached
+  int collider = -1;                     // of penetration
 };
 
-/// A pair of features that prescribed motions have pushed through each other: a particle, and the other
-/// feature's cloth or collider.
+enum class InfeasibleKind {
+  passed,  // prescribed motions have pushed the two through each other
+  caught,  // a particle lies between colliders that overlap, of which `collider` is one
+};
+
+/// A pair of features that prescribed motions leave no room for: a particle, and the other feature's cloth or
+/// collider.
 struct InfeasiblePair {
   int cloth = -1;     // -1 only if both features are colliders'
   int particle = -1;  // of `cloth`
   int other_cloth = -1, other_particle = -1, collider = -1;
+  InfeasibleKind kind = InfeasibleKind::passed;
 
   bool operator==(const InfeasiblePair&) const = default;
 };
@@ -93,7 +101,7 @@ struct StepReport {
   int hits = 0;   // pairs that reached the fail-safe, continuous collision detection [1]
   int zones = 0;  // its rigid impact zones [1]
   int torn = 0;   // cuts through vertices (Fabric::strength): particles and triangles have changed [1]
-  std::vector<InfeasiblePair> infeasible = {};  // pushed through each other by prescribed motions, once each
+  std::vector<InfeasiblePair> infeasible = {};  // that prescribed motions leave no room for, once each
   WorkTimes work = {};                          // of all parts, including repeated ones
 };
 

@@ -128,9 +128,14 @@ struct Names<StepFault> {
 template <>
 struct Names<WarningCode> {
   static constexpr std::string_view what = "code";
-  static constexpr std::array<std::string_view, 11> names = {
+  static constexpr std::array<std::string_view, 12> names = {
       "not_converged", "contact_skipped", "non_finite", "cap_reached", "yarn_strain", "flat_triangle",
-      "energy_rise",   "crossings",       "passages",   "infeasible",  "open_seam"};
+      "energy_rise",   "crossings",       "passages",   "infeasible",  "open_seam",   "penetration"};
+};
+template <>
+struct Names<InfeasibleKind> {
+  static constexpr std::string_view what = "kind";
+  static constexpr std::array<std::string_view, 2> names = {"passed", "caught"};
 };
 
 template <class Enum>

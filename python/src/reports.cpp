@@ -49,20 +49,25 @@ void bind_reports(nb::module_& m) {
       .def_ro("value", &StepWarning::value, "See the code: a strain, a share, an energy [J], a number")
       .def_prop_ro(
           "fault", [](const StepWarning& w) { return name_of(w.fault); }, "The reason, of \"cap_reached\"")
+      .def_prop_ro("collider", index_or_none(&StepWarning::collider),
+                   "Index in `World.colliders`, of \"penetration\"; else None")
       .def("__repr__", [](const StepWarning& w) {
         return "StepWarning(code=\"" + std::string(name_of(w.code)) + "\", cloth=" + std::to_string(w.cloth) +
                ", particle=" + std::to_string(w.particle) + ", value=" + std::to_string(w.value) + ")";
       });
 
   nb::class_<InfeasiblePair> pair(m, "InfeasiblePair");
-  pair.attr("__doc__") = "A pair of features that prescribed motions have pushed through each other.";
+  pair.attr("__doc__") = "A pair of features that prescribed motions leave no room for.";
   pair.def_prop_ro("cloth", index_or_none(&InfeasiblePair::cloth), "Index in `World.cloths`")
       .def_prop_ro("particle", index_or_none(&InfeasiblePair::particle), "Of `cloth`")
       .def_prop_ro("other_cloth", index_or_none(&InfeasiblePair::other_cloth),
                    "Index in `World.cloths`; None: a collider")
       .def_prop_ro("other_particle", index_or_none(&InfeasiblePair::other_particle), "Of `other_cloth`")
       .def_prop_ro("collider", index_or_none(&InfeasiblePair::collider),
-                   "Index in `World.colliders`; None: cloth");
+                   "Index in `World.colliders`; None: cloth")
+      .def_prop_ro(
+          "kind", [](const InfeasiblePair& p) { return name_of(p.kind); },
+          "\"passed\": pushed through each other; \"caught\": between colliders that overlap");
 
   nb::class_<StepReport> report(m, "StepReport");
   report.attr("__doc__") = "Result of a step.";

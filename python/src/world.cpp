@@ -661,6 +661,8 @@ void bind_world(nb::module_& m) {
   c.def("describe", [](LockedWorld& own, const StepWarning& warning) {
     return with(own, [&](const World& w) { return describe(w, warning); });
   });
+  c.def("find_problems",
+        [](LockedWorld& own) { return with(own, [](const World& w) { return find_problems(w); }); });
   bind_batch(m);
 }
 

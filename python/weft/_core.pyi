@@ -1410,12 +1410,14 @@ class StepWarning:
     def fault(self) -> str:
         """The reason, of "cap_reached\""""
 
+    @property
+    def collider(self) -> int | None:
+        """Index in `World.colliders`, of "penetration"; else None"""
+
     def __repr__(self) -> str: ...
 
 class InfeasiblePair:
-    """
-    A pair of features that prescribed motions have pushed through each other.
-    """
+    """A pair of features that prescribed motions leave no room for."""
 
     @property
     def cloth(self) -> int | None:
@@ -1436,6 +1438,12 @@ class InfeasiblePair:
     @property
     def collider(self) -> int | None:
         """Index in `World.colliders`; None: cloth"""
+
+    @property
+    def kind(self) -> str:
+        """
+        "passed": pushed through each other; "caught": between colliders that overlap
+        """
 
 class StepReport:
     """Result of a step."""
@@ -1751,6 +1759,8 @@ class World:
     def state_hash(self) -> str: ...
 
     def describe(self, arg: StepWarning, /) -> str: ...
+
+    def find_problems(self) -> list[StepWarning]: ...
 
 class Targets:
     def __init__(self, arg0: Sequence[ClothId], arg1: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], arg2: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, 3), order='C', device='cpu', writable=False)], /) -> None: ...

@@ -698,8 +698,16 @@ class World:
             tell(report, self._core.describe, self._told, raises=report if check else None, stacklevel=3)
         return report
 
+    def find_problems(self) -> list[_core.StepWarning]:
+        """Problems of the world as it is, for programs that step it themselves.
+
+        yarn_strain beyond the fabric's limit, or 0.15 if it has none; flat_triangle; open_seam; and, by the independent
+        checker, crossings and penetration deeper than 0.1 mm. Takes about as long as a step.
+        """
+        return self._core.find_problems()
+
     def describe(self, warning: _core.StepWarning) -> str:
-        """A warning of a step as a sentence, with the key to change."""
+        """A warning of a step, or of find_problems(), as a sentence, with the key to change."""
         choose(warning, "warning", _core.StepWarning, "a StepWarning")
         return self._core.describe(warning)
 

@@ -116,6 +116,20 @@ TEST_F(App, AuditSaysWhatEnergyIsLeftOver) {
   EXPECT_EQ(read_json("plain/report.json")["state_hash"], read_json("audited/report.json")["state_hash"]);
 }
 
+TEST_F(App, RunNamesProblemsLastAndFailsForThemWhereStrict) {
+  const std::string run =
+      "weft run contact/ball_and_floor --frames 40 --set 'cloth[0].grid.cells=[16,16]' --set solver.contact=";
+  const Finished through = shell(run + "false");
+  EXPECT_EQ(through.exit_code, 0) << through.err;
+  EXPECT_TRUE(contains(through.out, "problem: cloth \"cloth\": ")) << through.out;
+  EXPECT_TRUE(contains(through.out, "inside collider \"")) << through.out;
+  EXPECT_TRUE(contains(through.out, "set solver.contact = true (penetration")) << through.out;
+  EXPECT_EQ(shell(run + "false --strict").exit_code, 1);
+  const Finished lies = shell(run + "true --strict");
+  EXPECT_EQ(lies.exit_code, 0) << lies.out;
+  EXPECT_FALSE(contains(lies.out, "problem:")) << lies.out;
+}
+
 TEST_F(App, SetChangesValuesOfTheScene) {
   EXPECT_EQ(shell("weft run paper/fig6_ball --frames 1 --out results --set solver.integrator=explicit "
                   "--set cloth[0].grid.cells='[4, 4]'")

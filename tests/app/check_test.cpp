@@ -48,7 +48,9 @@ TEST_F(App, CheckAsksForTheUnitOfWhatIsHuge) {
   EXPECT_TRUE(contains(shell("weft check scene.toml --set 'cloth[0].scale=1000'").out,
                        "cloth \"shirt\" is 700 m large; is its file in millimetres? scale = 1\n"));
   const Finished small = shell("weft check scene.toml --set 'cloth[0].scale=0.01'");
-  EXPECT_TRUE(contains(small.out, "are both files in the same unit?")) << small.out;
+  EXPECT_TRUE(contains(small.out, "is cloth \"shirt\" too small? scale = 1\n")) << small.out;
+  const Finished large = shell("weft check scene.toml --set 'cloth[0].scale=9'");
+  EXPECT_TRUE(contains(large.out, "is the file of cloth \"shirt\" in feet? scale = 2.7432")) << large.out;
 }
 
 TEST_F(App, CheckAsksWhetherZPointsUp) {
@@ -57,6 +59,11 @@ TEST_F(App, CheckAsksWhetherZPointsUp) {
   const std::string lying = "weft check scene.toml --set 'cloth[0].mesh=lying.obj'";
   EXPECT_TRUE(contains(shell(lying).out, "lies on its back beside collider \"body\"")) << shell(lying).out;
   EXPECT_FALSE(contains(shell(lying + " --set 'cloth[0].up=z'").out, "lies on its back"));
+  write_box("z_up.obj", {0.9, -0.15, 0}, {0.8, 0.3, 1.8});
+  const std::string body = "weft check scene.toml --set 'collider[0].file=z_up.obj'";
+  EXPECT_TRUE(contains(shell(body).out, "collider \"body\" lies on its back beside cloth \"shirt\""))
+      << shell(body).out;
+  EXPECT_FALSE(contains(shell(body + " --set 'collider[0].up=z'").out, "lies on its back"));
 }
 
 TEST_F(App, CheckSeesACrossedStart) {
@@ -64,10 +71,14 @@ TEST_F(App, CheckSeesACrossedStart) {
   const std::string crossed =
       "weft check scene.toml --set 'cloth[0].position=[-0.8,0,0]' --set solver.untangle=false";
   const Finished done = shell(crossed);
-  EXPECT_TRUE(contains(done.out, "at the start cloth \"shirt\" triangle")) << done.out;
-  EXPECT_TRUE(contains(done.out, "solver.untangle = true")) << done.out;
+  EXPECT_EQ(done.exit_code, 2) << "as of a run";
+  EXPECT_TRUE(contains(done.err, "at the start cloth \"shirt\" triangle")) << done.err;
+  EXPECT_TRUE(contains(done.err, "solver.untangle = false does not repair")) << done.err;
   EXPECT_FALSE(contains(done.out, ": OK")) << done.out;
-  EXPECT_EQ(shell(crossed + " --strict").exit_code, 1);
+  const std::string allowed = crossed + " --set solver.crossed_start=allow";
+  EXPECT_EQ(shell(allowed).exit_code, 0);
+  EXPECT_TRUE(contains(shell(allowed).out, "at the start cloth \"shirt\" triangle"));
+  EXPECT_EQ(shell(allowed + " --strict").exit_code, 1);
 }
 
 TEST_F(App, CheckFindsAMovingBodyBesideASceneNamedWithoutAFolder) {

@@ -91,13 +91,14 @@ TEST_P(CaughtCloth, IsNotTornAndIsFreeWhenBodiesPart) {
   World world;
   add_jaws(GetParam(), 0, world);
   const ClothId sheet = hang(world);
-  std::size_t most = 0, listed = 0;
+  std::size_t most = 0, listed = 0, caught = 0;
   double strain = 0;
   int parts = 0;
   for (int frame = 1; frame <= kOpen + 30; ++frame) {
     const StepReport report = world.step(kFrame);
     ASSERT_TRUE(report.ok);
     listed += report.infeasible.size();
+    caught += std::ranges::count(report.infeasible, InfeasibleKind::caught, &InfeasiblePair::kind);
     parts += report.divisions;
     most = std::max(most, world.state(sheet).caught.size());
     strain = std::max(strain, compute_yarn_strain(world.model(sheet), world.state(sheet)).max);
@@ -109,6 +110,7 @@ TEST_P(CaughtCloth, IsNotTornAndIsFreeWhenBodiesPart) {
   }
   EXPECT_GT(most, 20U) << "or the test shows nothing";
   EXPECT_GE(listed, most) << "each is reported";
+  EXPECT_GE(caught, most) << "as caught";
   EXPECT_TRUE(world.state(sheet).caught.empty());
   EXPECT_LT(strain, 0.2);
   EXPECT_LT(parts, 2 * (kOpen + 30));

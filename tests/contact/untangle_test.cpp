@@ -219,6 +219,42 @@ void expect_order(const World& world, ClothId inner, ClothId outer) {
   }
 }
 
+/// Triangles in a ball, all particles outside of it: shallow, as of a sheet that was placed by its particles.
+TEST(Untangle, TrianglesLeaveABallThatNoParticleIsIn) {
+  World world;
+  world.add_collider({"ball", Sphere{.center = {0, -0.2, 0}, .radius = 0.203}, 0.3, {}});
+  add_sheet(world, "sheet", {0.05, 0, 0.05}, {0, 0, 0}, 0.4, 4);
+  expect_untangled(world, "triangles of cloth \"sheet\" are in collider \"ball\"");
+}
+
+ClothId add_sheet_on_pole(World& world, double radius) {
+  const Capsule pole{.a = {0.02, -0.5, 0.03}, .b = {0.02, 0.5, 0.03}, .radius = radius};
+  world.add_collider({"pole", pole, 0.3, {}});
+  return add_sheet(world, "sheet", {0, 0, 0}, {0, 0, 0}, 1, 10);
+}
+
+/// Particles were taken out of the pole, triangles not, and seconds of settling stretched the sheet.
+TEST(Untangle, ASheetThatAPoleHasPiercedComesOff) {
+  World world;
+  const ClothId sheet = add_sheet_on_pole(world, 0.08);
+  expect_untangled(world, "particles of cloth \"sheet\" are inside collider \"pole\"");
+  EXPECT_LT(largest_strain(world, sheet), 0.1);
+}
+
+TEST(Untangle, SaysThatAHeldSheetOnAPoleIsNotRepairedAndLeavesItThere) {
+  World world;
+  const ClothId sheet = add_sheet_on_pole(world, 0.03);
+  Pin all;
+  for (int p = 0; p < world.model(sheet).num_particles(); ++p) all.particles.push_back(p);
+  world.set_pins(sheet, {all});
+  const std::vector<Vec3> start = positions_of(world.state(sheet));
+  const UntangleReport report = world.untangle();
+  ASSERT_FALSE(report.left.empty());
+  EXPECT_NE(report.left.back().find("of cloth \"sheet\" are in"), std::string::npos) << report.left.back();
+  EXPECT_EQ(report.farthest, 0);
+  EXPECT_EQ(positions_of(world.state(sheet)), start);
+}
+
 TEST(Untangle, PutsAHigherLayerOutside) {
   // Wholly under the other one, and through it on one side.
   for (const auto& [first, second] : {std::pair(Sleeve{0.050, 0, 0}, Sleeve{0.0485, 0, 1}),

@@ -87,6 +87,21 @@ TEST(CleanMesh, TellsOfSeamsAndSewsThemOnRequest) {
   EXPECT_TRUE(sewn.warnings.empty());
 }
 
+TEST(CleanMesh, TellsOfWeldedVerticesAndOfLayersThatWeldJoined) {
+  TriangleMesh mesh = kSquare;
+  for (const Vec3& p : kSquare.positions) mesh.positions.push_back(p + Vec3(0, 0.001, 0));  // a lining
+  for (const auto& [a, b, c] : kSquare.triangles) mesh.triangles.push_back({a + 4, b + 4, c + 4});
+  const CleanMesh joined = clean_mesh(mesh, {.weld_distance = 0.004});
+  EXPECT_EQ(joined.notes, std::vector<std::string>{"welded 4 vertices to others"});
+  EXPECT_TRUE(has_warning(
+      joined, "2 duplicate triangles were removed: weld joined layers that are nearer than 4 mm"));
+  EXPECT_TRUE(clean_mesh(mesh, {.weld_distance = 1e-6}).notes.empty());
+  TriangleMesh twice = kSquare;
+  twice.triangles.push_back(kSquare.triangles[0]);
+  for (const std::string& warning : clean_mesh(twice, {.weld_distance = 1e-6}).warnings)
+    EXPECT_EQ(warning, "1 duplicate triangles were removed");
+}
+
 TEST(CleanMesh, NamesNonManifoldEdges) {
   TriangleMesh mesh = kSquare;
   mesh.positions.push_back({0.5, 0.5, 1});

@@ -230,6 +230,26 @@ TEST(Sew, ClosesASlitToItsTipAndLeavesCornersAndHolesOpen) {
   EXPECT_EQ(shape_of(sewn.mesh).euler, shape_of(whole).euler);
 }
 
+TEST(Sew, TellsOfASlitInOnePanelAndOfNoneInANarrowRibbon) {
+  // A panel rolled to a tube, whose two ends are 2 mm apart.
+  TriangleMesh tube;
+  constexpr double kRadius = 0.05, kAngle = 2 * 3.14159265358979 - 0.002 / kRadius;
+  add(tube, sheet(1, 0.2, 40, 20), [](const Vec3& p) -> Vec3 {
+    const double angle = kAngle * (p.x() - 0.5);
+    return {kRadius * std::cos(angle), p.z(), kRadius * std::sin(angle)};
+  });
+  const OpenSeams open = find_open_seams(tube, 0.005);
+  EXPECT_EQ(open.num_seams, 1);
+  EXPECT_NEAR(open.gap, 0.002, 1e-4);
+  EXPECT_EQ(find_open_seams(sew_borders(tube, 0.003).mesh, 0.005).num_seams, 0);
+
+  for (const double width : {0.001, 0.003}) {
+    TriangleMesh ribbon;
+    add(ribbon, sheet(0.2, width, 60, 2), moved(0, 0, 0));
+    EXPECT_EQ(find_open_seams(ribbon, 0.005).num_seams, 0) << width;
+  }
+}
+
 // ---- Three and more
 
 TEST(Sew, MeetsWhereThreeAndFourPiecesDo) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import weft
-from worlds import DT, advance, cloth_of, sprung
+from worlds import DT, advance, cloth_of, draped, sprung
 
 GRAVITY = 9.81
 KINDS: tuple[weft._world.ForceKind, ...] = ("gravity", "elastic", "damping", "wind", "external", "contact")
@@ -208,3 +208,15 @@ def test_rays_and_closest_points_find_the_cloth() -> None:
     near = world.closest_point((1.5, 0, 0.5))
     assert near is not None and near.distance == pytest.approx(0.5) and near.position == pytest.approx((1, 0, 0.5))
     assert world.closest_point((1.5, 0, 0.5), 0.4) is None
+
+
+def test_problems_of_a_world_as_it_is() -> None:
+    world = draped()
+    world.contact = False
+    assert world.find_problems() == []
+    advance(world, 15)
+    (inside,) = (p for p in world.find_problems() if p.code == "penetration")
+    assert inside.collider == 0
+    assert inside.value > 1e-3
+    assert 'inside collider "ball"' in world.describe(inside)
+    assert world.describe(inside).endswith("set solver.contact = true")

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/run/shipped.h"
 #include "tests/support.h"
 #include "weft/run/scene_run.h"
+#include "weft/scene/scene_world.h"
 
 namespace weft::engine {
 namespace {
@@ -102,6 +105,15 @@ TEST(Problems, EnergyOfWhatIsDrivenIsNone) {
   EXPECT_EQ(codes_of(finder), Codes());
 }
 
+TEST(Problems, YarnsBeyondTheLimitOfTheirFabric) {
+  const std::string fabric = "cloth[0].fabric={base = \"cotton_shirting\", strain_limit = 0.01}";
+  SceneWorld built = build_world(shipped("drape_box", {fabric}), make_serial_jobs());
+  scale(built.world, {1.1, 1, 1});
+  ProblemFinder finder(built.world);
+  for (int frame = 0; frame < 6; ++frame) finder.add_frame(0, 0);
+  EXPECT_EQ(codes_of(finder), Codes{WarningCode::yarn_strain}) << "0.15 is the limit of fabrics without one";
+}
+
 TEST(Problems, CrossingsThatAreLeft) {
   const World world = make_sheet();
   ProblemFinder finder(world);
@@ -121,6 +133,60 @@ TEST(Problems, WhatWentThroughBetweenFrames) {
   finder.add_passages(3);
   EXPECT_EQ(codes_of(finder), Codes{WarningCode::passages});
   EXPECT_EQ(finder.problems()[0].value, 3);
+}
+
+TEST(Problems, ClothThatEndsInsideACollider) {
+  SceneDesc scene = shipped("contact/ball_and_floor");
+  scene.contact = false;
+  const RunReport fallen = run_scene(scene, {.frames = 60, .check_passages = false});
+  const auto inside = std::ranges::find(fallen.problems, WarningCode::penetration, &RunProblem::code);
+  ASSERT_NE(inside, fallen.problems.end());
+  EXPECT_EQ(inside->value, *fallen.penetration_max);
+  EXPECT_NE(inside->message.find("mm inside collider \"floor\" at particle "), std::string::npos)
+      << inside->message;
+  EXPECT_NE(inside->message.find("solver.contact = true"), std::string::npos) << inside->message;
+
+  World world = make_sheet();
+  ProblemFinder finder(world);
+  finder.set_inside(StepWarning{WarningCode::penetration, 0, 3, 0.012, StepFault::stretch, 0});
+  ASSERT_EQ(codes_of(finder), Codes{WarningCode::penetration});
+  EXPECT_NE(finder.problems()[0].message.find("12 mm inside collider \"floor\" at particle 3"),
+            std::string::npos);
+  finder.set_inside({});
+  EXPECT_EQ(codes_of(finder), Codes()) << "what has come out is no problem any more";
+}
+
+TEST(Problems, OfAWorldAsItIs) {
+  World world = make_sheet();
+  EXPECT_TRUE(find_problems(world).empty());
+  scale(world, {1.2, 1, 1});
+  std::vector<StepWarning> found = find_problems(world);
+  ASSERT_EQ(found.size(), 1U) << "at once: a world has no frames";
+  EXPECT_EQ(found[0].code, WarningCode::yarn_strain);
+  scale(world, {1 / 1.2, 1, 0.05});
+  found = find_problems(world);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, WarningCode::flat_triangle);
+  scale(world, {1, 1, 20});
+
+  World::Snapshot snapshot = world.snapshot();
+  Vec3Array& x = snapshot.states[0].x;
+  for (std::size_t i = 0; i < x.size(); ++i) x.set(i, x.get(i) - Vec3(0, 10.03, 0));
+  world.restore(snapshot);
+  found = find_problems(world);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, WarningCode::penetration);
+  EXPECT_EQ(found[0].collider, 0);
+  EXPECT_NEAR(found[0].value, 0.03, 1e-6);
+}
+
+/// A mesh far beyond what floats hold ended the checker.
+TEST(Problems, OfAWorldWithAMeshBeyondAllNumbers) {
+  World world = make_sheet();
+  TriangleMesh body{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e300, 1e300, -1e300}},
+                    .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  world.add_collider({"body", MeshShape{.mesh = std::make_shared<const TriangleMesh>(body)}, 0.3, {}});
+  EXPECT_LE(find_problems(world).size(), 2U);
 }
 
 TEST(Problems, OfStepsTheWorstAndHowOften) {
@@ -145,6 +211,9 @@ TEST(Problems, EachInfeasiblePairOnce) {
   ASSERT_EQ(codes_of(finder), Codes{WarningCode::infeasible});
   EXPECT_EQ(finder.problems()[0].value, 2);
   EXPECT_EQ(describe(world, step.infeasible[0]), "cloth \"sheet\" particle 3 and collider \"floor\"");
+  step.infeasible[0].kind = InfeasibleKind::caught;
+  EXPECT_EQ(describe(world, step.infeasible[0]),
+            "cloth \"sheet\" particle 3, caught by collider \"floor\" and another");
 }
 
 }  // namespace

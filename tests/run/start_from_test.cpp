@@ -245,7 +245,7 @@ TEST_F(StartFromRun, IntersectionsWithTheNewSceneAreRepairedOrRefused) {
   const SceneRun repaired(sheet(in_the_way), make_serial_jobs(), {}, 1, &start);
   EXPECT_TRUE(check_start(repaired.world()).empty());
   EXPECT_GT(height(repaired), there);
-  expect_contains(repaired.report().warnings.at(0), "repaired");
+  expect_contains(repaired.report().warnings.at(0), "moved apart in ");
 
   const auto refused = [&](const char* in_solver) {
     return message_of(

@@ -56,6 +56,11 @@ struct Inside {
   double depth = 0;  // [m]
 };
 
+/// A cloth triangle in a primitive shape, with all corners outside.
+struct Pierced {
+  int triangle = 0, collider = 0;
+};
+
 /// A particle between a solid and cloth of a lower layer, which should be outside of that.
 struct Beneath {
   int vertex = 0, triangle = 0;  // the triangle above it
@@ -66,16 +71,17 @@ struct Beneath {
 struct Intersections {
   std::vector<EdgeFaceIntersection> edge_face;
   std::vector<Inside> inside;
+  std::vector<Pierced> pierced;
   std::vector<Beneath> beneath;
 
   bool empty() const { return size() == 0; }
-  std::size_t size() const { return edge_face.size() + inside.size() + beneath.size(); }
+  std::size_t size() const { return num_crossing() + beneath.size(); }
+  std::size_t num_crossing() const { return edge_face.size() + inside.size() + pierced.size(); }
 
   /// Fewer intersections, or as many and fewer particles in the wrong order.
   bool is_better_than(const Intersections& other) const {
-    const std::size_t own = edge_face.size() + inside.size(),
-                      others = other.edge_face.size() + other.inside.size();
-    return own < others || (own == others && beneath.size() < other.beneath.size());
+    if (num_crossing() != other.num_crossing()) return num_crossing() < other.num_crossing();
+    return beneath.size() < other.beneath.size();
   }
 };
 

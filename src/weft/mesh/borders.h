@@ -37,8 +37,9 @@ struct Borders {
   std::vector<double> lengths;  // (num_borders) [m]
   int num_vertices = 0;         // including those of divided edges
 
-  int piece_of(const BorderNode& n) const {
-    return edges[n.edge < 0 ? nodes[n.previous].edge : n.edge].piece;
+  /// The edge at a node, towards the next one if there is one.
+  const BorderEdge& edge_at(const BorderNode& n) const {
+    return edges[n.edge < 0 ? nodes[n.previous].edge : n.edge];
   }
 
   /// End of the node's part on its edge [1].

@@ -84,9 +84,23 @@ std::pair<int, int> keep_triangles(CleanMesh& clean, const Keep& keep) {
   return {dropped, first};
 }
 
-std::string counted(int count, const std::string& noun) {
-  return number(count) + " " + noun + (count == 1 ? "" : "s");
+Triangle sorted(Triangle triangle) {
+  std::sort(triangle.begin(), triangle.end());
+  return triangle;
 }
+
+/// Triangles with the corners of an earlier one.
+int count_repeated(const std::vector<Triangle>& triangles) {
+  std::set<Triangle> different;
+  for (const Triangle& t : triangles) different.insert(sorted(t));
+  return static_cast<int>(triangles.size() - different.size());
+}
+
+std::string counted(int count, const std::string& noun, const std::string& plural) {
+  return number(count) + " " + (count == 1 ? noun : plural);
+}
+
+std::string counted(int count, const std::string& noun) { return counted(count, noun, noun + "s"); }
 
 std::string in_digits(double value, const char* format) {
   char text[32];
@@ -169,6 +183,8 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     for (Triangle& tri : mesh.triangles) {
       for (int& v : tri) v = twin[v];
     }
+    if (const int welded = count_moved(twin); welded > 0)
+      result.notes.push_back("welded " + counted(welded, "vertex", "vertices") + " to others");
   }
 
   // Drop degenerate triangles.
@@ -178,13 +194,15 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
                        number(first_flat) + ")");
   }
   std::set<Triangle> seen;
-  const auto [repeated, first_repeated] = keep_triangles(result, [&](int t) {
-    Triangle key = mesh.triangles[t];
-    std::sort(key.begin(), key.end());
-    return seen.insert(key).second;
-  });
+  const auto [repeated, first_repeated] =
+      keep_triangles(result, [&](int t) { return seen.insert(sorted(mesh.triangles[t])).second; });
   if (repeated > 0) {
-    warnings.push_back(number(repeated) + " duplicate triangles were removed");
+    const bool by_weld = options.weld_distance > 0 && repeated > count_repeated(source.triangles);
+    warnings.push_back(number(repeated) + " duplicate triangles were removed" +
+                       (by_weld ? ": weld joined layers that are nearer than " +
+                                      in_digits(1000 * options.weld_distance, "%.3g") +
+                                      " mm; sew joins borders only"
+                                : ""));
   }
   if (mesh.triangles.empty()) throw InputError("all triangles of the mesh are degenerate");
 

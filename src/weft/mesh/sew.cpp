@@ -121,6 +121,14 @@ int count_divided(const Borders& borders) {
   return static_cast<int>(std::count(is_divided.begin(), is_divided.end(), 1));
 }
 
+/// Whether a stitch between two places of one piece goes over its cloth, as in a ribbon, not through a slit.
+bool is_across_cloth(const Borders& borders, const Stitch& stitch) {
+  const BorderNode &a = borders.nodes[stitch.a.node], &b = borders.nodes[stitch.b.node];
+  const BorderEdge &at_a = borders.edge_at(a), &at_b = borders.edge_at(b);
+  const Vec3 across = b.position - a.position;
+  return at_a.piece == at_b.piece && (at_a.inward.dot(across) > 0 || at_b.inward.dot(across) < 0);
+}
+
 }  // namespace
 
 SewnMesh sew_borders(const TriangleMesh& mesh, double distance) {
@@ -139,12 +147,12 @@ SewnMesh sew_borders(const TriangleMesh& mesh, double distance) {
 OpenSeams find_open_seams(const TriangleMesh& mesh, double distance) {
   SeamFinder finder(mesh, distance);
   finder.sew_all();
-  OpenSeams open;
   const Borders& borders = finder.borders();
+  OpenSeams open;
   for (const Seam& seam : finder.seams()) {
-    const BorderNode &a = borders.nodes[seam.stitches[0].a.node], &b = borders.nodes[seam.stitches[0].b.node];
-    const bool coincides = seam.measures.gap == 0 && seam.num_divided == 0;
-    if (coincides || borders.piece_of(a) == borders.piece_of(b)) continue;
+    if (seam.measures.gap == 0 && seam.num_divided == 0) continue;  // its vertices coincide
+    const auto is_across = [&](const Stitch& stitch) { return is_across_cloth(borders, stitch); };
+    if (std::ranges::any_of(seam.stitches, is_across)) continue;
     ++open.num_seams;
     open.gap = std::max(open.gap, seam.measures.gap);
   }

@@ -46,7 +46,7 @@ struct OpenSeams {
   double gap = 0;  // of the widest one [m]
 };
 
-/// Seams between different pieces, except those whose vertices already coincide.
+/// Seams between borders, also of one piece, except those whose vertices already coincide.
 OpenSeams find_open_seams(const TriangleMesh& mesh, double distance);
 
 }  // namespace weft::engine

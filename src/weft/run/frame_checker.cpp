@@ -13,12 +13,7 @@ namespace {
 void check_start(const SceneDesc& scene, const World& world, RunReport& report) {
   const std::vector<std::string> found = check_start(world);
   report.warnings.insert(report.warnings.end(), found.begin(), found.end());
-  if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return;
-  std::string all = scene.untangle
-                        ? "intersections at the start could not be repaired:"
-                        : "intersections at the start, which solver.untangle = false does not repair:";
-  for (const std::string& message : found) all += "\n  " + message;
-  throw InputError(all + "\nmove them apart, or set solver.crossed_start = \"allow\" to run anyway");
+  if (const std::optional<std::string> refusal = refuse_start(scene, found)) throw InputError(*refusal);
 }
 
 }  // namespace
@@ -45,9 +40,11 @@ void FrameChecker::watch(SceneRun& run, RunReport& report) {
 }
 
 void FrameChecker::add_frame(const SceneRun&, RunReport& report) {
-  const verify::FrameCheck check = verify::check_frame(frames_->now().frame, 0);
+  const FrameToCheck now = frames_->now();
+  const verify::FrameCheck check = verify::check_frame(now.frame, 0);
   report.crossings_at_end = check.intersections;
   report.intersections = std::max(report.intersections.value_or(0), check.intersections);
+  report.inside_at_end = find_inside(now.frame, check.deepest);
   if (!check.deepest) return;
   report.penetration_max = std::max(report.penetration_max.value_or(0), check.penetration());
 }

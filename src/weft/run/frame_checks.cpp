@@ -184,6 +184,18 @@ FrameToCheck WorldFrames::at(double time) const {
   return result;
 }
 
+std::optional<StepWarning> find_inside(const verify::Frame& frame,
+                                       const std::optional<verify::Penetration>& deepest) {
+  if (!deepest || deepest->depth <= AnimationCheckOptions{}.tolerance) return std::nullopt;
+  const int particle = deepest->particle < 0 ? frame.cloths[deepest->cloth].triangles[deepest->triangle][0]
+                                             : deepest->particle;
+  return StepWarning{.code = WarningCode::penetration,
+                     .cloth = deepest->cloth,
+                     .particle = particle,
+                     .value = deepest->depth,
+                     .collider = deepest->solid};
+}
+
 FrameFindings check_frame(const Animation& meshes, const AnimationFrame& frame, int num_places) {
   const FrameToCheck checked = AnimationFrames(meshes).at(frame);
   const verify::FrameCheck check = verify::check_frame(checked.frame, num_places);

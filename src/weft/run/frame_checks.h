@@ -40,6 +40,10 @@ class WorldFrames {
   std::shared_ptr<const std::vector<std::vector<Triangle>>> solid_;  // see FrameToCheck
 };
 
+/// The warning for cloth inside a collider, if it is deeper than `weft verify` tolerates by default.
+std::optional<StepWarning> find_inside(const verify::Frame& frame,
+                                       const std::optional<verify::Penetration>& deepest);
+
 /// Results of the checker for one frame.
 struct FrameFindings {
   int intersections = 0;               // crossing pairs of triangles [1]

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "weft/forces/seam_springs.h"
+#include "weft/run/frame_checks.h"
 #include "weft/world/infeasible_pairs.h"
 #include "weft/world/measures.h"
 
@@ -19,12 +20,50 @@ constexpr double kEnergyShare =
 double strain_limit(const ClothModel& model) {
   if (!model.elements) return kUsualStrain;
   for (const StrainLimit& limit : {model.elements->limit, model.elements->spring_limit}) {
-    if (limit.stiffness > 0) return std::max(kUsualStrain, limit.allowed());
+    if (limit.stiffness > 0) return limit.allowed();
   }
   return kUsualStrain;
 }
 
+/// Measures of a cloth as it is.
+struct ClothCheck {
+  StepWarning strained, flat, open;
+  bool is_strained = false, is_flat = false, is_open = false;
+};
+
+ClothCheck check_cloth(const World& world, int c) {
+  const ClothModel& model = world.model(world.cloth(c));
+  const ClothState& state = world.state(world.cloth(c));
+  const YarnStrain strain = compute_yarn_strain(model, state);
+  const AreaShare area = compute_least_area(model, state);
+  const std::optional<OpenSeam> seam = find_open_seam(model, state);
+  return {.strained = {WarningCode::yarn_strain, c, strain.particle, strain.max},
+          .flat = {WarningCode::flat_triangle, c, area.particle, area.min},
+          .open = {WarningCode::open_seam, c, seam ? seam->particle : -1, seam ? seam->width : 0},
+          .is_strained = strain.max > strain_limit(model),
+          .is_flat = area.min < kMinArea,
+          .is_open = seam.has_value()};
+}
+
 }  // namespace
+
+std::vector<StepWarning> find_problems(const World& world) {
+  std::vector<StepWarning> problems;
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothCheck check = check_cloth(world, c);
+    if (check.is_strained) problems.push_back(check.strained);
+    if (check.is_flat) problems.push_back(check.flat);
+    if (check.is_open) problems.push_back(check.open);
+  }
+  const WorldFrames frames(world);
+  const FrameToCheck now = frames.now();
+  const verify::FrameCheck check = verify::check_frame(now.frame, 0);
+  if (check.intersections > 0)
+    problems.push_back({.code = WarningCode::crossings, .value = static_cast<double>(check.intersections)});
+  if (const std::optional<StepWarning> inside = find_inside(now.frame, check.deepest))
+    problems.push_back(*inside);
+  return problems;
+}
 
 /// Keeps the worst warning of each code, cloth and fault.
 void ProblemFinder::record_warning(const StepWarning& warning) {
@@ -52,19 +91,11 @@ void ProblemFinder::add_frame(double kinetic, double potential) {
 }
 
 void ProblemFinder::check_cloth(int c) {
-  const ClothModel& model = world_.model(world_.cloth(c));
-  const ClothState& state = world_.state(world_.cloth(c));
-  const YarnStrain strain = compute_yarn_strain(model, state);
-  const AreaShare area = compute_least_area(model, state);
-  const StepWarning strained{WarningCode::yarn_strain, c, strain.particle, strain.max},
-      flat{WarningCode::flat_triangle, c, area.particle, area.min};
-  update(found_.strained[c], strained, strain.max > strain_limit(model),
-         strain.max > found_.strained[c].worst.value);
-  update(found_.flat[c], flat, area.min < kMinArea, area.min < found_.flat[c].worst.value);
-  const std::optional<OpenSeam> seam = find_open_seam(model, state);
-  const double width = seam ? seam->width : 0;
-  update(found_.open[c], {WarningCode::open_seam, c, seam ? seam->particle : -1, width}, seam.has_value(),
-         width > found_.open[c].worst.value);
+  const ClothCheck check = weft::engine::check_cloth(world_, c);
+  update(found_.strained[c], check.strained, check.is_strained,
+         check.strained.value > found_.strained[c].worst.value);
+  update(found_.flat[c], check.flat, check.is_flat, check.flat.value < found_.flat[c].worst.value);
+  update(found_.open[c], check.open, check.is_open, check.open.value > found_.open[c].worst.value);
 }
 
 void ProblemFinder::update(Record& record, const StepWarning& warning, bool is_wrong, bool is_worse) {
@@ -110,6 +141,7 @@ std::vector<RunProblem> ProblemFinder::problems() const {
     if (count > 0) add({.code = code, .value = static_cast<double>(count)}, 1);
   };
   add_count(WarningCode::crossings, found_.crossings);
+  if (found_.inside) add(*found_.inside, 1);
   add_count(WarningCode::passages, found_.passages);
   add_count(WarningCode::infeasible, found_.infeasible.size());
   std::stable_sort(result.begin(), result.end(),

@@ -1,6 +1,7 @@
 #pragma once
 /// Problems of a run, found in its frames and steps: reasons not to trust a result that is complete.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,9 @@ struct RunProblem {
   std::string message;  // the problem, and the key to change
 };
 
+/// Those of the world as it is (see weft::find_problems).
+std::vector<StepWarning> find_problems(const World& world);
+
 /// Collects problems frame by frame.
 ///
 ///     yarn_strain    beyond the fabric's limit, 0.15 if it has none, for more than five frames in a row
@@ -26,6 +30,7 @@ struct RunProblem {
 ///     cap_reached, contact_skipped, not_converged   by steps
 ///     infeasible     pairs, each once
 ///     crossings      in the last frame
+///     penetration    deeper than 0.1 mm in the last frame
 ///     passages       in all frames
 class ProblemFinder {
  public:
@@ -40,6 +45,7 @@ class ProblemFinder {
     std::vector<Record> strained, flat, open;  // (cloths)
     std::vector<Record> others;
     std::vector<InfeasiblePair> infeasible;
+    std::optional<StepWarning> inside;
     int num_frames = 0, crossings = 0, passages = 0;
     double energy = 0, max_energy = 0, min_energy = 0;  // in the last frame, and in all [J]
     double max_kinetic = 0;                             // in all [J]
@@ -59,6 +65,9 @@ class ProblemFinder {
 
   /// Pairs of triangles that cross in the last frame.
   void set_crossings(int count) { found_.crossings = count; }
+
+  /// Cloth inside a collider in the last frame: a warning `penetration`.
+  void set_inside(const std::optional<StepWarning>& inside) { found_.inside = inside; }
 
   /// `count` more pairs of features that passed through each other.
   void add_passages(int count) { found_.passages += count; }

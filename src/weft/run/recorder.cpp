@@ -92,6 +92,7 @@ void Recorder::resume(SceneRun& run, RunReport&, Reader& saved) {
 
 void Recorder::finish(const SceneRun&, RunReport& report) {
   problems_->set_crossings(report.crossings_at_end.value_or(0));
+  problems_->set_inside(report.inside_at_end);
   problems_->add_passages(report.passages.value_or(0));
   report.problems = problems_->problems();
 }

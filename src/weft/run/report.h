@@ -59,7 +59,8 @@ struct RunReport {
                                           // over the run; empty: not checked [1]
   std::string first_passage;              // `frame 12: cloth "sheet" particle 7 passes …`; empty: none
   std::optional<double> penetration_max;  // deepest point of cloth in a collider; empty: no colliders [m]
-  std::string state_hash;                 // sixteen hexadecimal digits
+  std::optional<StepWarning> inside_at_end;  // that point in the last frame, where deeper than 0.1 mm
+  std::string state_hash;                    // sixteen hexadecimal digits
   std::vector<std::string> warnings;
   std::vector<std::string> notes;    // changes to meshes that the scene asks for: sewn seams
   std::vector<RunProblem> problems;  // reasons not to trust the result; empty: none found

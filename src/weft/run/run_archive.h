@@ -11,11 +11,11 @@ namespace weft::engine {
 
 template <class Archive>
 void describe(Archive& archive, StepWarning& w) {
-  members(archive, w.code, w.cloth, w.particle, w.value, w.fault);
+  members(archive, w.code, w.cloth, w.particle, w.value, w.fault, w.collider);
 }
 template <class Archive>
 void describe(Archive& archive, InfeasiblePair& p) {
-  members(archive, p.cloth, p.particle, p.other_cloth, p.other_particle, p.collider);
+  members(archive, p.cloth, p.particle, p.other_cloth, p.other_particle, p.collider, p.kind);
 }
 template <class Archive>
 void describe(Archive& archive, WorkTimes& w) {
@@ -39,7 +39,7 @@ void describe(Archive& archive, RunReport& r) {
           r.min_stretch, r.kinetic_energy, r.potential_energy, r.energy, r.lowest_y, r.newton_steps,
           r.cg_iterations, r.guard_events, r.divisions, r.torn, r.retries, r.faults, r.work, r.contact_hits,
           r.contact_zones, r.infeasible, r.intersections, r.crossings_at_end, r.passages, r.first_passage,
-          r.penetration_max, r.state_hash, r.warnings, r.notes, r.problems);
+          r.penetration_max, r.inside_at_end, r.state_hash, r.warnings, r.notes, r.problems);
 }
 template <class Archive>
 void describe(Archive& archive, ProblemFinder::Record& r) {
@@ -47,8 +47,8 @@ void describe(Archive& archive, ProblemFinder::Record& r) {
 }
 template <class Archive>
 void describe(Archive& archive, ProblemFinder::Found& f) {
-  members(archive, f.strained, f.flat, f.open, f.others, f.infeasible, f.num_frames, f.crossings, f.passages,
-          f.energy, f.max_energy, f.min_energy, f.max_kinetic);
+  members(archive, f.strained, f.flat, f.open, f.others, f.infeasible, f.inside, f.num_frames, f.crossings,
+          f.passages, f.energy, f.max_energy, f.min_energy, f.max_kinetic);
 }
 
 namespace verify {

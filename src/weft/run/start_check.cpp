@@ -1,8 +1,11 @@
 #include "weft/run/start_check.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "weft/run/frame_checks.h"
@@ -15,9 +18,10 @@ constexpr double kInsideAtStart = 1e-6;  // depth of cloth inside a collider tha
 
 constexpr double kTooLarge = 20;      // for a garment or its wearer, in metres: probably centimetres [m]
 constexpr double kMillimetres = 500;  // too large for centimetres: probably millimetres [m]
-constexpr double kMaxRatio = 30;      // of the sizes of collider and cloth, either way
+constexpr double kMaxRatio = 30;      // of the sizes of collider and cloth, either way …
+constexpr double kMaxGarment = 3;     // … and of cloth that is no sheet, over the collider
 constexpr double kLying = 2;          // a lying mesh: least depth, as a multiple of its height
-constexpr double kFlat = 0.1;         // a sheet: maximum height, as a share of its depth
+constexpr double kFlat = 0.1;         // a sheet: its least size, as a share of the largest
 
 std::string format(const char* text, double number) {
   char result[96];
@@ -28,17 +32,19 @@ std::string format(const char* text, double number) {
 /// A cloth or a mesh collider.
 struct MeshBody {
   std::string name;  // `cloth "shirt"`
-  Vec3 size = Vec3::Zero();
+  Eigen::AlignedBox3d box;
   int num_triangles = 0;
   const MeshSource* file = nullptr;  // null: it has none
   bool is_turned = false;            // by the scene
-  double largest() const { return size.maxCoeff(); }
+  Vec3 size() const { return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes()); }
+  double largest() const { return size().maxCoeff(); }
+  bool is_sheet() const { return size().minCoeff() <= kFlat * largest(); }
 };
 
-Vec3 size_of(const std::vector<Vec3>& positions) {
+Eigen::AlignedBox3d box_of(const std::vector<Vec3>& positions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : positions) box.extend(p);
-  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
+  return box;
 }
 
 /// All cloths, then the mesh colliders.
@@ -46,7 +52,7 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
   std::vector<MeshBody> bodies;
   for (int c = 0; c < world.num_cloths(); ++c) {
     bodies.push_back(
-        {"cloth \"" + world.name(world.cloth(c)) + '"', size_of(positions_of(world.state(world.cloth(c)))),
+        {"cloth \"" + world.name(world.cloth(c)) + '"', box_of(positions_of(world.state(world.cloth(c)))),
          world.model(world.cloth(c)).topology->mesh.num_triangles(),
          std::get_if<MeshSource>(&scene.cloths[c].shape), !scene.cloths[c].rotation_deg.isZero()});
   }
@@ -57,15 +63,16 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
     std::vector<Vec3> positions;
     for (int v = 0; v < mesh->mesh->num_vertices(); ++v) positions.push_back(mesh->vertex(v));
     const PlacedMesh* placed = std::get_if<PlacedMesh>(&scene.colliders[c].shape);
-    bodies.push_back({"collider \"" + world.colliders()[c].name + '"', size_of(positions),
+    bodies.push_back({"collider \"" + world.colliders()[c].name + '"', box_of(positions),
                       mesh->mesh->num_triangles(), placed ? &placed->source : nullptr});
   }
   return bodies;
 }
 
 std::string describe_size(const MeshBody& body) {
-  return body.name + format(": %.3g m wide, ", body.size.x()) + format("%.3g m high, ", body.size.y()) +
-         format("%.3g m deep, ", body.size.z()) + std::to_string(body.num_triangles) + " triangles";
+  const Vec3 size = body.size();
+  return body.name + format(": %.3g m wide, ", size.x()) + format("%.3g m high, ", size.y()) +
+         format("%.3g m deep, ", size.z()) + std::to_string(body.num_triangles) + " triangles";
 }
 
 bool is_in_another_unit(const MeshBody& body) { return body.file && body.largest() > kTooLarge; }
@@ -78,21 +85,60 @@ std::optional<std::string> check_unit(const MeshBody& body) {
          format("? scale = %g", body.file->scale * (is_millimetres ? 1e-3 : 1e-2));
 }
 
-std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& collider) {
-  if (!cloth.file || !collider.file || is_in_another_unit(cloth) || is_in_another_unit(collider)) return {};
-  const double ratio = collider.largest() / cloth.largest();
-  if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return {};
-  return cloth.name + format(" is %.3g m large and ", cloth.largest()) + collider.name +
-         format(" %.3g m; are both files in the same unit? scale multiplies a file's", collider.largest());
+/// The unit [m], and its name, that accounts for a ratio of sizes.
+std::pair<double, const char*> nearest_unit(double ratio) {
+  constexpr std::pair<double, const char*> kUnits[] = {
+      {1e-3, "millimetres"}, {1e-2, "centimetres"}, {0.0254, "inches"}, {0.3048, "feet"}};
+  return *std::ranges::min_element(kUnits, {},
+                                   [&](const auto& unit) { return std::abs(std::log(unit.first * ratio)); });
 }
 
-/// Warns of a cloth that lies on its back beside a standing collider. Sheets may lie.
+/// Whether the size of a is farther from a metre than that of b, as a ratio.
+bool is_less_human(const MeshBody& a, const MeshBody& b) {
+  return std::abs(std::log(a.largest())) > std::abs(std::log(b.largest()));
+}
+
+std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& collider) {
+  if (!cloth.file || !collider.file || is_in_another_unit(cloth) || is_in_another_unit(collider)) return {};
+  const double ratio = cloth.largest() / collider.largest(),
+               most = cloth.is_sheet() ? kMaxRatio : kMaxGarment;
+  if (ratio <= most && ratio >= 1 / kMaxRatio) return {};
+  const auto [unit, name] = nearest_unit(std::max(ratio, 1 / ratio));
+  const bool is_cloth = is_less_human(cloth, collider);
+  const MeshBody& suspect = is_cloth ? cloth : collider;
+  const std::string sizes = cloth.name + format(" is %.3g m large and ", cloth.largest()) + collider.name +
+                            format(" %.3g m; is ", collider.largest());
+  if (is_cloth == (ratio > 1))
+    return sizes + "the file of " + suspect.name + " in " + name +
+           format("? scale = %g", suspect.file->scale * unit);
+  return sizes + suspect.name + format(" too small? scale = %g", suspect.file->scale / unit);
+}
+
+/// Whether it has the orientation of a body on its back that should stand.
+bool lies(const Vec3& size) { return size.z() > kLying * size.y() && size.y() > kFlat * size.z(); }
+
+/// The box with z up instead of y.
+Eigen::AlignedBox3d turned(const Eigen::AlignedBox3d& box) {
+  return {Vec3(box.min().x(), box.min().z(), -box.max().y()),
+          Vec3(box.max().x(), box.max().z(), -box.min().y())};
+}
+
+/// Warns of cloth that lies on its back beside a standing collider, and of a collider that does so beside
+/// cloth that it would wear if it stood. Sheets may lie, and what is worn is where it belongs.
 std::optional<std::string> check_up(const MeshBody& cloth, const MeshBody& collider) {
-  const bool lies = cloth.size.z() > kLying * cloth.size.y() && cloth.size.y() > kFlat * cloth.size.z(),
-             stands = collider.size.y() > kLying * collider.size.z();
-  if (!cloth.file || cloth.file->up_is_z || cloth.is_turned || !lies || !stands) return {};
-  return cloth.name + " lies on its back beside " + collider.name +
-         ", which stands; does z point up in its file? up = \"z\"";
+  const auto warn = [](const MeshBody& lying, const MeshBody& standing) {
+    return lying.name + " lies on its back beside " + standing.name +
+           ", which stands; does z point up in its file? up = \"z\"";
+  };
+  const auto may_turn = [](const MeshBody& body) {
+    return body.file && !body.file->up_is_z && !body.is_turned && lies(body.size());
+  };
+  if (cloth.box.intersects(collider.box)) return {};
+  if (may_turn(cloth) && collider.size().y() > kLying * collider.size().z()) return warn(cloth, collider);
+  if (may_turn(collider) && cloth.file && cloth.size().y() > cloth.size().z() &&
+      turned(collider.box).contains(cloth.box.center()))
+    return warn(collider, cloth);
+  return {};
 }
 
 }  // namespace
@@ -107,6 +153,15 @@ std::vector<std::string> check_start(const World& world) {
     found.push_back("at the start " + verify::describe(start.frame, *check.deepest) +
                     format(" is %.3g mm deep", 1000 * check.penetration()));
   return found;
+}
+
+std::optional<std::string> refuse_start(const SceneDesc& scene, const std::vector<std::string>& found) {
+  if (found.empty() || !scene.contact || scene.crossed_start == CrossedStart::allow) return {};
+  std::string all = scene.untangle
+                        ? "intersections at the start could not be repaired:"
+                        : "intersections at the start, which solver.untangle = false does not repair:";
+  for (const std::string& message : found) all += "\n  " + message;
+  return all + "\nmove them apart, or set solver.crossed_start = \"allow\" to run anyway";
 }
 
 SizeCheck check_sizes(const SceneDesc& scene, const World& world) {

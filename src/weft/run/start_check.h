@@ -1,6 +1,7 @@
 #pragma once
 /// Checks of a scene before its run: sizes of meshes, and initial intersections.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace weft::engine {
 
 /// A message for each pair of bodies that intersect initially, or one of which is inside the other.
 std::vector<std::string> check_start(const World& world);
+
+/// Why a run refuses a start for which check_start() has found something; empty: it does not.
+std::optional<std::string> refuse_start(const SceneDesc& scene, const std::vector<std::string>& found);
 
 struct SizeCheck {
   /// `cloth "shirt": 0.62 m wide, 0.71 m high, 0.24 m deep, 5230 triangles`, for every cloth and every mesh

@@ -30,7 +30,7 @@ std::string describe_cap(const StepWarning& w) {
   return "the cloth moved by more than its own size in the shortest step";
 }
 
-std::string describe_what(const StepWarning& w, const std::string& advice) {
+std::string describe_what(const World& world, const StepWarning& w, const std::string& advice) {
   switch (w.code) {
     case WarningCode::not_converged:
       return "the solver reached its iteration limit before its tolerance; raise solver.iterations or "
@@ -58,6 +58,11 @@ std::string describe_what(const StepWarning& w, const std::string& advice) {
       return "a seam stays open by " + number(1000 * w.value) + " mm at particle " +
              std::to_string(w.particle) +
              "; raise seam_time or seam_stiffness, or move the panels nearer to each other";
+    case WarningCode::penetration:
+      return number(1000 * w.value) + " mm inside collider \"" + world.colliders()[w.collider].name +
+             "\" at particle " + std::to_string(w.particle) + " at the end; " +
+             (world.has_contact() ? "move bodies that overlap apart, or " + advice
+                                  : "set solver.contact = true");
     case WarningCode::passages:
       return number(w.value) + " pairs of features passed through each other; " + advice;
     case WarningCode::infeasible:
@@ -91,6 +96,8 @@ std::string to_string(WarningCode code) {
       return "passages";
     case WarningCode::open_seam:
       return "open_seam";
+    case WarningCode::penetration:
+      return "penetration";
     case WarningCode::infeasible:
       break;
   }
@@ -117,7 +124,7 @@ std::string to_string(StepFault fault) {
 
 std::string describe(const World& world, const StepWarning& warning) {
   const std::string what =
-      describe_what(warning, find_integrator(world.integrator().integrator).shorter_steps);
+      describe_what(world, warning, find_integrator(world.integrator().integrator).shorter_steps);
   return warning.cloth < 0 ? what : "cloth \"" + world.name(world.cloth(warning.cloth)) + "\": " + what;
 }
 
@@ -127,6 +134,7 @@ std::string describe(const World& world, const InfeasiblePair& pair) {
     return "cloth \"" + world.name(world.cloth(cloth)) + "\" particle " + std::to_string(index);
   };
   const std::string first = pair.cloth < 0 ? collider() : particle(pair.cloth, pair.particle);
+  if (pair.kind == InfeasibleKind::caught) return first + ", caught by " + collider() + " and another";
   return first + " and " +
          (pair.other_cloth < 0 ? collider() : particle(pair.other_cloth, pair.other_particle));
 }

@@ -193,7 +193,7 @@ void untangle(World& world, const OnPreparation& on_preparation, SceneNotes& bui
   built.untangle_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::vector<std::string>& warnings = built.warnings;
   char how[96];
-  std::snprintf(how, sizeof how, "; repaired in %d rounds, moved by at most %.3g m", report.rounds,
+  std::snprintf(how, sizeof how, "; moved apart in %d rounds, by at most %.3g m", report.rounds,
                 report.farthest);
   for (const std::string& what : report.crossed)
     warnings.push_back("at the start " + what + (report.left.empty() ? how : ""));

@@ -10,12 +10,17 @@
 namespace weft::engine::verify {
 
 /// A sweep along the axis of greatest extent, in each of many strips along the second. Boxes are stored in
-/// floats: rounding never changes the order of two numbers, so it hides no overlap.
+/// floats: rounding never changes the order of two numbers, so it hides no overlap; nor do bounds of what floats
+/// cannot hold.
 class Sweep {
  public:
   struct Box {
     Box(const Eigen::Vector3f& from, const Eigen::Vector3f& to, TriangleId triangle)
-        : low{from[0], from[1], from[2]}, high{to[0], to[1], to[2]}, id(triangle) {}
+        : low{bounded(from[0]), bounded(from[1]), bounded(from[2])},
+          high{bounded(to[0]), bounded(to[1]), bounded(to[2])},
+          id(triangle) {}
+
+    static float bounded(float x) { return std::clamp(x, -1e30f, 1e30f); }
 
     std::array<float, 3> low, high;
     TriangleId id;

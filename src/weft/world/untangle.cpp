@@ -9,6 +9,7 @@
 /// The state with fewer intersections, start or end, is kept.
 
 #include <algorithm>
+#include <limits>
 
 #include "weft/animation/mesh_sequence.h"
 #include "weft/contact/shrink.h"
@@ -23,7 +24,9 @@ constexpr double kStep = 1.0 / 60;     // of the stage world [s]
 constexpr double kGrowth = 1.5e-3;     // per step, approximately [m]
 constexpr int kMaxSteps = 54;          // of growth …
 constexpr int kMaxSettling = 24;       // … and after it, …
-constexpr double kRelaxed = 0.05;      // … until strain is no larger [1]
+constexpr double kRelaxed = 0.05;      // … until strain is no larger [1], …
+constexpr int kMaxStalled = 4;         // … or has not fallen for so many steps …
+constexpr double kFalls = 0.99;        // … below this share of the least so far
 constexpr double kMoreThanDeep = 1.2;  // factor on the penetration depth by which solids become thinner …
 constexpr double kRoom = 2e-3;         // … and addition to it [m]
 constexpr double kMoreNextTime = 1.6;  // factor if that was not enough
@@ -64,6 +67,15 @@ double compute_largest_strain(const ClothModel& model, const ClothState& state) 
   const std::optional<Stretches> stretches =
       is_at_rest ? compute_principal_stretches(model, state) : std::nullopt;
   return stretches ? stretches->max - 1 : compute_yarn_strain(model, state).max;
+}
+
+double compute_largest_strain(const World& world) {
+  double largest = 0;
+  for (int c = 0; c < world.num_cloths(); ++c) {
+    const ClothId cloth = world.cloth(c);
+    largest = std::max(largest, compute_largest_strain(world.model(cloth), world.state(cloth)));
+  }
+  return largest;
 }
 
 }  // namespace
@@ -145,11 +157,15 @@ UntangleReport World::untangle(const std::function<void(int round)>& on_round) {
                       .untangle(stage.contact_cloths_, stage.colliders_, {.step = 1, .rules = stage.rules_},
                                 *jobs_, on_round)
                       .rounds;
-  const auto is_relaxed = [](const Cloth& cloth) {
-    return compute_largest_strain(*cloth.model, cloth.state) <= kRelaxed;
-  };
-  for (int s = 0; s < growing + kMaxSettling; ++s) {
-    if (s > growing && std::ranges::all_of(stage.cloths_, is_relaxed)) break;
+  double least = std::numeric_limits<double>::infinity();
+  int stalled = 0;
+  for (int s = 0; s < growing + kMaxSettling && stalled < kMaxStalled; ++s) {
+    if (s > growing) {
+      const double strain = compute_largest_strain(stage);
+      if (strain <= kRelaxed) break;
+      stalled = strain < kFalls * least ? 0 : stalled + 1;
+      least = std::min(least, strain);
+    }
     stage.halt();
     if (!stage.step(kStep).ok) break;
     ++report.rounds;

@@ -732,7 +732,7 @@ void World::run_ccd_fail_safe(StepReport& report) {
   report.hits += stopped.hits;
   report.zones += stopped.zones;
   for (const Infeasible& pair : stopped.infeasible) {
-    const InfeasiblePair described = describe(pair);
+    const InfeasiblePair described = describe(pair, InfeasibleKind::passed);
     if (!is_attached(described)) add_once(described, report.infeasible);
   }
 }
@@ -751,7 +751,7 @@ std::string World::name_of(const BodyPlace& place) const {
   return "cloth \"" + cloths_[place.cloth].name + '"';
 }
 
-InfeasiblePair World::describe(const Infeasible& pair) const {
+InfeasiblePair World::describe(const Infeasible& pair, InfeasibleKind kind) const {
   BodyPlace a = contact_system_.place_of(pair.vertex), b{.collider = pair.shape};
   if (pair.shape < 0) b = contact_system_.place_of(pair.other);
   if (a.cloth < 0) std::swap(a, b);
@@ -759,7 +759,8 @@ InfeasiblePair World::describe(const Infeasible& pair) const {
           .particle = a.cloth < 0 ? -1 : a.index,
           .other_cloth = b.cloth,
           .other_particle = b.cloth < 0 ? -1 : b.index,
-          .collider = b.collider};
+          .collider = b.collider,
+          .kind = kind};
 }
 
 /// One sentence for every two bodies that intersect.
@@ -785,6 +786,11 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
     const BodyPlace place = contact_system_.place_of(inside.vertex);
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
         [&] { return ", first particle " + std::to_string(place.index); });
+  }
+  for (const Pierced& pierced : intersections.pierced) {
+    const BodyPlace place = contact_system_.place_of_triangle(pierced.triangle);
+    add("triangles of " + name_of(place) + " are in " + name_of({-1, pierced.collider, 0}),
+        [&] { return ", first triangle " + std::to_string(place.index); });
   }
   for (const Beneath& beneath : intersections.beneath) {
     const BodyPlace place = contact_system_.place_of(beneath.vertex);
@@ -857,7 +863,8 @@ StepCheck World::try_part(const Snapshot& before, double time, double dt, StepRe
   advance(time, dt, report);
   const StepCheck check = check_part(before, dt, report);
   if (!contact_) return check;
-  for (const Infeasible& pair : contact_system_.newly_caught()) add_once(describe(pair), report.infeasible);
+  for (const Infeasible& pair : contact_system_.newly_caught())
+    add_once(describe(pair, InfeasibleKind::caught), report.infeasible);
   return check;
 }
 

@@ -326,7 +326,7 @@ class World {
   void begin_contact(double time, double dt);
   void run_ccd_fail_safe(StepReport& report);
   void show_contact_cloths();
-  InfeasiblePair describe(const Infeasible& pair) const;
+  InfeasiblePair describe(const Infeasible& pair, InfeasibleKind kind) const;
   std::vector<std::string> describe(const Intersections& intersections) const;
   Intersections find_intersections();
   World make_stage() const;
