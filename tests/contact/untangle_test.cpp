@@ -241,17 +241,14 @@ TEST(Untangle, ASheetThatAPoleHasPiercedComesOff) {
   EXPECT_LT(largest_strain(world, sheet), 0.1);
 }
 
-TEST(Untangle, SaysThatAHeldSheetOnAPoleIsNotRepairedAndLeavesItThere) {
+TEST(Untangle, LeavesAHeldSheetOnAPoleWhereItIs) {
   World world;
   const ClothId sheet = add_sheet_on_pole(world, 0.03);
   Pin all;
   for (int p = 0; p < world.model(sheet).num_particles(); ++p) all.particles.push_back(p);
   world.set_pins(sheet, {all});
   const std::vector<Vec3> start = positions_of(world.state(sheet));
-  const UntangleReport report = world.untangle();
-  ASSERT_FALSE(report.left.empty());
-  EXPECT_NE(report.left.back().find("of cloth \"sheet\" are in"), std::string::npos) << report.left.back();
-  EXPECT_EQ(report.farthest, 0);
+  EXPECT_EQ(world.untangle().rounds, 0) << "nothing can move";
   EXPECT_EQ(positions_of(world.state(sheet)), start);
 }
 

@@ -152,6 +152,8 @@ TEST(Problems, ClothThatEndsInsideACollider) {
   ASSERT_EQ(codes_of(finder), Codes{WarningCode::penetration});
   EXPECT_NE(finder.problems()[0].message.find("12 mm inside collider \"floor\" at particle 3"),
             std::string::npos);
+  const StepWarning gone{WarningCode::penetration, 0, 3, 0.012, StepFault::stretch, 9};
+  EXPECT_NE(describe(world, gone).find("12 mm inside a collider at"), std::string::npos) << "it was removed";
   finder.set_inside({});
   EXPECT_EQ(codes_of(finder), Codes()) << "what has come out is no problem any more";
 }

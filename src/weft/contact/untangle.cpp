@@ -216,10 +216,13 @@ class Untangler {
 
   void add_pierced(const RepairInput::Solid& solid, std::vector<Pierced>& pierced) const {
     if (std::holds_alternative<MeshShape>(solid.shape)) return;
-    const auto is_in = [&](int v) { return signed_distance(solid.shape, x_[v]).distance < 0; };
+    const auto is_in = [&](int v) {
+      return is_free(v) && signed_distance(solid.shape, x_[v]).distance < -kTouches;
+    };
     for (int t = 0; t < input_.num_cloth_triangles; ++t) {
       const auto [i, j, k] = surface_.triangles[t];
-      if (input_.non_colliding_solid(i, solid.collider)) continue;
+      if (input_.non_colliding_solid(i, solid.collider) || !(is_free(i) || is_free(j) || is_free(k)))
+        continue;
       if (signed_distance(solid.shape, x_[i], x_[j], x_[k], 0).distance >= -kTouches) continue;
       if (!is_in(i) && !is_in(j) && !is_in(k)) pierced.push_back({t, solid.collider});
     }

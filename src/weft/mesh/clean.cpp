@@ -193,11 +193,13 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     warnings.push_back(number(flat) + " degenerate triangles were removed (the first is triangle " +
                        number(first_flat) + ")");
   }
+  std::vector<Triangle> unwelded;
+  for (const int t : result.source_triangle) unwelded.push_back(source.triangles[t]);
   std::set<Triangle> seen;
   const auto [repeated, first_repeated] =
       keep_triangles(result, [&](int t) { return seen.insert(sorted(mesh.triangles[t])).second; });
   if (repeated > 0) {
-    const bool by_weld = options.weld_distance > 0 && repeated > count_repeated(source.triangles);
+    const bool by_weld = options.weld_distance > 0 && repeated > count_repeated(unwelded);
     warnings.push_back(number(repeated) + " duplicate triangles were removed" +
                        (by_weld ? ": weld joined layers that are nearer than " +
                                       in_digits(1000 * options.weld_distance, "%.3g") +

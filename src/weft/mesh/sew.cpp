@@ -126,7 +126,8 @@ bool is_across_cloth(const Borders& borders, const Stitch& stitch) {
   const BorderNode &a = borders.nodes[stitch.a.node], &b = borders.nodes[stitch.b.node];
   const BorderEdge &at_a = borders.edge_at(a), &at_b = borders.edge_at(b);
   const Vec3 across = b.position - a.position;
-  return at_a.piece == at_b.piece && (at_a.inward.dot(across) > 0 || at_b.inward.dot(across) < 0);
+  const double facing = 0.5 * across.norm();
+  return at_a.piece == at_b.piece && at_a.inward.dot(across) > facing && at_b.inward.dot(across) < -facing;
 }
 
 }  // namespace

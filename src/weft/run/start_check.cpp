@@ -19,7 +19,7 @@ constexpr double kInsideAtStart = 1e-6;  // depth of cloth inside a collider tha
 constexpr double kTooLarge = 20;      // for a garment or its wearer, in metres: probably centimetres [m]
 constexpr double kMillimetres = 500;  // too large for centimetres: probably millimetres [m]
 constexpr double kMaxRatio = 30;      // of the sizes of collider and cloth, either way …
-constexpr double kMaxGarment = 3;     // … and of cloth that is no sheet, over the collider
+constexpr double kMaxGarment = 3;     // … and of cloth that is no sheet, over the largest collider
 constexpr double kLying = 2;          // a lying mesh: least depth, as a multiple of its height
 constexpr double kFlat = 0.1;         // a sheet: its least size, as a share of the largest
 
@@ -36,6 +36,7 @@ struct MeshBody {
   int num_triangles = 0;
   const MeshSource* file = nullptr;  // null: it has none
   bool is_turned = false;            // by the scene
+  Vec3 position = Vec3::Zero();      // where the scene moves the file's origin
   Vec3 size() const { return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes()); }
   double largest() const { return size().maxCoeff(); }
   bool is_sheet() const { return size().minCoeff() <= kFlat * largest(); }
@@ -64,7 +65,9 @@ std::vector<MeshBody> list_bodies(const SceneDesc& scene, const World& world) {
     for (int v = 0; v < mesh->mesh->num_vertices(); ++v) positions.push_back(mesh->vertex(v));
     const PlacedMesh* placed = std::get_if<PlacedMesh>(&scene.colliders[c].shape);
     bodies.push_back({"collider \"" + world.colliders()[c].name + '"', box_of(positions),
-                      mesh->mesh->num_triangles(), placed ? &placed->source : nullptr});
+                      mesh->mesh->num_triangles(), placed ? &placed->source : nullptr,
+                      placed && !placed->rotation_deg.isZero(),
+                      placed ? placed->position : Vec3(Vec3::Zero())});
   }
   return bodies;
 }
@@ -98,10 +101,11 @@ bool is_less_human(const MeshBody& a, const MeshBody& b) {
   return std::abs(std::log(a.largest())) > std::abs(std::log(b.largest()));
 }
 
-std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& collider) {
+/// `may_wear`: the collider is the largest.
+std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& collider, bool may_wear) {
   if (!cloth.file || !collider.file || is_in_another_unit(cloth) || is_in_another_unit(collider)) return {};
   const double ratio = cloth.largest() / collider.largest(),
-               most = cloth.is_sheet() ? kMaxRatio : kMaxGarment;
+               most = may_wear && !cloth.is_sheet() ? kMaxGarment : kMaxRatio;
   if (ratio <= most && ratio >= 1 / kMaxRatio) return {};
   const auto [unit, name] = nearest_unit(std::max(ratio, 1 / ratio));
   const bool is_cloth = is_less_human(cloth, collider);
@@ -117,10 +121,12 @@ std::optional<std::string> check_ratio(const MeshBody& cloth, const MeshBody& co
 /// Whether it has the orientation of a body on its back that should stand.
 bool lies(const Vec3& size) { return size.z() > kLying * size.y() && size.y() > kFlat * size.z(); }
 
-/// The box with z up instead of y.
-Eigen::AlignedBox3d turned(const Eigen::AlignedBox3d& box) {
-  return {Vec3(box.min().x(), box.min().z(), -box.max().y()),
-          Vec3(box.max().x(), box.max().z(), -box.min().y())};
+/// The box of a body with z up instead of y, as it would stand.
+Eigen::AlignedBox3d turned(const MeshBody& body) {
+  const Eigen::AlignedBox3d box = body.box.translated(-body.position);
+  return Eigen::AlignedBox3d(Vec3(box.min().x(), box.min().z(), -box.max().y()),
+                             Vec3(box.max().x(), box.max().z(), -box.min().y()))
+      .translated(body.position);
 }
 
 /// Warns of cloth that lies on its back beside a standing collider, and of a collider that does so beside
@@ -133,10 +139,10 @@ std::optional<std::string> check_up(const MeshBody& cloth, const MeshBody& colli
   const auto may_turn = [](const MeshBody& body) {
     return body.file && !body.file->up_is_z && !body.is_turned && lies(body.size());
   };
-  if (cloth.box.intersects(collider.box)) return {};
+  if (collider.box.contains(cloth.box.center())) return {};
   if (may_turn(cloth) && collider.size().y() > kLying * collider.size().z()) return warn(cloth, collider);
   if (may_turn(collider) && cloth.file && cloth.size().y() > cloth.size().z() &&
-      turned(collider.box).contains(cloth.box.center()))
+      turned(collider).contains(cloth.box.center()))
     return warn(collider, cloth);
   return {};
 }
@@ -175,9 +181,12 @@ SizeCheck check_sizes(const SceneDesc& scene, const World& world) {
     check.sizes.push_back(describe_size(body));
     warn(check_unit(body));
   }
+  double largest = 0;
+  for (std::size_t other = num_cloths; other < bodies.size(); ++other)
+    largest = std::max(largest, bodies[other].largest());
   for (std::size_t cloth = 0; cloth < num_cloths; ++cloth) {
     for (std::size_t other = num_cloths; other < bodies.size(); ++other) {
-      warn(check_ratio(bodies[cloth], bodies[other]));
+      warn(check_ratio(bodies[cloth], bodies[other], bodies[other].largest() == largest));
       warn(check_up(bodies[cloth], bodies[other]));
     }
   }

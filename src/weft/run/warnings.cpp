@@ -30,6 +30,13 @@ std::string describe_cap(const StepWarning& w) {
   return "the cloth moved by more than its own size in the shortest step";
 }
 
+/// Of a warning, whose collider may have been removed since.
+std::string name_of_collider(const World& world, int collider) {
+  const auto count = static_cast<int>(world.colliders().size());
+  return collider < 0 || collider >= count ? "a collider"
+                                           : "collider \"" + world.colliders()[collider].name + '"';
+}
+
 std::string describe_what(const World& world, const StepWarning& w, const std::string& advice) {
   switch (w.code) {
     case WarningCode::not_converged:
@@ -59,8 +66,8 @@ std::string describe_what(const World& world, const StepWarning& w, const std::s
              std::to_string(w.particle) +
              "; raise seam_time or seam_stiffness, or move the panels nearer to each other";
     case WarningCode::penetration:
-      return number(1000 * w.value) + " mm inside collider \"" + world.colliders()[w.collider].name +
-             "\" at particle " + std::to_string(w.particle) + " at the end; " +
+      return number(1000 * w.value) + " mm inside " + name_of_collider(world, w.collider) + " at particle " +
+             std::to_string(w.particle) + "; " +
              (world.has_contact() ? "move bodies that overlap apart, or " + advice
                                   : "set solver.contact = true");
     case WarningCode::passages:

@@ -4,7 +4,7 @@
 /// 2. Remaining intersections, of cloth with cloth or with primitive shapes, are repaired
 ///    (contact/untangle.h).
 /// 3. The solids grow back, step by step, and push cloth in front of them; its strain relaxes meanwhile, and
-///    afterwards until it is small. After each step all velocities are set to zero.
+///    afterwards until it is small or no longer falls. After each step all velocities are set to zero.
 ///
 /// The state with fewer intersections, start or end, is kept.
 
@@ -159,11 +159,11 @@ UntangleReport World::untangle(const std::function<void(int round)>& on_round) {
                       .rounds;
   double least = std::numeric_limits<double>::infinity();
   int stalled = 0;
-  for (int s = 0; s < growing + kMaxSettling && stalled < kMaxStalled; ++s) {
+  for (int s = 0; s < growing + kMaxSettling; ++s) {
     if (s > growing) {
       const double strain = compute_largest_strain(stage);
-      if (strain <= kRelaxed) break;
       stalled = strain < kFalls * least ? 0 : stalled + 1;
+      if (strain <= kRelaxed || stalled == kMaxStalled) break;
       least = std::min(least, strain);
     }
     stage.halt();
