@@ -93,9 +93,9 @@ WEFT_API LoadedScene build_scene(const Scene& scene, std::shared_ptr<JobSystem> 
 WEFT_API LoadedScene load_scene(const std::string& file_or_name,
                                 const std::vector<std::string>& overrides = {});
 
-/// Problems of the world as it is, in the order of cloths: yarn_strain beyond 1.25 times the fabric's limit, or 0.15 if it
-/// has none; flat_triangle; open_seam; then, by the independent checker, crossings and penetration deeper than
-/// 0.1 mm. Single frames of fast motion may have the first two. Takes about as long as a step.
+/// Problems of the world as it is, in the order of cloths: yarn_strain beyond 1.25 times the fabric's limit, or
+/// 0.15 if it has none; flat_triangle; open_seam; then, by the independent checker, crossings and penetration
+/// deeper than 0.1 mm. Single frames of fast motion may have the first two. Takes about as long as a step.
 WEFT_API std::vector<StepWarning> find_problems(const World& world);
 
 /// A warning as a sentence, with the scene file key that helps: `cloth "sheet": …; raise solver.…`.

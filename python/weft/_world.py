@@ -701,8 +701,8 @@ class World:
     def find_problems(self) -> list[_core.StepWarning]:
         """Problems of the world as it is, for programs that step it themselves.
 
-        yarn_strain beyond 1.25 times the fabric's limit, or 0.15 without one; flat_triangle; open_seam; and, by the independent
-        checker, crossings and penetration deeper than 0.1 mm. Takes about as long as a step.
+        yarn_strain beyond 1.25 times the fabric's limit, or 0.15 without one; flat_triangle; open_seam; and, by the
+        independent checker, crossings and penetration deeper than 0.1 mm. Takes about as long as a step.
         """
         return self._core.find_problems()
 

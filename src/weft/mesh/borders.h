@@ -22,6 +22,12 @@ struct BorderEdge {
   Vec3 tangent, inward, side;  // from a to b; into the triangle; tangent × inward; unit vectors
 };
 
+/// Whether the way from a to b goes over the cloth between them, as in a ribbon, not through a slit.
+inline bool is_across_cloth(const BorderEdge& a, const BorderEdge& b, const Vec3& way) {
+  const double facing = 0.5 * way.norm();
+  return a.inward.dot(way) > facing && b.inward.dot(-way) > facing;
+}
+
 /// A point of a border, and the part of an edge from it to the next node.
 struct BorderNode {
   int vertex = 0;  // of the mesh; those of divided edges follow the mesh's own

@@ -89,10 +89,10 @@ Triangle sorted(Triangle triangle) {
   return triangle;
 }
 
-/// Triangles with the corners of an earlier one.
-int count_repeated(const std::vector<Triangle>& triangles) {
+/// How many of these triangles have the corners of an earlier one.
+int count_repeated(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   std::set<Triangle> different;
-  for (const Triangle& t : triangles) different.insert(sorted(t));
+  for (const int t : triangles) different.insert(sorted(mesh.triangles[t]));
   return static_cast<int>(triangles.size() - different.size());
 }
 
@@ -193,13 +193,13 @@ CleanMesh clean_mesh(const TriangleMesh& source, const CleanOptions& options) {
     warnings.push_back(number(flat) + " degenerate triangles were removed (the first is triangle " +
                        number(first_flat) + ")");
   }
-  std::vector<Triangle> unwelded;
-  for (const int t : result.source_triangle) unwelded.push_back(source.triangles[t]);
+  const bool welds_apart = options.weld_distance > 0;
+  const int repeated_before = welds_apart ? count_repeated(source, result.source_triangle) : 0;
   std::set<Triangle> seen;
   const auto [repeated, first_repeated] =
       keep_triangles(result, [&](int t) { return seen.insert(sorted(mesh.triangles[t])).second; });
   if (repeated > 0) {
-    const bool by_weld = options.weld_distance > 0 && repeated > count_repeated(unwelded);
+    const bool by_weld = welds_apart && repeated > repeated_before;
     warnings.push_back(number(repeated) + " duplicate triangles were removed" +
                        (by_weld ? ": weld joined layers that are nearer than " +
                                       in_digits(1000 * options.weld_distance, "%.3g") +

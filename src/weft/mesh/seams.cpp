@@ -107,8 +107,7 @@ bool SeamFinder::may_sew_to_itself(int edge_a, int edge_b) const {
   const Vec3 &b0 = nodes[edge_b].position, &b1 = nodes[nodes[edge_b].next].position;
   const EdgeEdgeDistance d = edge_edge_distance(a0, a1, b0, b1);
   const Vec3 across = (1 - d.t) * b0 + d.t * b1 - (1 - d.s) * a0 - d.s * a1;
-  const double facing = 0.5 * across.norm();
-  if (a.inward.dot(across) > facing && b.inward.dot(-across) > facing) return false;
+  if (is_across_cloth(a, b, across)) return false;
   return a.border != b.border || borders_.distance_along(edge_a, edge_b) > kMinSlenderness * d.distance();
 }
 

@@ -121,13 +121,13 @@ int count_divided(const Borders& borders) {
   return static_cast<int>(std::count(is_divided.begin(), is_divided.end(), 1));
 }
 
-/// Whether a stitch between two places of one piece goes over its cloth, as in a ribbon, not through a slit.
-bool is_across_cloth(const Borders& borders, const Stitch& stitch) {
-  const BorderNode &a = borders.nodes[stitch.a.node], &b = borders.nodes[stitch.b.node];
-  const BorderEdge &at_a = borders.edge_at(a), &at_b = borders.edge_at(b);
-  const Vec3 across = b.position - a.position;
-  const double facing = 0.5 * across.norm();
-  return at_a.piece == at_b.piece && at_a.inward.dot(across) > facing && at_b.inward.dot(across) < -facing;
+/// Whether the seam joins two borders of one piece over its cloth.
+bool is_across_cloth(const Borders& borders, const Seam& seam) {
+  return std::ranges::any_of(seam.stitches, [&](const Stitch& stitch) {
+    const BorderNode &a = borders.nodes[stitch.a.node], &b = borders.nodes[stitch.b.node];
+    const BorderEdge &at_a = borders.edge_at(a), &at_b = borders.edge_at(b);
+    return at_a.piece == at_b.piece && is_across_cloth(at_a, at_b, b.position - a.position);
+  });
 }
 
 }  // namespace
@@ -152,8 +152,7 @@ OpenSeams find_open_seams(const TriangleMesh& mesh, double distance) {
   OpenSeams open;
   for (const Seam& seam : finder.seams()) {
     if (seam.measures.gap == 0 && seam.num_divided == 0) continue;  // its vertices coincide
-    const auto is_across = [&](const Stitch& stitch) { return is_across_cloth(borders, stitch); };
-    if (std::ranges::any_of(seam.stitches, is_across)) continue;
+    if (is_across_cloth(borders, seam)) continue;
     ++open.num_seams;
     open.gap = std::max(open.gap, seam.measures.gap);
   }

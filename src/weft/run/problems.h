@@ -22,7 +22,8 @@ std::vector<StepWarning> find_problems(const World& world);
 
 /// Collects problems frame by frame.
 ///
-///     yarn_strain    beyond 1.25 times the fabric's limit, 0.15 if it has none, for more than five frames in a row
+///     yarn_strain    beyond 1.25 times the fabric's limit, 0.15 if it has none, for more than five frames in
+///                    a row
 ///     flat_triangle  below a tenth of its area, for more than five frames in a row
 ///     open_seam      after the seams' time, by more than a quarter of an edge, likewise
 ///     energy_rise    in a frame, without external drive, by more than 2 % of the energy that has been in motion

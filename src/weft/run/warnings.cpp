@@ -30,7 +30,7 @@ std::string describe_cap(const StepWarning& w) {
   return "the cloth moved by more than its own size in the shortest step";
 }
 
-/// Of a warning, whose collider may have been removed since.
+/// `collider "ball"`; "a collider" if it has been removed since.
 std::string name_of_collider(const World& world, int collider) {
   const auto count = static_cast<int>(world.colliders().size());
   return collider < 0 || collider >= count ? "a collider"
@@ -136,7 +136,7 @@ std::string describe(const World& world, const StepWarning& warning) {
 }
 
 std::string describe(const World& world, const InfeasiblePair& pair) {
-  const auto collider = [&] { return "collider \"" + world.colliders()[pair.collider].name + '"'; };
+  const auto collider = [&] { return name_of_collider(world, pair.collider); };
   const auto particle = [&](int cloth, int index) {
     return "cloth \"" + world.name(world.cloth(cloth)) + "\" particle " + std::to_string(index);
   };

@@ -10,8 +10,8 @@
 namespace weft::engine::verify {
 
 /// A sweep along the axis of greatest extent, in each of many strips along the second. Boxes are stored in
-/// floats: rounding never changes the order of two numbers, so it hides no overlap; nor do bounds of what floats
-/// cannot hold.
+/// floats: rounding never changes the order of two numbers, so it hides no overlap. Nor do bounds of what
+/// floats cannot hold.
 class Sweep {
  public:
   struct Box {
