@@ -234,7 +234,7 @@ ClothId add_sheet_on_pole(World& world, double radius) {
 }
 
 /// Particles were taken out of the pole, triangles not, and seconds of settling stretched the sheet.
-TEST(Untangle, ASheetThatAPoleHasPiercedComesOff) {
+TEST(Untangle, ASheetWithAPoleThroughItComesOff) {
   World world;
   const ClothId sheet = add_sheet_on_pole(world, 0.08);
   expect_untangled(world, "particles of cloth \"sheet\" are inside collider \"pole\"");

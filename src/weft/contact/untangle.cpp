@@ -23,7 +23,6 @@ constexpr double kMaxPushPerEdge = 0.5;  // no push is longer than this share of
 constexpr double kShortening = 0.1;      // of the mean edge: how far a cut's end moves in a round
 constexpr double kLayerReach = 0.03;     // a lower layer is found up to this far above a higher one [m]
 constexpr double kSamePlace = 2e-3;      // way of a vertex that changes nothing about its layers [m]
-constexpr double kTouches = 1e-6;        // a triangle up to this deep in a shape lies on it [m]
 constexpr double kOnSurface = 1e-9;      // a point this near to a mesh lies on it [m]
 constexpr double kSameWay = 0.5;  // least cosine between the ways out of two layers that belong together
 
@@ -105,7 +104,7 @@ class Untangler {
         if (!is_free(v)) continue;
         intersections.inside.push_back({v, input_.solids[s].collider, way_out(s, x_[v]).depth});
       }
-      add_pierced(input_.solids[s], intersections.pierced);
+      add_inside_triangles(input_.solids[s], intersections.inside_triangles);
     }
     intersections.beneath = find_beneath();
     return intersections;
@@ -214,7 +213,7 @@ class Untangler {
     return found;
   }
 
-  void add_pierced(const RepairInput::Solid& solid, std::vector<Pierced>& pierced) const {
+  void add_inside_triangles(const RepairInput::Solid& solid, std::vector<InsideTriangle>& found) const {
     if (std::holds_alternative<MeshShape>(solid.shape)) return;
     const auto is_in = [&](int v) {
       return is_free(v) && signed_distance(solid.shape, x_[v]).distance < -kTouches;
@@ -224,7 +223,7 @@ class Untangler {
       if (input_.non_colliding_solid(i, solid.collider) || !(is_free(i) || is_free(j) || is_free(k)))
         continue;
       if (signed_distance(solid.shape, x_[i], x_[j], x_[k], 0).distance >= -kTouches) continue;
-      if (!is_in(i) && !is_in(j) && !is_in(k)) pierced.push_back({t, solid.collider});
+      if (!is_in(i) && !is_in(j) && !is_in(k)) found.push_back({t, solid.collider});
     }
   }
 

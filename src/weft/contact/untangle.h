@@ -50,6 +50,9 @@ struct EdgeFaceIntersection {
   auto operator<=>(const EdgeFaceIntersection&) const = default;
 };
 
+/// Up to this depth cloth lies on a solid [m].
+constexpr double kTouches = 1e-6;
+
 /// A particle inside a solid.
 struct Inside {
   int vertex = 0, collider = 0;
@@ -57,7 +60,7 @@ struct Inside {
 };
 
 /// A cloth triangle in a primitive shape, with all corners outside.
-struct Pierced {
+struct InsideTriangle {
   int triangle = 0, collider = 0;
 };
 
@@ -71,12 +74,12 @@ struct Beneath {
 struct Intersections {
   std::vector<EdgeFaceIntersection> edge_face;
   std::vector<Inside> inside;
-  std::vector<Pierced> pierced;
+  std::vector<InsideTriangle> inside_triangles;
   std::vector<Beneath> beneath;
 
   bool empty() const { return size() == 0; }
   std::size_t size() const { return num_crossing() + beneath.size(); }
-  std::size_t num_crossing() const { return edge_face.size() + inside.size() + pierced.size(); }
+  std::size_t num_crossing() const { return edge_face.size() + inside.size() + inside_triangles.size(); }
 
   /// Fewer intersections, or as many and fewer particles in the wrong order.
   bool is_better_than(const Intersections& other) const {

@@ -81,7 +81,6 @@ double compute_largest_strain(const World& world) {
 }  // namespace
 
 Intersections World::find_intersections() {
-  constexpr double kTouches = 1e-6;  // up to this depth cloth lies on the solid [m]
   show_contact_cloths();
   Intersections intersections = contact_system_.find_intersections(
       contact_cloths_, colliders_, {.time = time_, .step = 1, .rules = rules_}, *jobs_);

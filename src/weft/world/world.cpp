@@ -787,9 +787,9 @@ std::vector<std::string> World::describe(const Intersections& intersections) con
     add("particles of " + name_of(place) + " are inside " + name_of({-1, inside.collider, 0}),
         [&] { return ", first particle " + std::to_string(place.index); });
   }
-  for (const Pierced& pierced : intersections.pierced) {
-    const BodyPlace place = contact_system_.place_of_triangle(pierced.triangle);
-    add("triangles of " + name_of(place) + " are in " + name_of({-1, pierced.collider, 0}),
+  for (const InsideTriangle& inside : intersections.inside_triangles) {
+    const BodyPlace place = contact_system_.place_of_triangle(inside.triangle);
+    add("triangles of " + name_of(place) + " are in " + name_of({-1, inside.collider, 0}),
         [&] { return ", first triangle " + std::to_string(place.index); });
   }
   for (const Beneath& beneath : intersections.beneath) {
